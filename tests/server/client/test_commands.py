@@ -137,14 +137,15 @@ def test_creatures_are_imported_with_their_hashes(command, client, identity, tmp
 def test_watching_ends_as_the_run_does(command, run_id, monkeypatch, attempt, record):
     record(1)
     left = [attempt.finish]
-    show = views.Lines.show
+    line = views.line
 
-    def finish_once_seen(view: views.Lines, standing: Any) -> None:
-        show(view, standing)
+    def finish_once_seen(state: Any) -> str:
+        text = line(state)
         if left:
             left.pop()()
+        return text
 
-    monkeypatch.setattr(views.Lines, "show", finish_once_seen)
+    monkeypatch.setattr(views, "line", finish_once_seen)
     first, *_, last = command("watch", str(run_id)[:8]).stdout.splitlines()
     assert "running" in first
     assert "finished" in last

@@ -7,7 +7,7 @@ from sqlalchemy import update
 
 from server.attempts.attempt import ClaimLost
 from server.attempts.claim import claim
-from server.attempts.leases import job_died, job_stopped
+from server.attempts.leases import job_ended
 from server.core.database import ago
 from server.maintenance.reconcile import reconcile
 from server.tables import Run, Worker
@@ -106,9 +106,9 @@ def test_a_worker_that_ignores_a_cancellation_loses_the_run(
 def test_a_dead_jobs_run_is_enqueued_at_once(services, run_id, row, flush):
     claim(services, run_id, "worker")
     flush()
-    job_died(services, run_id, "another", "killed")
+    job_ended(services, run_id, "another", "killed")
     assert row().status == "running"
-    job_died(services, run_id, "worker", "killed by signal 9")
+    job_ended(services, run_id, "worker", "killed by signal 9")
     assert (row().status, row().error) == ("queued", "killed by signal 9")
     assert enqueued(services) == [str(run_id)]
 
@@ -116,9 +116,9 @@ def test_a_dead_jobs_run_is_enqueued_at_once(services, run_id, row, flush):
 def test_a_job_killed_by_a_stopping_worker_costs_no_attempt(services, run_id, row, flush):
     for _ in range(4):
         attempt = claim(services, run_id, "worker")
-        job_stopped(services, run_id, "another")
+        job_ended(services, run_id, "another")
         assert row().status == "running"
-        job_stopped(services, run_id, "worker")
+        job_ended(services, run_id, "worker")
         assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
         with pytest.raises(ClaimLost):
             attempt.check()
