@@ -40,7 +40,7 @@ def straight(motion: Motion, settings: Straight):
 
 @plugins.descriptor("sway", title="Sway", unit="cells", low=1e-3, high=1.0, scale="log10")
 def sway(motion: Motion):
-    """How far off the line from its first to its last place the body gets, on average."""
+    """Mean distance of the body from the line between its first and last positions."""
     way = motion.path - motion.path[0][None]
     end = way[-1]
     length = jnp.sqrt(jnp.sum(end * end) + 1e-12)
@@ -49,7 +49,7 @@ def sway(motion: Motion):
 
 
 class Cross(Part):
-    """How large the cross is."""
+    """The size of the cross."""
 
     long: int = Field(default=4, ge=1, le=32, json_schema_extra={"unit": "nodes"})
     """Nodes of each of the two arms along x, the middle one not among them."""

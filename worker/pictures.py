@@ -1,8 +1,7 @@
-"""How each rendering of a creature is made: the engine makes it, or it is drawn of a replay."""
+"""Make the renderings of a creature, with the engine or from its replay."""
 
 import json
 from collections.abc import Callable
-from typing import Any
 
 from microcosmos.viz.film import gif, mp4
 from microcosmos.viz.replay_file import Replay, read_replay
@@ -20,7 +19,7 @@ PICTURES: dict[str, Callable[[Replay], bytes]] = {
 
 
 def make(services: Services, creature: str, kind: str) -> bytes:
-    """The bytes of one rendering."""
+    """Return the bytes of a rendering."""
     if kind in PICTURES:
         return PICTURES[kind](read_replay(_replay(services, creature)))
     file = renderings.creature(services, creature)
@@ -30,21 +29,17 @@ def make(services: Services, creature: str, kind: str) -> bytes:
         report = audit if kind == AUDIT else measurement
         return json.dumps(report(file), allow_nan=False).encode()
     if kind == REPLAY:
+        from microcosmos.viz.replay import record  # Loads JAX.
+
         return record(file)
     known = ", ".join((REPLAY, AUDIT, MEASUREMENT, *PICTURES))
     raise ValueError(f"`kind` of a rendering must be one of {known}; got {kind!r}")
 
 
 def _replay(services: Services, creature: str) -> bytes:
-    """The replay that is kept, made first if need be."""
+    """Return the stored replay; make and store it if there is none."""
     data = renderings.existing(services, creature, REPLAY)
     if data is None:
-        data = record(renderings.creature(services, creature))
+        data = make(services, creature, REPLAY)
         renderings.save(services, creature, REPLAY, data)
     return data
-
-
-def record(file: dict[str, Any]) -> bytes:
-    from microcosmos.viz.replay import record  # Loads JAX.
-
-    return record(file)

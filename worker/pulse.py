@@ -5,7 +5,6 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Protocol
 from uuid import UUID
 
 from sqlalchemy.exc import SQLAlchemyError
@@ -16,7 +15,7 @@ from server.core.database import Sessions
 from server.workers import registry
 
 from .device import Device
-from .plugins import PluginReport
+from .plugins import PluginReport, PluginWatcher
 from .usage import Gauge, usage
 
 BEATS = 4
@@ -25,10 +24,6 @@ PATIENCE = 2
 """Heartbeats that a job may go on after the end of its run, before it is killed."""
 
 log = logging.getLogger(__name__)
-
-
-class Reporting(Protocol):
-    report: PluginReport
 
 
 @dataclass
@@ -50,7 +45,7 @@ class Pulse(threading.Thread):
         worker: str,
         device: Device,
         lease: float,
-        plugins: Reporting | None = None,
+        plugins: PluginWatcher | None = None,
     ):
         super().__init__(name="pulse", daemon=True)
         self._sessions, self._worker, self._device = sessions, worker, device

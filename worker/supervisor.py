@@ -15,7 +15,7 @@ from rq.serializers import JSONSerializer
 from rq.worker import BaseWorker
 from sqlalchemy.exc import SQLAlchemyError
 
-from server.attempts.leases import job_died, job_stopped
+from server.attempts.leases import job_ended
 from server.queue.order import in_order
 from server.services import services
 from server.services.services import Services
@@ -65,11 +65,8 @@ class Supervisor(BaseWorker):
             with loop.surviving():
                 self.services.jobs.forget(job.id)
             with loop.surviving():
-                if self.killed:
-                    job_stopped(self.services, run_id, self.name)
-                else:
-                    error = "the job's process died without a word"
-                    job_died(self.services, run_id, self.name, error)
+                error = None if self.killed else "the job's process died without a word"
+                job_ended(self.services, run_id, self.name, error)
 
     def start(self, run_id: str) -> None:
         """Start the job's process. Other users can read its arguments: no secrets."""

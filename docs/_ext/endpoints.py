@@ -4,7 +4,7 @@ import json
 from collections import defaultdict
 from typing import Any
 
-from reference import update
+from reference import write_pages
 from sphinx.application import Sphinx
 
 Json = dict[str, Any]
@@ -23,15 +23,9 @@ def write(app: Sphinx) -> None:
         for method, operation in methods.items():
             tag = operation.get("tags", ["other"])[0]
             tags[tag].append(endpoint(method, path, operation, document))
-    folder = app.srcdir / "http"
-    folder.mkdir(exist_ok=True)
     pages = {tag: f"# {title(tag)}\n\n" + "\n".join(parts) for tag, parts in tags.items()}
     pages["types"] = types(document["components"]["schemas"])
-    for path in folder.glob("*.md"):
-        if path.stem not in pages:
-            path.unlink()
-    for name, text in pages.items():
-        update(folder / f"{name}.md", text)
+    write_pages(app.srcdir / "http", pages)
 
 
 def endpoint(method: str, path: str, operation: Json, document: Json) -> str:

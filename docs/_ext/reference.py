@@ -23,17 +23,10 @@ def setup(app: Sphinx) -> dict[str, Any]:
 def write(app: Sphinx) -> None:
     """Write `reference/*.md` beside the other sources."""
     root = griffe.load("microcosmos", search_paths=[app.srcdir.parent / "engine"])
-    folder = app.srcdir / "reference"
-    folder.mkdir(exist_ok=True)
     packages = [one for one in inner(root) if one.path.split(".")[1] not in COMMANDS]
     packages.sort(key=name)
-    wanted = {f"{name(one)}.md": page(one) for one in packages}
-    wanted["index.md"] = index(root, packages)
-    for path in folder.glob("*.md"):
-        if path.name not in wanted:
-            path.unlink()
-    for file, text in wanted.items():
-        update(folder / file, text)
+    pages = {name(one): page(one) for one in packages}
+    write_pages(app.srcdir / "reference", pages | {"index": index(root, packages)})
 
 
 def inner(package: griffe.Module) -> list[griffe.Module]:
@@ -46,10 +39,16 @@ def name(package: griffe.Module) -> str:
     return package.path.removeprefix("microcosmos.")
 
 
-def update(path: Path, text: str) -> None:
-    """Write a page whose text has changed: Sphinx reads what is newer."""
-    if not path.exists() or path.read_text() != text:
-        path.write_text(text)
+def write_pages(folder: Path, pages: dict[str, str]) -> None:
+    """Write the pages that have changed, because Sphinx reads newer files; remove others."""
+    folder.mkdir(exist_ok=True)
+    for path in folder.glob("*.md"):
+        if path.stem not in pages:
+            path.unlink()
+    for name, text in pages.items():
+        path = folder / f"{name}.md"
+        if not path.exists() or path.read_text() != text:
+            path.write_text(text)
 
 
 def index(root: griffe.Module, packages: list[griffe.Module]) -> str:
@@ -91,14 +90,24 @@ def page(package: griffe.Module) -> str:
 
 
 def public(package: griffe.Module) -> list[tuple[str, Any]]:
-    """The names that a package exports; those of its modules where it exports none."""
-    homes = [package] if package.exports else package.modules.values()
+    """The names that a package exports; those of its modules if it exports none."""
+    homes = [package] if exported(package) else package.modules.values()
     pairs = [
         (f"{home.path}.{name}", find(home, name))
         for home in homes
-        for name in (map(str, home.exports) if home.exports else defined(home))
+        for name in exported(home) or defined(home)
     ]
     return [(path, one) for path, one in pairs if one and not one.is_module]
+
+
+def exported(module: griffe.Module) -> list[str]:
+    """The names in `__all__`, or those that the file of a package imports."""
+    if module.exports:
+        return list(map(str, module.exports))
+    members = module.members.items()
+    ours = f"{module.path}."
+    names = [name for name, one in members if one.is_alias and one.target_path.startswith(ours)]
+    return sorted(names) if module.is_init_module else []
 
 
 def defined(module: griffe.Module) -> list[str]:
@@ -109,7 +118,7 @@ def defined(module: griffe.Module) -> list[str]:
 
 
 def find(package: griffe.Module, name: str) -> Any:
-    """What a name stands for; None for a name that is assigned in a group."""
+    """The object of a name; None for a name that is assigned in a group."""
     one = package.members.get(name)
     try:
         return one.final_target if one and one.is_alias else one

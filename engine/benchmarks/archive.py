@@ -83,8 +83,8 @@ def print_times(seconds: dict[str, list[float]], first: str) -> None:
     reference = statistics.median(seconds[first])
     for name, taken in seconds.items():
         median, least = statistics.median(taken), min(taken)
-        told = f"{1e3 * median:10.2f} ms, least {1e3 * least:10.2f}"
-        print(f"  {name:16s} {told}   {median / reference:9.2f} ×")
+        times = f"{1e3 * median:10.2f} ms, least {1e3 * least:10.2f}"
+        print(f"  {name:16s} {times}   {median / reference:9.2f} ×")
 
 
 def tessellation(count: int) -> None:
@@ -105,10 +105,10 @@ def reached() -> None:
     """Print the QD score of MAP-Elites on plain functions, ours and QDax's."""
     print(f"\nQD score above the function's least value: median (range) of {len(SEEDS)} seeds")
     for name in FUNCTIONS:
-        told = f"  {name:10s} ours {_range([ours(name, seed) for seed in SEEDS])}"
+        line = f"  {name:10s} ours {_range([ours(name, seed) for seed in SEEDS])}"
         if installed("qdax"):
-            told += f"   QDax {_range([theirs(name, seed) for seed in SEEDS])}"
-        print(told, flush=True)
+            line += f"   QDax {_range([theirs(name, seed) for seed in SEEDS])}"
+        print(line, flush=True)
 
 
 def installed(package: str) -> bool:

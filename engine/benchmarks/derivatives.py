@@ -24,7 +24,7 @@ AXES = tuple(search.Axis(i, 0.0, 1.0, BINS, False) for i in range(2))
 
 
 def _projected(x: jax.Array) -> jax.Array:
-    """Means of the first and of the second half, 0 to 1; what is beyond ±5.12 folds back.
+    """Means of the first and of the second half, 0 to 1; values beyond ±5.12 fold back.
 
     The linear projection of Fontaine et al., GECCO 2020, section 4.
     """
@@ -34,7 +34,7 @@ def _projected(x: jax.Array) -> jax.Array:
 
 
 def _scaled(value: Callable[[jax.Array], jax.Array]) -> loops.Function:
-    """From 0 in the worst corner to 1 at the optimum, as there."""
+    """Scale a function from 0 in the worst corner to 1 at the optimum, as there."""
     worst = value(jnp.full(GENES, -LIMIT))
     return lambda x: (1 - value(x) / worst, _projected(x))
 

@@ -13,7 +13,7 @@ from microcosmos import genomes, search
 
 GENES, CELLS, BATCH, GENERATIONS = 20, 1_024, 256, 400
 ISO, LINE = 0.01, 0.1
-"""Of genes from 0 to 1, as the functions take them; ours run from −1 to 1."""
+"""Deviations for genes from 0 to 1, as the functions take them; ours run from −1 to 1."""
 
 
 def arm(x: jax.Array) -> tuple[jax.Array, jax.Array]:

@@ -12,7 +12,7 @@ import numpy as np
 from microcosmos import genomes, neat, search
 
 Function = Callable[[jax.Array], tuple[jax.Array, jax.Array]]
-"""From a vector to its fitness and its place, from 0 to 1 on each axis."""
+"""A function of a vector: its fitness, and its place from 0 to 1 on each axis."""
 
 
 def seconds(program: Callable, *given: Any) -> float:
@@ -50,9 +50,9 @@ def ours(
         outcome = search.emitters.outcome(found, inserted)
         return (archive, emitter.tell(state, outcome)), None
 
-    nobody = search.no_elites(cells.count, 2, genomes.Vector(jnp.zeros(genes)))
+    empty = search.no_elites(cells.count, 2, genomes.Vector(jnp.zeros(genes)))
     run = jax.jit(lambda carry: jax.lax.scan(generation, carry, jnp.arange(generations))[0])
-    archive, _ = run((nobody, emitter.init(key=key)))
+    archive, _ = run((empty, emitter.init(key=key)))
     return np.asarray(archive.fitness)[np.asarray(archive.occupied)]
 
 

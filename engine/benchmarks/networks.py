@@ -1,7 +1,7 @@
 """Time of a NEAT generation, relative to neat-python's, and of evaluating networks.
 
 Prints tables and asserts nothing. neat-python is compared with where it is installed: `make
-peers`. Both run interleaved in one process; compilation is told and not counted.
+peers`. Both run interleaved in one process; compilation is printed and not counted.
 """
 
 import importlib

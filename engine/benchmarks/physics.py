@@ -46,7 +46,7 @@ class Program:
 
     @property
     def microseconds(self) -> float:
-        """Of one core (or accelerator) for one step of one world."""
+        """Time of one core (or accelerator) for one step of one world."""
         return 1e6 * self.median * len(jax.local_devices()) / (WORLDS * STEPS)
 
     @property

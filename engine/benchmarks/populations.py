@@ -48,7 +48,6 @@ class Ours:
         began = time.perf_counter()
         self.advance()
         self.compiling = time.perf_counter() - began
-        """Of the first population of a size."""
 
     def advance(self) -> float:
         """The seconds of one generation."""

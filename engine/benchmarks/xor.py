@@ -19,7 +19,7 @@ INPUTS, CORNERS, EXPECTED = 2, ((0, 0, 1, 1), (0, 1, 0, 1)), (0, 1, 1, 0)
 """Nodes have biases of their own; the paper has a third input that is always 1."""
 ROOM = (16, 40)
 STEEPNESS = 4.9
-"""Of the paper's sigmoid; here weights and biases are multiplied by it."""
+"""Slope of the paper's sigmoid; here weights and biases are multiplied by it."""
 GENERATIONS = 90
 """As many as the paper's slowest run took."""
 FIRST_SEED = 1000
@@ -32,7 +32,6 @@ def main() -> None:
 
 
 def xor(seeds: int) -> None:
-    """How many seeds solve XOR, and after how many evaluations."""
     keys = jax.vmap(jax.random.key)(FIRST_SEED + jnp.arange(seeds))
     results = np.stack(jax.device_get(jax.jit(partial(jax.lax.map, solve))(keys)), 1)
     done = results[:, 0] > 0
@@ -47,7 +46,7 @@ def xor(seeds: int) -> None:
 
 
 def solve(key: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:
-    """Whether XOR was solved, the generations evaluated, and the solution's hidden nodes."""
+    """Success, generations evaluated, and hidden nodes of the solution."""
     step = partial(neat.next_generation, settings=XOR, inputs=INPUTS, outputs=1, key=key)
     networks = jax.vmap(beginner)(jax.random.split(key, XOR.population))
     start = (

@@ -1,14 +1,13 @@
-"""Import of optional libraries for drawing and encoding."""
+"""Import of optional libraries."""
 
 from importlib import import_module
 from typing import Any
 
 
-def require(module: str) -> Any:
+def require(module: str, package: str = "microcosmos[figures]") -> Any:
     """Import a module of an optional library; an error names the command that installs it."""
     try:
         return import_module(module)
     except ImportError as error:
-        raise ImportError(
-            f'Pictures need {module.partition(".")[0]}: pip install "microcosmos[figures]"'
-        ) from error
+        name = module.partition(".")[0]
+        raise ImportError(f'{name} is needed: pip install "{package}"') from error

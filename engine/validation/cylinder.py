@@ -38,7 +38,7 @@ class Case:
     height: int = 30
     speed: float = 0.08
     times: float = 30.0
-    """How long, in diameters that the stream travels."""
+    """Duration, in diameters that the stream travels."""
 
     @property
     def thickness(self) -> float:
@@ -107,7 +107,7 @@ def _start(case: Case, dtype) -> fluid.Populations:
 
 
 def frequency(lift: np.ndarray) -> float:
-    """Of a periodic signal, from its upward passages through the mean, per sample."""
+    """Frequency per sample of a periodic signal, from its upward passages through the mean."""
     signal = lift - lift.mean()
     before = np.flatnonzero((signal[:-1] < 0) & (signal[1:] >= 0))
     if len(before) < 2:

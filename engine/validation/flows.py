@@ -38,7 +38,7 @@ def after(
 
 
 def velocity(f: fluid.Populations, force: fluid.Vectors) -> fluid.Vectors:
-    """With the half step of force that Guo's scheme adds."""
+    """The velocity with the half step of force of Guo's scheme."""
     return (jnp.stack(fluid.momentum(f)) + 0.5 * force) / fluid.density(f)[None]
 
 
@@ -105,7 +105,7 @@ def orders(dtype, sizes: tuple[int, ...] = (16, 32, 64)) -> list[float]:
 
 
 def poiseuille(tau: float, magic: Callable, dtype, width: int = 31) -> tuple[float, float]:
-    """How far the walls are from halfway, in cells, and the relative L2 error of the flow.
+    """The offset of the walls from halfway, in cells, and the relative L2 error of the flow.
 
     Walls are where the parabola through the velocities vanishes. The fluid starts at rest.
     """

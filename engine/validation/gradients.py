@@ -20,7 +20,7 @@ SOURCE = "central differences"
 
 @dataclass(frozen=True)
 class Setting:
-    """What acts on two chains side by side besides the fluid."""
+    """A scene of two chains side by side."""
 
     name: str
     fields: bool
@@ -34,9 +34,9 @@ INACTIVE, ACTIVE = (1e3, 1e3), (0.01, 0.005)
 
 
 def scene(setting: Setting, steps: int, dtype: Any):
-    """What to differentiate, and where: joint amplitudes and viscosity.
+    """The function to differentiate, and its inputs: joint amplitudes and viscosity.
 
-    It also takes limits; beside it stands the share of nodes that were at one.
+    It also takes limits, and returns the share of nodes at a limit beside its value.
     """
     size = (48, 48)
     one = bodies.chain(16, 1.0)

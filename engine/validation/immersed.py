@@ -10,11 +10,11 @@ from microcosmos import coupling, fluid, groups
 
 
 class Answer(eqx.Module):
-    """The fluid after a step, and what the nodes did and gave in it."""
+    """The fluid after a step, and the motion and force of the nodes."""
 
     populations: fluid.Populations
     velocity: Float[Array, "node 2"]
-    """With which the nodes moved: what was asked for, but for what the projection took."""
+    """Velocity of the nodes: the target without the part that the projection removed."""
     given: Float[Array, "2"]
     """The momentum that the fluid received from all nodes."""
 

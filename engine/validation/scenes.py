@@ -63,7 +63,7 @@ def stroke(swimmer: swimmers.Swimmer, period: int, periods: int, dtype: Any) -> 
 
 
 def erratic(body: bodies.Body, steps: int, dtype: Any, seed: int) -> filaments.Rest:
-    """Large angles and lengths drawn anew every 20 steps."""
+    """Large random angles and lengths, new ones every 20 steps."""
     random = np.random.default_rng(seed)
     draws = -(-steps // 20)
     turn = random.uniform(-1, 1, (draws, len(body.joints)))

@@ -1,4 +1,4 @@
-"""Constraint projection without a fluid: bodies take the shape that they are asked for."""
+"""Constraint projection without a fluid: bodies take their rest shape."""
 
 from dataclasses import replace
 from typing import Any
@@ -19,7 +19,7 @@ REST = "rest shape"
 def projected(
     body: bodies.Body, positions: np.ndarray, iterations: int, dtype: Any
 ) -> np.ndarray:
-    """Where the nodes are after so many sweeps from `positions` towards the rest shape."""
+    """Positions after so many sweeps from `positions` towards the rest shape."""
     rods = build_rods(body, dtype)
     rest = filaments.Rest(
         jnp.asarray(body.rest_angle, dtype), jnp.asarray(body.rest_length, dtype)
@@ -31,7 +31,7 @@ def projected(
 
 
 def errors(body: bodies.Body, positions: np.ndarray) -> tuple[float, float]:
-    """Root mean squares of what angles (radians) and lengths (shares) lack."""
+    """Root mean square errors of angles (radians) and lengths (shares)."""
     v = positions[body.edges[:, 1]] - positions[body.edges[:, 0]]
     theta = np.arctan2(v[:, 1], v[:, 0])
     bend = theta[body.joints[:, 1]] - theta[body.joints[:, 0]] - body.rest_angle
@@ -41,14 +41,14 @@ def errors(body: bodies.Body, positions: np.ndarray) -> tuple[float, float]:
 
 
 def circle(nodes: int, iterations: int, dtype: Any) -> tuple[float, float]:
-    """Errors of a straight chain that is asked to close into a circle."""
+    """Errors of a straight chain whose rest shape is a circle."""
     straight = bodies.chain(nodes, 1.0)
     round_body = replace(straight, rest_angle=np.full(nodes - 2, 2 * np.pi / nodes))
     return errors(round_body, projected(round_body, straight.positions, iterations, dtype))
 
 
 def branched(noise: float, iterations: int, dtype: Any, seed: int = 0) -> tuple[float, float]:
-    """Errors of a ring with hairs whose nodes start off their places by `noise` cells."""
+    """Errors of a ring with hairs whose nodes start displaced by `noise` cells."""
     body = swimmers.cilia().body
     moved = np.random.default_rng(seed).normal(size=body.positions.shape)
     return errors(body, projected(body, body.positions + noise * moved, iterations, dtype))

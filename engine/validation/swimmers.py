@@ -131,7 +131,7 @@ def _free_velocity(x: np.ndarray, change: np.ndarray, size: tuple[int, int]) -> 
 
 @partial(jax.jit, static_argnames="size")
 def _deltas(positions, size: tuple[int, int]):
-    """What each node alone spreads on the grid."""
+    """The density that each node alone spreads on the grid."""
     at = coupling.windows(positions, size)
     alone = jnp.eye(len(positions))[:, :, None]
     return jax.vmap(lambda one: coupling.spread(one, at, size)[0])(alone)

@@ -35,7 +35,7 @@ def claim(services: Services, run_id: UUID, worker: str) -> Attempt | None:
         if run and not plugins.fit(session.get(Worker, worker), run.plugin_versions):
             return None  # The run waits in another queue.
         over = or_(Run.worker == worker, lost(session, services.settings.lease))
-        release(session, run_id, over, error="the worker ended without a word")
+        release(session, run_id, over, error="the worker stopped reporting")
         started = {
             "status": RUNNING,
             "attempt": Run.attempt + 1,

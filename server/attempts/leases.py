@@ -29,21 +29,14 @@ def heartbeat(sessions: Sessions, run_id: UUID, worker: str) -> Lease:
         return "waiting" if run and run.status == QUEUED else "over"
 
 
-def job_died(services: Services, run_id: UUID, worker: str, error: str) -> None:
-    """Take a run back from a job process that died: it is queued for another attempt."""
+def job_ended(services: Services, run_id: UUID, worker: str, error: str | None = None) -> None:
+    """Take a run back from a job that died, or without an `error` was killed by its worker."""
+    mine = Run.worker == worker
     with services.sessions.write.begin() as session:
-        run = release(session, run_id, Run.worker == worker, error=error)
-    _requeue(services, run_id, run)
-
-
-def job_stopped(services: Services, run_id: UUID, worker: str) -> None:
-    """Take a run back from a job that was killed because its worker stops."""
-    with services.sessions.write.begin() as session:
-        run = hand_back(session, run_id, Run.worker == worker)
-    _requeue(services, run_id, run)
-
-
-def _requeue(services: Services, run_id: UUID, run: Run | None) -> None:
+        if error:
+            run = release(session, run_id, mine, error=error)
+        else:
+            run = hand_back(session, run_id, mine)
     if run:
         announce(services, run_id)
     requeue(services.sessions, services.jobs, run_id)

@@ -17,7 +17,7 @@ class SharedView(Protocol):
 
     @property
     def listed(self) -> bool:
-        """Whether search engines may list the share's page."""
+        """Search engines may list the share's page."""
         ...
 
     def run(self, session: Session, run_id: UUID) -> Run:

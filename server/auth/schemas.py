@@ -45,7 +45,7 @@ class TokenCreated(TokenRead):
 
 
 class PrincipalRead(Wire):
-    """Who sends the request, and with which scope."""
+    """The principal of the request."""
 
     name: str
     scope: Scope

@@ -24,7 +24,7 @@ class Relative(Wire):
 
 class Ancestors(Wire):
     parents: list[str]
-    """Of the creature itself."""
+    """Parents of the creature itself."""
     items: list[Relative]
     """Nearest first."""
     more: bool

@@ -27,7 +27,7 @@ class Measured:
 
     device: str
     cell_steps: float
-    """Of one generation."""
+    """Cell steps of one generation."""
     rate: float
     """Cell steps per second."""
     start: float

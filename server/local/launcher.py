@@ -3,9 +3,7 @@
 import os
 import sys
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass
-from http.client import HTTPConnection, HTTPException
 from pathlib import Path
 from socket import AF_INET, AF_INET6, SO_REUSEADDR, SOL_SOCKET, socket
 from subprocess import Popen
@@ -19,6 +17,7 @@ from microcosmos.spec import EXPERIMENTS
 from ..auth import bootstrap
 from ..core.folders import open_to_others, private
 from ..core.processes import spawn
+from ..maintenance.healthcheck import answers
 from ..runs.submission import submit
 from ..services import services
 from ..settings import Settings
@@ -138,15 +137,6 @@ def start_redis(place: Place, tree: Tree) -> Settings:
     return place.settings.model_copy(update={"redis_url": redis.url})
 
 
-def answers(settings: Settings) -> bool:
-    """Tell whether the server answers."""
-    connection = HTTPConnection(settings.host, settings.port, timeout=1)
-    with suppress(OSError, HTTPException):
-        connection.request("GET", "/healthz")
-        return connection.getresponse().status == 200
-    return False
-
-
 def main() -> None:
     """Run until Ctrl-C; all processes end with this one, and nothing is lost."""
     try:
@@ -161,7 +151,7 @@ def main() -> None:
         refuse_taken(settings.host, settings.port)
         say("starting", address)
         start(place, tree)
-        tree.watch(lambda: answers(settings))
+        tree.watch(lambda: answers(settings.port, "/healthz", settings.host))
         if not tree.stop_requested:
             say("ready", f"{address} (Ctrl-C ends it)")
         tree.watch()

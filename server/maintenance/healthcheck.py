@@ -41,10 +41,10 @@ def alive(services: Services, part: str, host: str) -> bool:
     return any(True for _ in services.redis.scan_iter(keys))
 
 
-def answers(port: int, path: str) -> bool:
-    """Return whether the server on this machine answers a request with 200."""
+def answers(port: int, path: str, host: str = "127.0.0.1") -> bool:
+    """Tell whether the server answers a request with 200."""
     try:
-        connection = HTTPConnection("127.0.0.1", port, timeout=5)
+        connection = HTTPConnection(host, port, timeout=5)
         connection.request("GET", path)
         return connection.getresponse().status == 200
     except (OSError, HTTPException):

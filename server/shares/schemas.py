@@ -24,7 +24,7 @@ Credit = Annotated[list[Line], Field(max_length=20), BeforeValidator(as_list)]
 
 
 class ShareCreate(Wire):
-    """What to share; by default the creature's file decides title, credit and licence."""
+    """A request for a share; the creature's file supplies the defaults."""
 
     creature: Digest | None = None
     run: UUID | None = None

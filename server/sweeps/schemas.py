@@ -113,10 +113,10 @@ class SweepEstimate(Wire):
     runs: int
     cases: int
     memory_bytes: int
-    """Of the largest run."""
+    """Memory of the largest run."""
     memory_limit_bytes: int
     evaluations: int
-    """Of all runs together, as the next two fields."""
+    """Sum over all runs, as the next two fields."""
     cell_steps: int
     seconds: float | None
     """Total time of all runs, one after the other; None if one has no estimate."""

@@ -46,7 +46,7 @@ class Recorded:
     reached: np.ndarray[Any, np.dtype[np.bool_]]
     """Run by generation: the run has recorded it."""
     values: Mapping[str, Values]
-    """Of each figure, run by generation; NaN where there is none."""
+    """Each figure, run by generation; NaN where there is none."""
 
 
 def recorded(session: Session, sweep: Sweep, points: int | None) -> Recorded:

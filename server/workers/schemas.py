@@ -45,7 +45,7 @@ class WorkerRead(Wire):
     device: str
     kind: Literal["cpu", "gpu"]
     memory_bytes: int
-    """Of the machine, or of the GPU."""
+    """Memory of the machine, or of the GPU."""
     memory_used_bytes: int | None
     load: float | None
     """Load of the machine over a minute per core, or of the GPU; 1 is fully busy."""

@@ -1,15 +1,15 @@
-"""The archive of a run as people look at it: map, time, gallery, guide."""
+"""The archive of a run: map, time, gallery, tour."""
 
 import re
 from typing import Any
 
 import pytest
+from places import GUIDED
 from playwright.sync_api import Page, expect
 from small import CENTROIDS
 from written import Written
 
 FAST, SLOW = 10_000, 120_000
-GUIDED = "localStorage.setItem('microcosmos:guided', '1')"
 
 FLASH_MS = 1200
 WHERE_DRAWN_DIFFERENTLY = """before => {
@@ -31,7 +31,7 @@ pytestmark = pytest.mark.e2e
 
 @pytest.fixture
 def searched(shared, shared_page: Page) -> str:
-    """The address of a finished search, for somebody who has been here before."""
+    """The address of a finished search; the tour does not open."""
     shared_page.add_init_script(GUIDED)
     return f"{shared.product.url}/runs/{shared.finished('search')}"
 
@@ -100,7 +100,7 @@ def test_the_history_plays_to_its_end(shared_page: Page, searched: str):
     page.get_by_role("button", name="Play the history").click()
     expect(elites).not_to_have_text(f"{now} elites", timeout=FAST)
     slider = page.get_by_role("slider", name=re.compile("Generation shown"))
-    slider.fill("26")  # So near to its end that nobody waits for long.
+    slider.fill("26")  # Close to the end, so the wait is short.
     page.get_by_role("button", name="Play the history").click()
     expect(page.get_by_role("button", name="Pause the history")).to_be_visible(timeout=FAST)
     expect(page.get_by_role("button", name="Play the history")).to_be_visible(timeout=30_000)
@@ -177,7 +177,7 @@ def test_a_cell_that_changes_live_flashes_once(idle_page: Page, idle, motion: st
 
 
 def corners_of_the_marked(page: Page) -> list[list[float]]:
-    """Of the cell that is marked, as shares of the map's sides."""
+    """The corners of the marked cell, as shares of the map's sides."""
     points = page.locator(".map-mark polygon").first.get_attribute("points", timeout=FAST)
     assert points
     return [[float(share) for share in corner.split(",")] for corner in points.split()]

@@ -38,7 +38,7 @@ def test_a_run_is_forked_extended_deleted_and_restored(
 
 
 def of_the_bin(said: str, run: str) -> bool:
-    """What the page asked of a run just before it went into the bin is answered by 404."""
+    """Requests for a run just before its deletion are answered by 404."""
     return "status of 404" in said and f"/api/v1/runs/{run}/" in said
 
 

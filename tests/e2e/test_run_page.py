@@ -114,7 +114,7 @@ def choose_how_curves_are_drawn(page: Page) -> None:
 
 
 def pixels(page: Page) -> str:
-    """What the first curve looks like."""
+    """The picture of the first curve."""
     return page.evaluate("document.querySelector('#curves canvas').toDataURL()")
 
 

@@ -1,4 +1,4 @@
-/** Tells the tests what the server's experiments are, as they are now. */
+/** Provides the server's experiments to the tests. */
 
 import { execFileSync } from "node:child_process";
 
@@ -7,6 +7,6 @@ const PYTHON = process.env.PYTHON ?? "../.venv/bin/python";
 export default function setup(project) {
   const environment = { ...process.env, PYTHONPATH: "../engine:.." };
   const options = { encoding: "utf8", env: environment, maxBuffer: 1 << 26 };
-  const told = execFileSync(PYTHON, ["scripts/experiments.py"], options);
-  project.provide("experiments", JSON.parse(told));
+  const output = execFileSync(PYTHON, ["scripts/experiments.py"], options);
+  project.provide("experiments", JSON.parse(output));
 }

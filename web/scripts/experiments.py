@@ -1,4 +1,4 @@
-"""Print what `GET /experiments` tells: `.venv/bin/python web/scripts/experiments.py`."""
+"""Print the answer of `GET /experiments`: `.venv/bin/python web/scripts/experiments.py`."""
 
 import json
 

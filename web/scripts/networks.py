@@ -1,7 +1,7 @@
-"""Write what the engine says that networks compute, for the page's tests to be held against.
+"""Write networks with the outputs that the engine computes, for tests of the page.
 
 `.venv/bin/python web/scripts/networks.py > web/src/decode/networks.fixture.json`. A test of the
-engine makes the same numbers anew and compares, so that the file cannot grow stale.
+engine computes the numbers again and compares them, so that the file stays up to date.
 """
 
 import json
@@ -16,9 +16,9 @@ from microcosmos import genomes, neat
 from microcosmos.naming import encode
 
 ROWS, COLUMNS = 48, 96
-"""Places along the body and moments of the page's pictures."""
-LOOKED_AT = np.ix_([0, 5, 31, 95], [0, 17, 30, 47])
-"""Columns and rows that are compared."""
+"""Places along the body and times of the page's pictures."""
+COMPARED = np.ix_([0, 5, 31, 95], [0, 17, 30, 47])
+"""Columns and rows of the compared values."""
 PERIOD, STEPS = 20, 60
 NAMES = ("position", "sine", "cosine")
 OUTPUTS = ("rest_angle", "rest_length")
@@ -27,7 +27,7 @@ PLACES = np.linspace(-1, 1, ROWS)
 
 
 def cases() -> list[dict[str, Any]]:
-    """Networks of every kind with their outputs at some places and moments."""
+    """Networks of each kind with their outputs at some places and times."""
     forward = [_forward(network) for network in _grown(6)]
     return [*forward, _recurrent(), _layered()]
 
@@ -52,18 +52,18 @@ def _grid() -> jnp.ndarray:
 
 
 def _forward(network: genomes.CPPN) -> dict[str, Any]:
-    # New genes have no numbers of their own until a generation gives them some.
+    # New genes are numbered by a generation.
     network = replace(
         jax.tree.map(jnp.asarray, network),
         node_id=jnp.arange(network.node_id.shape[0]),
         innovation=jnp.arange(network.innovation.shape[0]),
     )
-    said = genomes.evaluate(network, _grid(), len(OUTPUTS))
-    return _case("cppn", genomes.to_genes(network), {}, np.asarray(said))
+    outputs = genomes.evaluate(network, _grid(), len(OUTPUTS))
+    return _case("cppn", genomes.to_genes(network), {}, np.asarray(outputs))
 
 
 def _recurrent() -> dict[str, Any]:
-    """One that feeds itself and its neighbour, over three periods; the last one is compared."""
+    """A network with cycles over three periods, of which the last is compared."""
     links = {(0, 5): 1.2, (1, 5): -0.7, (2, 6): 0.5, (5, 5): 0.8, (5, 6): 1.1, (6, 5): -0.6,
              (6, 3): 0.9, (5, 4): 0.5, (3, 6): 0.4}  # fmt: skip
     genes = {
@@ -81,35 +81,35 @@ def _recurrent() -> dict[str, Any]:
         },
     }
     network = jax.tree.map(jnp.asarray, genomes.from_genes(genes, 8, 12))
-    values, said = jnp.zeros((8, ROWS), jnp.float32), []
+    values, outputs = jnp.zeros((8, ROWS), jnp.float32), []
     for sine, cosine in genomes.sine_cosine(STEPS, float(PERIOD)).T:
         clock = np.repeat([[sine], [cosine]], ROWS, 1)
         inputs = jnp.asarray(np.concatenate([PLACES[None], clock]), jnp.float32)
         values = genomes.advance(network, values, inputs)
-        said.append(np.asarray(values[3:5]))
+        outputs.append(np.asarray(values[3:5]))
     steps = STEPS - PERIOD + np.arange(COLUMNS) * PERIOD // COLUMNS
-    found = np.stack(said)[steps].swapaxes(0, 1).reshape(2, -1)
+    found = np.stack(outputs)[steps].swapaxes(0, 1).reshape(2, -1)
     return _case("cppn", genes, {"recurrent": True}, found)
 
 
 def _layered() -> dict[str, Any]:
     layers = genomes.Layers((3, 5, 4, 2), "sin", 1.7)
     genes = np.random.default_rng(0).uniform(-1, 1, layers.genes).astype(np.float32)
-    said = genomes.forward(layers, jnp.asarray(genes), _grid())
+    outputs = genomes.forward(layers, jnp.asarray(genes), _grid())
     control = {"hidden": [5, 4], "activation": "sin", "scale": 1.7}
-    return _case("weights", {"values": encode(genes)}, control, np.asarray(said))
+    return _case("weights", {"values": encode(genes)}, control, np.asarray(outputs))
 
 
 def _case(
-    encoding: str, genes: dict[str, Any], control: dict[str, Any], said: np.ndarray
+    encoding: str, genes: dict[str, Any], control: dict[str, Any], outputs: np.ndarray
 ) -> dict[str, Any]:
     clock = {"timer": "sine-cosine", "period": PERIOD, "position": "signed"}
-    told = {"encoding": encoding, "inputs": NAMES, "outputs": OUTPUTS}
-    values = said.reshape(len(OUTPUTS), COLUMNS, ROWS)
+    common = {"encoding": encoding, "inputs": NAMES, "outputs": OUTPUTS}
+    values = outputs.reshape(len(OUTPUTS), COLUMNS, ROWS)
     return {
-        "genome": {**told, "control": {**clock, **control}, **genes},
+        "genome": {**common, "control": {**clock, **control}, **genes},
         "steps": STEPS,
-        "said": [output[LOOKED_AT].tolist() for output in values],
+        "expected": [output[COMPARED].tolist() for output in values],
     }
 
 

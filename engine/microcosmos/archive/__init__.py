@@ -1,1 +1,1 @@
-"""Files that outlive a run: archives and creatures; JAX-free."""
+"""Files of archives and creatures, and reports of a generation; JAX-free."""

@@ -1,14 +1,11 @@
-"""Files that are whole or not there: written beside, synced, renamed, the folder synced."""
+"""Atomic writing of files: write beside, sync, rename, sync the folder."""
 
 import os
 from pathlib import Path
 
 
 def write_whole(path: Path, data: bytes) -> None:
-    """Replace a file by new content; whatever fails, the old content stays readable.
-
-    Raises `OSError` where the disk is full or refuses.
-    """
+    """Replace a file; the old content stays readable on any failure. Raises `OSError`."""
     beside = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         with beside.open("wb") as file:

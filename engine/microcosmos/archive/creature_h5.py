@@ -52,31 +52,28 @@ def _tree(file: Mapping[str, Any]) -> Tree:
 def load(data: bytes) -> dict[str, Any]:
     """The creature file in these bytes, checked as any other; `ValueError` where it is none.
 
-    It must be as `dump` writes it: arrays that differ from the identity would be believed by
-    whoever reads them, and what lies outside of the file is nobody's business.
+    It must equal what `dump` writes: other readers would trust arrays that differ from the
+    identity, and nothing outside the file may be read.
     """
     try:
         with h5py.File(BytesIO(data), "r") as file:
-            told = hdf5_guard.texts(file, ATTRIBUTES)
-            if told["format"] != FORMAT:
-                raise ValueError(f"`format` must be {FORMAT}, got {told['format']:.60}")
-            parts = {part: json.loads(told[part]) for part in PARTS}
+            texts = hdf5_guard.texts(file, ATTRIBUTES)
+            if texts["format"] != FORMAT:
+                raise ValueError(f"`format` must be {FORMAT}, got {texts['format']:.60}")
+            parts = {part: json.loads(texts[part]) for part in PARTS}
             identity = json.loads(hdf5_guard.text(file, "identity"))
-            found = parse({"identity": identity, "sha256": told["sha256"], **parts})
+            found = parse({"identity": identity, "sha256": texts["sha256"], **parts})
             hdf5_guard.refuse_other(file, _tree(found))
     except (OSError, RuntimeError, KeyError, TypeError, RecursionError) as error:
         raise ValueError(f"a creature's HDF5 file must be HDF5: {error}") from error
     expected = _attributes(found)
-    if wrong := [name for name in told if told[name] != expected[name]]:
+    if wrong := [name for name in texts if texts[name] != expected[name]]:
         raise ValueError(f"attributes must be as they are written here, got other {wrong}")
     return found
 
 
 def link(name: str) -> str:
-    """Anybody's name as one of HDF5, which has paths: what would be one is percent-encoded.
-
-    `%` alone stands for a name without letters.
-    """
+    """A name for HDF5, with its path characters percent-encoded; `%` alone for an empty one."""
     return re.sub("[%/.\0]", lambda found: f"%{ord(found[0]):02X}", name) or "%"
 
 
@@ -85,7 +82,6 @@ def _by_link(values: Mapping[str, float]) -> Tree:
 
 
 def _arrays(genome: Mapping[str, Any]) -> Tree:
-    """What of a genome is a list or a row of numbers, with the numbers decoded."""
     found: Tree = {}
     for name, value in genome.items():
         if name in ("bias", "weight", "values"):

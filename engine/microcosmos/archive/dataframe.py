@@ -1,6 +1,5 @@
-"""Archives in the libraries of others: a data frame, and an archive of pyribs'."""
+"""Archives for other libraries: a pandas data frame, and an archive of pyribs."""
 
-import importlib
 import json
 import os
 from pathlib import Path
@@ -8,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from ..optional import require
 from .export import columns, ends
 from .file import load
 
 Source = bytes | str | os.PathLike
-"""An archive file, or where it is."""
+"""An archive file, or its path."""
 
 
 def to_pandas(archive: Source) -> Any:
@@ -20,19 +20,18 @@ def to_pandas(archive: Source) -> Any:
 
     `ribs.archives.ArchiveDataFrame` takes it as it is. Raises `ImportError` without pandas.
     """
-    return _needed("pandas").DataFrame(columns(_bytes(archive)))
+    return require("pandas", "pandas").DataFrame(columns(_bytes(archive)))
 
 
 def to_ribs(archive: Source) -> Any:
-    """A `GridArchive` or `CVTArchive` of pyribs' with our elites and every measure as a field.
+    """A `GridArchive` or `CVTArchive` of pyribs with our elites and every measure as a field.
 
-    Ranges of a grid are on the axes' own scales, around centroids from 0 to 1 on those.
-
-    Borders of bins round otherwise there: an elite on one is told to be in the middle of its
-    cell. Raises `ImportError` without pyribs.
+    Ranges of a grid are on the axes' own scales, around centroids from 0 to 1 on those. pyribs
+    rounds borders of bins differently: an elite on one moves to the middle of its cell. Raises
+    `ImportError` without pyribs.
     """
     data = _bytes(archive)
-    found, peer = columns(data), _needed("ribs.archives", "ribs[visualize]")
+    found, peer = columns(data), require("ribs.archives", "ribs[visualize]")
     solution, measures = _beside(found, "solution_"), _beside(found, "measures_")
     fields = list(found)[list(found).index("threshold") + 1 : -1]
     fields = {name: np.asarray(found[name]) for name in fields}
@@ -59,7 +58,6 @@ def _empty(peer: Any, data: bytes, genes: int, fields: dict[str, np.ndarray]) ->
 
 
 def _middles(filled: Any, index: np.ndarray) -> np.ndarray:
-    """The middle of cells, in a pyribs archive."""
     if hasattr(filled, "centroids"):
         return filled.centroids[index]
     place = np.stack(np.unravel_index(index, filled.dims), 1) + 0.5
@@ -76,11 +74,3 @@ def _beside(found: dict[str, Any], prefix: str) -> np.ndarray:
 
 def _bytes(archive: Source) -> bytes:
     return archive if isinstance(archive, bytes) else Path(archive).read_bytes()
-
-
-def _needed(module: str, package: str | None = None) -> Any:
-    try:
-        return importlib.import_module(module)
-    except ImportError as error:
-        name = module.partition(".")[0]
-        raise ImportError(f'`{name}` is needed: pip install "{package or name}"') from error

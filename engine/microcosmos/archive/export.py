@@ -25,7 +25,7 @@ def csv(data: bytes) -> str:
 
 def columns(data: bytes) -> Columns:
     """`solution_i`, `objective`, `measures_i`, `threshold`, measures, `generation`, `creature`,
-    what repeated evaluations have shown if there were any, and `index`, an entry an elite.
+    results of reevaluation if there are any, and `index`, an entry an elite.
 
     A solution is the genome's arrays side by side, in the order of their names; a measure
     is on its axis' own scale, so that bins of a log axis are equally wide, and around
@@ -52,21 +52,21 @@ def columns(data: bytes) -> Columns:
 
 
 def licensed(data: bytes, licence: str, credit: Sequence[str]) -> bytes:
-    """The same file with what others may do with it, and whom they are to name."""
+    """The same file with a licence and the names to credit."""
     tree, attributes = load(data)
-    told = {"licence": licence, "credit": json.dumps(list(credit))}
-    return dump(tree, {**attributes, **told})
+    terms = {"licence": licence, "credit": json.dumps(list(credit))}
+    return dump(tree, {**attributes, **terms})
 
 
 def centroids(data: bytes) -> np.ndarray:
-    """(cell, axis): where the cells of a CVT are, from 0 to 1 on the axes' own scales."""
+    """Centroids (cell, axis) of a CVT, from 0 to 1 on the axes' own scales."""
     tree, _ = load(data)
     return tree["archive"]["centroids"]
 
 
 def repeated(archive: Tree) -> Columns:
-    """Of evaluations under disturbed conditions their number, those that diverged, mean and
-    standard deviation of fitness, and the share that fell into the elite's own cell."""
+    """Results of reevaluation: count, failures, mean and standard deviation of fitness, and the
+    share that fell into the elite's own cell."""
     repeats = archive.get("repeats", {})
     if not np.any(repeats.get("count", 0)):
         return {}
@@ -82,7 +82,7 @@ def repeated(archive: Tree) -> Columns:
 
 
 def scaled(values: np.ndarray, axis: dict[str, Any]) -> np.ndarray:
-    """Values on an axis' own scale, those beyond its ends at the end."""
+    """Values on an axis' own scale, cut at its ends."""
     values = np.clip(values, np.float32(axis["low"]), np.float32(axis["high"]))
     return np.log10(values) if axis["scale"] == "log10" else values
 

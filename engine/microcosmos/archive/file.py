@@ -1,6 +1,8 @@
 """HDF5 files as bytes: nested arrays and attributes, the same content giving the same bytes."""
 
+import json
 from collections.abc import Mapping
+from dataclasses import dataclass
 from io import BytesIO
 from typing import Any
 
@@ -17,7 +19,7 @@ Tree = dict[str, Any]
 def dump(tree: Mapping[str, Any], attributes: Mapping[str, str]) -> bytes:
     """A file with a group for each mapping and a dataset for each array, in sorted order.
 
-    Neither names nor times of a machine are in it.
+    It holds neither names nor times of a machine.
     """
     with h5py.File.in_memory(libver=("v110", "v110"), track_order=False) as file:
         for name in sorted(attributes):
@@ -29,10 +31,7 @@ def dump(tree: Mapping[str, Any], attributes: Mapping[str, str]) -> bytes:
 
 
 def load(data: bytes) -> tuple[Tree, dict[str, str]]:
-    """The arrays and attributes of a file of ours.
-
-    Raises `ValueError` where it is not one.
-    """
+    """The arrays and attributes of our file. Raises `ValueError` for any other."""
     try:
         with h5py.File(BytesIO(data), "r") as file:
             attributes = {name: bytes(value).decode() for name, value in file.attrs.items()}
@@ -57,3 +56,23 @@ def _read(group: h5py.Group) -> Tree:
         name: _read(item) if isinstance(item, h5py.Group) else item[()]
         for name, item in group.items()
     }
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of flat values, and their kind of experiment."""
+
+    experiment: str
+    rows: list[dict[str, Any]]
+
+
+def read_table(data: bytes) -> Table:
+    """The table in a run's file. Raises `ValueError` if it has none."""
+    tree, attributes = load(data)
+    loop = tree.get("loop", {})
+    if "rows" not in loop:
+        raise ValueError(
+            "a table is needed, as sweeps, measurements and foldings have; got an archive"
+        )
+    experiment = json.loads(attributes["spec"])["experiment"]
+    return Table(experiment, json.loads(bytes(loop["rows"])))

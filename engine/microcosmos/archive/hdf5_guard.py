@@ -1,4 +1,4 @@
-"""HDF5 from strangers: only what is expected is read, and only from the file itself."""
+"""Safe reading of HDF5 from strangers: only expected items, only from the file itself."""
 
 from collections.abc import Mapping
 from itertools import islice
@@ -8,10 +8,10 @@ import h5py
 import numpy as np
 
 LONGEST = 8 << 20
-"""Bytes of a text."""
+"""Most bytes of a text."""
 PLAIN = (h5py.h5d.CONTIGUOUS, h5py.h5d.COMPACT)
 TOLERANCE = 1e-6
-"""Between numbers that another machine has computed and those of this one."""
+"""Relative tolerance of numbers that another machine has computed."""
 
 
 def texts(item: Any, names: set[str]) -> dict[str, str]:
@@ -23,7 +23,7 @@ def texts(item: Any, names: set[str]) -> dict[str, str]:
 
 
 def text(group: h5py.Group, name: str) -> str:
-    """The text that a dataset is."""
+    """The text in a dataset."""
     dataset = _own(group, name, name)
     if not isinstance(dataset, h5py.Dataset):
         raise ValueError(f"`{name}` must be a dataset, got a group")
@@ -49,7 +49,7 @@ def refuse_other(group: h5py.Group, tree: Mapping[str, Any], where: str = "") ->
 
 
 def _own(group: h5py.Group, name: str, place: str) -> Any:
-    """What a name means, unless that lies elsewhere: in another file or under another name."""
+    """The item of a name, which must not be a link to another file or name."""
     link = group.get(name, getlink=True)
     if not isinstance(link, h5py.HardLink):
         kind = type(link).__name__ if link else "nothing"
@@ -58,7 +58,7 @@ def _own(group: h5py.Group, name: str, place: str) -> Any:
 
 
 def _refuse_elsewhere(dataset: h5py.Dataset, place: str) -> None:
-    """Neither other files nor filters: what is read is as large as the file, at most."""
+    """Refuse external storage and filters: reading must not exceed the file's size."""
     layout = dataset.id.get_create_plist()
     if layout.get_external_count():
         raise ValueError(f"`{place}` must be stored in the file, got external storage")
@@ -69,7 +69,7 @@ def _refuse_elsewhere(dataset: h5py.Dataset, place: str) -> None:
 
 
 def _text(item: Any, place: str) -> str:
-    """Of fixed length: one of variable length would name a place on a heap."""
+    """One text of fixed length; variable length would point to a heap."""
     if item.shape != () or item.dtype.kind != "S" or item.dtype.itemsize > LONGEST:
         raise ValueError(f"`{place}` must be one text, got {item.dtype}{item.shape}")
     if isinstance(item, h5py.Dataset):

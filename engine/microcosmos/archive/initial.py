@@ -1,6 +1,6 @@
-"""Creatures that a search begins from: whether they fit its spec, and which genes they bring.
+"""Initial creatures: check that they fit a spec, and take over their genes.
 
-Only genes are taken over; world, body and task are the new spec's.
+World, body and task are the new spec's.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -18,7 +18,7 @@ Genes = dict[str, Any]
 """The genome of a creature's identity."""
 
 MOST = 2**30
-"""Numbers of genes stay below it, so that a search never runs out of them."""
+"""Upper bound of the genes' numbers, so that a search never runs out of them."""
 
 
 def genes_of(chosen: Evolution, files: Iterable[Mapping[str, Any]]) -> list[Genes]:
@@ -33,7 +33,7 @@ def genes_of(chosen: Evolution, files: Iterable[Mapping[str, Any]]) -> list[Gene
 
 
 def fitting(chosen: Evolution, file: Mapping[str, Any]) -> Genes:
-    """The genome of a creature file, if it means something in the spec."""
+    """The genome of a creature file, if it fits the spec."""
     genome, who = file["identity"]["genome"], f"creature {file['sha256'][:12]}"
     control = chosen.control
     _compare("control.encoding", control.encoding, genome["encoding"], who)
@@ -93,15 +93,15 @@ def _refuse_other_parts(chosen: Evolution, before: Any, who: str) -> None:
 
 
 def renumbered(genomes: Sequence[Genes], inputs: int, outputs: int) -> list[Genes]:
-    """Genomes in which a number stands for one connection only.
+    """Genomes in which each number stands for one connection.
 
-    Numbers of one run agree and stay as they are. Genomes in which a number stands for other
-    ends than in those before make a family with numbers of its own.
+    Numbers of one run agree and stay. Genomes in which a number has other ends than before make
+    a family with its own numbers.
     """
     fixed = inputs + outputs
     last = [max(_numbers(genome), default=0) for genome in genomes]
     step = max([fixed, inputs * outputs, *last], default=0) + 1
-    # What newcomers have: see `genomes.cppn.minimal`.
+    # The genes of newcomers: see `genomes.cppn.minimal`.
     plain = {i: (i % inputs, inputs + i // inputs) for i in range(inputs * outputs)}
     families: list[dict[int, tuple[int, int]]] = [dict(plain)]
     found = []
@@ -123,7 +123,7 @@ def renumbered(genomes: Sequence[Genes], inputs: int, outputs: int) -> list[Gene
 
 
 def counters(genomes: Sequence[Genes]) -> tuple[int, int]:
-    """The numbers after all connections and after all nodes; 0 where there are none."""
+    """The first numbers after all connections and after all nodes."""
     connections = [n for genome in genomes for n in genome["connections"]["innovation"]]
     nodes = [n for genome in genomes for n in genome["nodes"]["id"]]
     return max(connections, default=-1) + 1, max(nodes, default=-1) + 1
@@ -140,14 +140,13 @@ def _ends(genome: Genes) -> dict[int, tuple[int, int]]:
 
 
 def _moved(genome: Genes, by: int, fixed: int, plain: dict[int, tuple[int, int]]) -> Genes:
-    """The genome with its own nodes and connections numbered so much higher."""
     ends = _ends(genome)
 
     def node(number: int) -> int:
         return number + by if number >= fixed else number
 
     def connection(number: int) -> int:
-        # Where a newcomer's gene is itself, it keeps its number.
+        # A newcomer's gene keeps its number.
         return number if plain.get(number) == ends[number] else number + by
 
     nodes, genes = genome["nodes"], genome["connections"]

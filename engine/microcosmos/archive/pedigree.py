@@ -1,4 +1,4 @@
-"""A creature file that brings its ancestors: the same document, with theirs in `ancestors`."""
+"""A creature file with the files of its ancestors in the field `ancestors`."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -6,7 +6,7 @@ from typing import Any
 from .creature import CreatureError, parse
 
 MOST = 200
-"""Ancestors in one document."""
+"""Most ancestors in one document."""
 
 
 def document(file: Mapping[str, Any], ancestors: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
@@ -15,16 +15,16 @@ def document(file: Mapping[str, Any], ancestors: Iterable[Mapping[str, Any]]) ->
 
 
 def split(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    """A creature file from anybody and those of its ancestors, each checked with its hash.
+    """A creature file and those of its ancestors, each checked with its hash.
 
-    Raises `CreatureError` where one is not sound, or is nobody's parent in the document.
+    Raises `CreatureError` if one is invalid, or is not an ancestor.
     """
-    told = data.get("ancestors", [])
-    if not isinstance(told, list) or len(told) > MOST:
-        came = len(told) if isinstance(told, list) else told
-        raise CreatureError("ancestors", f"a list of at most {MOST} creature files", came)
+    files = data.get("ancestors", [])
+    if not isinstance(files, list) or len(files) > MOST:
+        got = len(files) if isinstance(files, list) else files
+        raise CreatureError("ancestors", f"a list of at most {MOST} creature files", got)
     file = parse({name: part for name, part in data.items() if name != "ancestors"})
-    ancestors = [_ancestor(one, place) for place, one in enumerate(told)]
+    ancestors = [_ancestor(one, place) for place, one in enumerate(files)]
     _refuse_strangers(file, ancestors)
     return file, ancestors
 
@@ -38,12 +38,11 @@ def _ancestor(data: Any, place: int) -> dict[str, Any]:
 
 
 def parents(file: Mapping[str, Any]) -> list[str]:
-    """The names of a creature's parents, as far as its file knows them."""
+    """The names of a creature's parents in its file."""
     return list((file["provenance"] or {}).get("parents", ()))
 
 
 def _refuse_strangers(file: Mapping[str, Any], ancestors: list[dict[str, Any]]) -> None:
-    """Everybody has to be a parent of the creature, or of another that is."""
     by_name = {one["sha256"]: one for one in ancestors}
     known, nearest = {file["sha256"]}, parents(file)
     while nearest:

@@ -1,4 +1,4 @@
-"""What an experiment tells about a generation."""
+"""The report of a generation: figures, new elites, new rows."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ class Elite:
 
 @dataclass(frozen=True)
 class Row:
-    """A line of a run's result, with the creature that it is about, if it is about one."""
+    """A line of a run's result, and its creature, if it has one."""
 
     values: Mapping[str, Value]
     creature: str | None = None
@@ -40,7 +40,7 @@ class Row:
 class Report:
     """The run after a generation; counts are of the whole run so far.
 
-    A search tells of its archive, other experiments of the rows of their result.
+    A search reports on its archive, other experiments the rows of their result.
     """
 
     generation: int
@@ -53,4 +53,4 @@ class Report:
     elites: tuple[Elite, ...] = ()
     rows: tuple[Row, ...] = ()
     summary: Mapping[str, Value] | None = None
-    """What the result comes to so far, or what else there is to tell of the generation."""
+    """Further figures of the generation or the result so far."""

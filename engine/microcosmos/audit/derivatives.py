@@ -1,4 +1,4 @@
-"""Derivatives of a creature file's measures, and how far they can be trusted."""
+"""Derivatives of a creature file's measures, and their reliability."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -26,10 +26,9 @@ def gradient(
 ) -> tuple[dict[str, float], dict[str, dict[str, np.ndarray]]]:
     """Measures of a creature, and for each its derivatives by parts of the creature.
 
-    Names are those of `search.gradients.parts` and of the measures. With `horizon` the life
-    ends after so many steps; with `segment` so many steps are kept in memory at once and the
-    others done twice. Raises `creature.CreatureError` for a file that is not sound and
-    `ValueError` for unknown names.
+    Names are those of `search.gradients.parts` and of the measures. `horizon` is the number of
+    steps; with `segment`, reverse mode keeps so many steps in memory and repeats the others.
+    Raises `creature.CreatureError` for an invalid file and `ValueError` for unknown names.
     """
     task, actuator = _creature(file, jnp.dtype("float32"))
     values = search.gradients.parts(task, actuator, by)

@@ -1,8 +1,8 @@
-"""A physics audit: whether a creature swims by the fluid or by the way it is computed.
+"""A physics audit: does a creature swim by physics or by an artefact of the method?
 
-What the creature did is done again, the same rest shapes at the same times, in simulations
-that should make no difference (at twice the resolution and half the step, with another
-delta) and in one that should (its gait made reciprocal: Purcell, Am. J. Phys. 45, 3, 1977).
+The same rest shapes at the same times are simulated again: in ways that should make no
+difference (at twice the resolution and half the step, with another delta), and in one that
+should (the gait made reciprocal: Purcell, Am. J. Phys. 45, 3, 1977).
 """
 
 from collections.abc import Mapping
@@ -23,31 +23,31 @@ from ..viz.replay import CELL_STEPS, actuator_of, unmeasured
 from .variants import body_of, other_delta, reciprocal, refine, tireless, with_other_delta
 
 AGREES = (0.5, 2.0)
-"""Displacement along the way that was recorded, as a share of it, that counts as the same
-swimming. Wide, since the delta thickens a filament by most of a cell: at twice the
-resolution a slender swimmer is half as thick and does go further."""
+"""Shares of the recorded displacement that count as the same swimming. Wide, because the delta
+thickens a filament by most of a cell: at twice the resolution a slender swimmer is half as
+thick and goes further."""
 
 IMPULSE = 1e-4
-"""Momentum that a body may have given away on balance, float32."""
+"""Largest net momentum given by a body, float32."""
 
 RECIPROCAL = 0.015
-"""Share of its path that a reciprocal gait may cover, where viscosity rules."""
+"""Largest displacement of a reciprocal gait in creeping flow, as a share of its path."""
 
 CREEPING = 1.0
-"""Reynolds number below which the scallop theorem should be felt."""
+"""Reynolds number below which the scallop theorem holds."""
 
 WORK = 16
-"""Cell steps of an audit, in those of the creature."""
+"""Cell steps of an audit over those of the creature."""
 
 
 @dataclass(frozen=True)
 class Found:
-    """What one simulation came to."""
+    """The result of one simulation."""
 
     way: np.ndarray
     """(2,) displacement of the mean node, in the creature's own cells."""
     path: float
-    """Mean way of a node, in cells."""
+    """Mean path of a node, in cells."""
     mach: float
     limited: float
     reynolds: float
@@ -61,7 +61,7 @@ class Found:
 def audit(file: Mapping[str, Any]) -> dict[str, Any]:
     """The audit of a creature file, as a JSON document described in `docs/formats.md`.
 
-    Raises `creature.CreatureError` for a file that is not sound, too large, or diverges.
+    Raises `creature.CreatureError` for a file that is invalid, too large, or diverges.
     """
     file = creature.parse(file)
     scene = unmeasured(creature.scene_of(file))
@@ -99,15 +99,15 @@ def audit(file: Mapping[str, Any]) -> dict[str, Any]:
 
 
 VERDICT_ROWS = ("refined", "delta", "impulse")
-"""Rows without which it is not swimming."""
+"""Rows that must pass for the creature to survive."""
 
 
 def _made(scene: spec.Scene, driven: Drive, rest: Rest) -> tuple[bodies.Body, Rest]:
-    """The body that a creature has, and the rest shapes of what there is of it."""
+    """The developed body of a creature, and its rest shapes."""
     try:
         body, joints, edges = body_of(scene, driven)
     except ValueError as error:
-        needed = "a body that can be built anew"
+        needed = "a body that can be built again"
         raise creature.CreatureError("identity.genome", needed, str(error)) from error
     angle, length = rest.angle[:, joints], rest.length[:, edges]
     return body, Rest(jnp.asarray(angle), jnp.asarray(length))
@@ -118,7 +118,7 @@ def _follow(task: search.Task, rest: Rest) -> tuple[Found, Rest]:
 
 
 def _simulate(task: search.Task, driven: Drive) -> tuple[Found, Rest]:
-    """What came of it, and the rest shapes that were applied."""
+    """The result, and the applied rest shapes."""
 
     def run(start, inputs):
         begun = replace(driven, start=start, inputs=inputs)
@@ -161,37 +161,22 @@ def _row(name: str, quantity: str, value: float, unit: str, bar: str, passed, no
 
 
 def _soundness(scene: spec.Scene, found: Found) -> list[dict[str, Any]]:
-    """What the simulation itself shows."""
-    free = scene.coupling.force_free
+    """The quantities of the simulation itself, some with a largest value."""
+    pushed = "" if scene.coupling.force_free else ": this form of the coupling lets it"
+    fast = "the flow is so fast that it is compressible"
+    limits = "limits act: they decide in part how it swims"
+    bounded = (
+        ("mach", "largest Mach number", found.mach, "", units.MAX_MACH, fast),
+        ("limited", "node steps at a limit", found.limited, "share", units.MAX_LIMITED, limits),
+        ("impulse", "net impulse on the fluid", found.impulse, "lattice units", IMPULSE,
+         "it pushes itself" + pushed),
+    )  # fmt: skip
     return [
         _row("displacement", "displacement", found.distance, "cells", "", None, ""),
         _row("reynolds", "Reynolds number", found.reynolds, "", "", None, ""),
-        _row(
-            "mach",
-            "largest Mach number",
-            found.mach,
-            "",
-            f"at most {units.MAX_MACH}",
-            found.mach <= units.MAX_MACH,
-            "the flow is so fast that it is compressible",
-        ),
-        _row(
-            "limited",
-            "node steps at a limit",
-            found.limited,
-            "share",
-            f"at most {units.MAX_LIMITED:g}",
-            found.limited <= units.MAX_LIMITED,
-            "limits act: they decide in part how it swims",
-        ),
-        _row(
-            "impulse",
-            "net impulse on the fluid",
-            found.impulse,
-            "lattice units",
-            f"at most {IMPULSE:g}",
-            found.impulse <= IMPULSE,
-            "it pushes itself" + ("" if free else ": this form of the coupling lets it"),
+        *(
+            _row(name, quantity, value, unit, f"at most {most:g}", value <= most, note)
+            for name, quantity, value, unit, most, note in bounded
         ),
     ]
 
@@ -199,7 +184,6 @@ def _soundness(scene: spec.Scene, found: Found) -> list[dict[str, Any]]:
 def _remeasured(
     name: str, how: str, nominal: Found, again: Found, scale: float
 ) -> dict[str, Any]:
-    """How far the same gait goes the same way in another simulation."""
     along = float(again.way @ nominal.way) * scale / max(nominal.distance, 1e-12)
     share = along / max(nominal.distance, 1e-12)
     low, high = AGREES

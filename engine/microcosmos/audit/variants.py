@@ -1,4 +1,4 @@
-"""The same creature doing the same where it should, or should not, make a difference."""
+"""Variants of a simulation that should, or should not, change the result."""
 
 from dataclasses import replace
 from typing import Any
@@ -10,24 +10,24 @@ from .. import bodies, build, search, spec, world
 from ..bodies.extent import extent
 from ..filaments import Rest
 from ..genomes import Drive
+from ..viz.replay import graph_among, present_parts
 
 
 def body_of(scene: spec.Scene, driven: Drive) -> tuple[bodies.Body, np.ndarray, np.ndarray]:
-    """The body as it was made, and which of the scene's joints and edges it has.
+    """The developed body, and masks of the scene's joints and edges that it has.
 
-    Raises `ValueError` where it is no body that could be built.
+    Raises `ValueError` if it is no valid body.
     """
     body, start, rods = spec.shape(scene.body), driven.start, driven.world.rods
     there = driven.world.present
     nodes = np.ones(len(body.positions), bool) if there is None else np.asarray(there)
-    edges: np.ndarray = np.all(nodes[body.edges], axis=1)
-    joints: np.ndarray = np.all(edges[body.joints], axis=1)
-    numbers, edge_numbers = np.cumsum(nodes) - 1, np.cumsum(edges) - 1
+    edges, joints = present_parts(scene, nodes)
+    edge_pairs, joint_pairs = graph_among(scene, nodes)
     return (
         bodies.Body(
             positions=np.asarray(start.positions, float)[nodes],
-            edges=numbers[body.edges[edges]],
-            joints=edge_numbers[body.joints[joints]],
+            edges=edge_pairs,
+            joints=joint_pairs,
             rest_length=body.rest_length[edges],
             rest_angle=body.rest_angle[joints],
             stretch=np.asarray(rods.stretch, float)[edges],
@@ -45,7 +45,7 @@ def body_of(scene: spec.Scene, driven: Drive) -> tuple[bodies.Body, np.ndarray, 
 def refine(
     scene: spec.Scene, rest: Rest, body: bodies.Body | None = None
 ) -> tuple[search.Task, Rest]:
-    """The same body doing the same on cells half as wide in steps half as long.
+    """The same body and gait on cells half as wide in steps half as long.
 
     Lengths in cells, times in steps and the viscosity in cells² a step double, speeds stay.
     The chain has twice the joints: twice the sweeps relax a bend in the same time. Repulsion
@@ -82,18 +82,18 @@ def refine(
 
 
 def other_delta(scene: spec.Scene) -> str:
-    """A delta that the creature was not measured with."""
+    """The delta that the creature was not measured with."""
     return "roma" if scene.coupling.kernel == "peskin" else "peskin"
 
 
 def with_other_delta(scene: spec.Scene, body: bodies.Body | None = None) -> search.Task:
-    """The scene with another delta, nothing else changed."""
+    """The scene with another delta."""
     return _with(scene, body, kernel=other_delta(scene))
 
 
 def tireless(scene: spec.Scene, body: bodies.Body | None = None) -> search.Task:
-    """The scene with actuators that keep their strength: a body that yields lags behind its
-    rest shape, and moves by a shape that is not reciprocal although the gait is."""
+    """The scene with actuators of full strength: a soft body lags behind its rest shape, so
+    that its shapes are not reciprocal although the gait is."""
     return _with(scene, body, nu_c=None)
 
 
@@ -112,6 +112,6 @@ def _with(scene: spec.Scene, body: bodies.Body | None, **form: Any) -> search.Ta
 
 
 def _between(values: np.ndarray) -> np.ndarray:
-    """Values at twice as many times: each, and the mean of it and the next."""
+    """Values at twice as many times: each, and its mean with the next."""
     after = np.concatenate([values[1:], values[-1:]])
     return np.stack([values, 0.5 * (values + after)], 1).reshape(-1, values.shape[1])

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 from .. import bodies, device, filaments, spec, units, world
 from ..archive.report import Row
 from ..bodies.extent import extent
-from ..experiments import gaits, scaling, timing
+from ..experiments import gaits, scaling
 from ..experiments.table_file import TableRun
 from ..spec.scaling import SPACING
 from .creatures import build_point, build_stroke_block, frame
@@ -35,18 +35,18 @@ def build_scaling(chosen: spec.Scaling) -> TableRun:
 
     def rows(number: int, stop: Callable[[], bool]) -> tuple[Row, ...]:
         nodes = chosen.nodes[number]
-        plan = timing.Plan(chosen.steps, chosen.part_steps, device.compiler_options(), stop)
+        plan = scaling.Plan(chosen.steps, chosen.part_steps, device.compiler_options(), stop)
         scene, start = build_crowd(chosen, nodes)
-        found = [timing.step_row(scene, start, plan)]
+        found = [scaling.step_row(scene, start, plan)]
         if nodes <= chosen.all_pairs:
-            found.append(timing.pairs_row(start.positions, scene.box.size, plan))
+            found.append(scaling.pairs_row(start.positions, scene.box.size, plan))
         return tuple(Row(row) for row in found)
 
     kind = device.device_kind()
     return TableRun(_json(chosen), kind, len(chosen.nodes), rows, scaling.report)
 
 
-def build_crowd(chosen: spec.Scaling, nodes: int) -> tuple[timing.Scene, world.State]:
+def build_crowd(chosen: spec.Scaling, nodes: int) -> tuple[scaling.Scene, world.State]:
     """Build a box with many straight filaments at random places, at rest."""
     one = bodies.chain(chosen.filament, SPACING)
     centres = chosen.centres(nodes).tolist()
@@ -57,7 +57,7 @@ def build_crowd(chosen: spec.Scaling, nodes: int) -> tuple[timing.Scene, world.S
     rest = filaments.Rest(
         jnp.asarray(crowd.rest_angle, jnp.float32), jnp.asarray(crowd.rest_length, jnp.float32)
     )
-    return timing.Scene(box, rest), start
+    return scaling.Scene(box, rest), start
 
 
 def _stroke(chosen: spec.Gaits, form: str, swimmer: str) -> gaits.Stroke:

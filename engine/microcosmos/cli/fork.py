@@ -27,12 +27,18 @@ From = Annotated[
 ]
 
 
-def with_initial(spec: Spec, paths: Sequence[Path]) -> tuple[Spec, list[CreatureFile]]:
+def with_initial(
+    spec: Spec, paths: Sequence[Path], archive: Path
+) -> tuple[Spec, list[CreatureFile]]:
     """Return the spec that names its initial creatures, and their files.
 
-    A spec that already names creatures keeps them. Fail if one does not fit.
+    A spec that already names creatures keeps them. Fail if one does not fit, or if its file is
+    missing and there is no archive that holds it.
     """
     if not paths:
+        count = len(spec.search.initial) if isinstance(spec, Evolution) else 0
+        if count and not archive.exists():
+            fail(f"`search.initial` names {count} creatures: --from needs the files with them")
         return spec, []
     if not isinstance(spec, Evolution):
         fail(f"--from needs a search's spec, got {spec.experiment}")
@@ -49,13 +55,6 @@ def with_initial(spec: Spec, paths: Sequence[Path]) -> tuple[Spec, list[Creature
         files = [found[name] for name in named]
         initial.genes_of(chosen, files)
         return chosen, files
-
-
-def refuse_without_files(spec: Spec, files: Sequence[CreatureFile], archive: Path) -> None:
-    """Fail if the files of the initial creatures are missing."""
-    named = spec.search.initial if isinstance(spec, Evolution) else ()
-    if named and not files and not archive.exists():
-        fail(f"`search.initial` names {len(named)} creatures: --from needs the files with them")
 
 
 def creatures(path: Path) -> list[CreatureFile]:

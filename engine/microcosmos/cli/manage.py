@@ -6,17 +6,16 @@ import typer
 
 from ..client import Client, Run, Sweep, specs
 from . import overrides
-from .app import Set, app
+from .app import Set
 from .monitor import watch_to_end
-from .remote import RUNS, Id, Ids, Json, describe, find, on_server, say, show, title
+from .remote import RUNS, Id, Ids, Json, describe, find, say, server_command, show, title
 
 Name = Annotated[str | None, typer.Option(help="Name of the run.")]
 Watch = Annotated[bool, typer.Option("--watch", "-w", help="Watch until it ends.")]
 Yes = Annotated[bool, typer.Option("--yes", "-y", help="Do not ask for confirmation.")]
 
 
-@app.command(rich_help_panel=RUNS)
-@on_server
+@server_command(RUNS)
 def submit(
     client: Client,
     spec: Annotated[str, typer.Argument(help="Spec file, or name of a preset.")],
@@ -45,8 +44,7 @@ def submit(
     _report(made, watch, json)
 
 
-@app.command(rich_help_panel=RUNS)
-@on_server
+@server_command(RUNS)
 def extend(
     client: Client,
     id: Id,
@@ -58,8 +56,7 @@ def extend(
     _report(client.run(id).extend(generations), watch, json)
 
 
-@app.command(rich_help_panel=RUNS)
-@on_server
+@server_command(RUNS)
 def fork(
     client: Client,
     id: Id,
@@ -102,29 +99,25 @@ def fork(
     _report(run, watch, json)
 
 
-@app.command(rich_help_panel=RUNS)
-@on_server
+@server_command(RUNS)
 def pause(client: Client, ids: Ids) -> None:
     """Pause runs or sweeps; `resume` continues them."""
     _each(client, ids, "pause")
 
 
-@app.command(rich_help_panel=RUNS)
-@on_server
+@server_command(RUNS)
 def resume(client: Client, ids: Ids) -> None:
     """Resume paused runs or sweeps."""
     _each(client, ids, "resume")
 
 
-@app.command(rich_help_panel=RUNS)
-@on_server
+@server_command(RUNS)
 def cancel(client: Client, ids: Ids) -> None:
     """Cancel runs or sweeps for good; results so far are kept."""
     _each(client, ids, "cancel")
 
 
-@app.command(rich_help_panel=RUNS)
-@on_server
+@server_command(RUNS)
 def delete(client: Client, ids: Ids, yes: Yes = False) -> None:
     """Move runs or sweeps to the bin; `restore` brings them back within a day."""
     for one in [find(client, id) for id in ids]:
@@ -139,8 +132,7 @@ def delete(client: Client, ids: Ids, yes: Yes = False) -> None:
             say(f"{title(one)} is in the bin. To restore it: {undo}")
 
 
-@app.command(rich_help_panel=RUNS)
-@on_server
+@server_command(RUNS)
 def restore(client: Client, ids: Ids) -> None:
     """Restore runs or sweeps from the bin."""
     for one in [find(client, id, deleted=True) for id in ids]:

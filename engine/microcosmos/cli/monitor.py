@@ -9,14 +9,12 @@ from rich.text import Text
 
 from ..client import Client, Run, Sweep
 from ..client.formatting import COLOURS, MEASURES, figure
-from .app import app
-from .remote import RUNS, Id, Json, find, on_server, say, show, show_table
+from .remote import RUNS, Id, Json, find, say, server_command, show, show_table
 
 COLUMNS = ("id", "name", "experiment", "status", "done", *MEASURES.values())
 
 
-@app.command(rich_help_panel=RUNS)
-@on_server
+@server_command(RUNS)
 def runs(
     client: Client,
     status: Annotated[
@@ -66,8 +64,7 @@ def runs(
         say(f"More runs exist: --limit {10 * limit} lists them.")
 
 
-@app.command(rich_help_panel=RUNS)
-@on_server
+@server_command(RUNS)
 def watch(
     client: Client,
     id: Annotated[
@@ -87,8 +84,7 @@ def watch(
     watch_to_end(client.last() if id is None else find(client, id))
 
 
-@app.command(rich_help_panel=RUNS)
-@on_server
+@server_command(RUNS)
 def pull(
     client: Client,
     id: Id,
@@ -103,8 +99,7 @@ def pull(
     print(client.run(id).pull(out))
 
 
-@app.command(rich_help_panel=RUNS)
-@on_server
+@server_command(RUNS)
 def sweep(
     client: Client,
     id: Id,

@@ -14,39 +14,32 @@ from .app import CreaturePath, app, fail, failing
 ZIP = b"PK"
 """The first bytes of a TensorNEAT genome."""
 TEXTS = {
+    "formula": networks.formula,
     "svg": networks.svg,
     "dot": networks.dot,
     "python": networks.numpy_code,
-    "formula": networks.formula,
 }
 
 
 @app.command()
 def network(
     file: CreaturePath,
-    svg: Annotated[bool, typer.Option("--svg", help="Draw a picture.")] = False,
-    dot: Annotated[bool, typer.Option("--dot", help="Write a graph for Graphviz.")] = False,
-    python: Annotated[
-        bool, typer.Option("--python", help="Write a Python module that uses NumPy.")
-    ] = False,
-    formula: Annotated[bool, typer.Option("--formula", help="Print formulas.")] = False,
-    tensorneat: Annotated[
-        bool,
+    form: Annotated[
+        str,
         typer.Option(
-            "--tensorneat", help="Write a TensorNEAT genome (.npz), see docs/networks.md."
+            "--as",
+            help="formula, svg, dot (for Graphviz), python (with NumPy), or tensorneat (.npz).",
         ),
-    ] = False,
+    ] = "formula",
     out: Annotated[
         Path | None, typer.Option(help="File to write; default: standard output.")
     ] = None,
 ) -> None:
-    """Write the network of a creature file or of a TensorNEAT genome in one form."""
-    forms = (*zip(TEXTS, (svg, dot, python, formula), strict=True), ("tensorneat", tensorneat))
-    chosen = [name for name, wanted in forms if wanted] or ["formula"]
-    if len(chosen) > 1:
-        fail(f"network takes one form, got --{' --'.join(chosen)}")
+    """Write the network of a creature file or of a TensorNEAT genome."""
+    if form not in (*TEXTS, "tensorneat"):
+        fail(f"--as must be one of {', '.join(TEXTS)}, tensorneat; got {form}")
     with failing(file):
-        data = _rendered(file.read_bytes(), chosen[0])
+        data = _rendered(file.read_bytes(), form)
         if out is None:
             sys.stdout.buffer.write(data)
         else:

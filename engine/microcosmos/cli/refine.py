@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from ..archive.creature import parse
-from ..archive.table import read_table
+from ..archive.file import read_table
 from ..spec import Archive, Refinement
 from .app import CreaturePath, OtherDevice, app, fail, failing
 from .modules import Modules, load_modules

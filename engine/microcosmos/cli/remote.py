@@ -2,7 +2,7 @@
 
 import json
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from typing import Annotated, Any
 
@@ -13,7 +13,7 @@ from rich.text import Text
 
 from ..client import Client, NotFound, Refused, Run, ServerError, Sweep
 from ..client.formatting import counts_as_text, status_of
-from .app import console, with_options
+from .app import app, console, with_options
 
 RUNS = "Runs on a server"
 SHARING = "Sharing and access"
@@ -58,8 +58,15 @@ def _connected(url: Url = None, token: Token = None) -> Iterator[Client]:
         raise typer.Exit(130) from None
 
 
-on_server = with_options(_connected)
-"""Give a command a client, and the options --url and --token."""
+def server_command(
+    panel: str | None = None, name: str | None = None, group: typer.Typer = app
+) -> Callable[[Callable[..., None]], None]:
+    """Register a command that gets a client and the options --url and --token."""
+
+    def register(command: Callable[..., None]) -> None:
+        group.command(name, rich_help_panel=panel)(with_options(_connected)(command))
+
+    return register
 
 
 def say(text: str, style: str | None = None) -> None:

@@ -18,7 +18,7 @@ from rich.progress import (
 from ..doctor.memory import memory_bytes
 from ..spec import Spec, estimate
 from .app import CACHE, OtherDevice, Set, app, console, fail, failing
-from .fork import From, refuse_without_files, with_initial
+from .fork import From, with_initial
 from .modules import Modules, load_modules
 from .specs import changed, presets, read_spec, with_generations
 
@@ -53,8 +53,7 @@ def evolve(
     evaluations = prepare_run(chosen, path)
     from ..device import device_kind
 
-    chosen, initial = with_initial(chosen, begin_from or ())
-    refuse_without_files(chosen, initial, path)
+    chosen, initial = with_initial(chosen, begin_from or (), path)
     console.print(f"{evaluations:,} evaluations on {device_kind()} into {path}")
     carry_on(chosen, path, checkpoint_seconds, other_device, initial)
     best = path.with_suffix(".best.json")

@@ -7,7 +7,7 @@ import typer
 
 from ..client import Client
 from .app import app
-from .remote import SHARING, Ids, Json, on_server, say, show, show_table
+from .remote import SHARING, Ids, Json, say, server_command, show, show_table
 
 tokens = typer.Typer(help="Create, list and revoke access tokens.", no_args_is_help=True)
 app.add_typer(tokens, name="tokens", rich_help_panel=SHARING)
@@ -15,8 +15,7 @@ app.add_typer(tokens, name="tokens", rich_help_panel=SHARING)
 Days = Annotated[float | None, typer.Option(help="Days until it expires; default: never.")]
 
 
-@app.command("import", rich_help_panel=SHARING)
-@on_server
+@server_command(SHARING, "import")
 def import_(
     client: Client, files: Annotated[list[Path], typer.Argument(exists=True, dir_okay=False)]
 ) -> None:
@@ -25,8 +24,7 @@ def import_(
         print(client.import_creature(file).sha)
 
 
-@app.command(rich_help_panel=SHARING)
-@on_server
+@server_command(SHARING)
 def share(
     client: Client,
     what: Annotated[
@@ -56,8 +54,7 @@ def share(
     say(f"To revoke it: microcosmos unshare {made.slug}")
 
 
-@app.command(rich_help_panel=SHARING)
-@on_server
+@server_command(SHARING)
 def unshare(
     client: Client,
     slugs: Annotated[list[str], typer.Argument(metavar="LINK...", help="Links or slugs.")],
@@ -68,8 +65,7 @@ def unshare(
         say(f"{slug} is revoked.")
 
 
-@app.command(rich_help_panel=SHARING)
-@on_server
+@server_command(SHARING)
 def shares(client: Client, json: Json = False) -> None:
     """List your shares."""
     found = client.shares()
@@ -77,8 +73,7 @@ def shares(client: Client, json: Json = False) -> None:
     _list([one.record for one in found] if json else links, json, "link title state expires_at")
 
 
-@tokens.command("create")
-@on_server
+@server_command(None, "create", tokens)
 def create_token(
     client: Client,
     name: Annotated[str, typer.Argument(help="Owner or purpose of the token.")],
@@ -100,15 +95,13 @@ def create_token(
     say("The secret is shown only once. To use it: export MICROCOSMOS_TOKEN=...")
 
 
-@tokens.command("list")
-@on_server
+@server_command(None, "list", tokens)
 def list_tokens(client: Client, json: Json = False) -> None:
     """List all tokens, without their secrets."""
     _list(client.tokens(), json, "id name scope expires_at revoked_at last_used_at")
 
 
-@tokens.command("revoke")
-@on_server
+@server_command(None, "revoke", tokens)
 def revoke_token(client: Client, ids: Ids) -> None:
     """Revoke tokens; they stop working immediately."""
     for id in ids:

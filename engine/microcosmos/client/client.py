@@ -68,19 +68,8 @@ class Client:
         self,
         spec: Any,
         *,
-        seeds: int | Sequence[int],
-        grid: Mapping[str, Sequence[Any]] | None = None,
-        name: str | None = None,
-        key: str | None = None,
-    ) -> Sweep: ...
-
-    @overload
-    def submit(
-        self,
-        spec: Any,
-        *,
         seeds: int | Sequence[int] | None = None,
-        grid: Mapping[str, Sequence[Any]],
+        grid: Mapping[str, Sequence[Any]] | None = None,
         name: str | None = None,
         key: str | None = None,
     ) -> Sweep: ...

@@ -1,7 +1,7 @@
 """Tables of results: columns and rows, as data frames where pandas is installed."""
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 from typing import Any
 
@@ -10,28 +10,19 @@ import numpy as np
 from ..archive.file import load
 
 
-class Columns(Mapping[str, np.ndarray]):
+class Columns(dict[str, np.ndarray]):
     """Arrays of one length by name."""
 
     def __init__(self, columns: Mapping[str, Any]):
-        self._columns = {name: array(values) for name, values in columns.items()}
-
-    def __getitem__(self, name: str) -> np.ndarray:
-        return self._columns[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._columns)
-
-    def __len__(self) -> int:
-        return len(self._columns)
+        self.update((name, array(values)) for name, values in columns.items())
 
     def __repr__(self) -> str:
-        rows = len(next(iter(self._columns.values()), ()))
-        return f"<{rows} rows of {', '.join(self._columns)}>"
+        rows = len(next(iter(self.values()), ()))
+        return f"<{rows} rows of {', '.join(self)}>"
 
     def to_pandas(self) -> Any:
         """Return a pandas `DataFrame`; raise `ImportError` without pandas."""
-        return frame(self._columns)
+        return frame(self)
 
 
 class Table:

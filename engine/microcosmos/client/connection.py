@@ -108,23 +108,23 @@ class Connection:
             kind = answer.headers.get("content-type", "")
             raise errors.stranger(answer, self.url, kind) from None
 
-    def ask(
-        self, method: str, path: str, *, key: str | None = None, **options: Any
-    ) -> httpx.Response:
+    def ask(self, method: str, path: str, **options: Any) -> httpx.Response:
         """Return a successful answer, else raise `ServerError`."""
-        request = self.request(method, path, key=key, **options)
-        return errors.checked(self._patiently(request, key is not None), self.url)
+        return errors.checked(self._answer(method, path, **options), self.url)
 
     @contextmanager
     def stream(self, path: str, **options: Any) -> Iterator[httpx.Response]:
         """Yield an answer whose body is read as it arrives."""
-        answer = self._patiently(self.request("GET", path, **options), stream=True)
+        answer = self._answer("GET", path, stream=True, **options)
         try:
             yield errors.checked(answer, self.url)
         finally:
             answer.close()
 
-    def request(
+    def close(self) -> None:
+        self.http.close()
+
+    def _answer(
         self,
         method: str,
         path: str,
@@ -132,25 +132,26 @@ class Connection:
         key: str | None = None,
         headers: Mapping[str, str] | None = None,
         params: Mapping[str, Any] | None = None,
+        stream: bool = False,
         **options: Any,
-    ) -> httpx.Request:
-        """Build a request below the API, or from the root if the path begins with a slash."""
-        headers = dict(headers or {}) | ({"Idempotency-Key": key} if key else {})
-        given = {name: value for name, value in (params or {}).items() if value is not None}
-        path = path if path.startswith("/") else API + path
-        return self.http.build_request(method, path, params=given, headers=headers, **options)
-
-    def close(self) -> None:
-        self.http.close()
-
-    def _patiently(
-        self, request: httpx.Request, named: bool = False, stream: bool = False
     ) -> httpx.Response:
-        repeatable = named or request.method in IDEMPOTENT
+        """Send a request below the API, or from the root if the path begins with a slash."""
+        request = self.http.build_request(
+            method,
+            path if path.startswith("/") else API + path,
+            params={name: value for name, value in (params or {}).items() if value is not None},
+            headers=dict(headers or {}) | ({"Idempotency-Key": key} if key else {}),
+            **options,
+        )
+        repeatable = key is not None or method in IDEMPOTENT
         waited, attempt = 0.0, 0
         while True:
-            begun = time.monotonic()
-            answer, failure = self._once(request, stream)
+            begun, answer, failure = time.monotonic(), None, None
+            try:
+                answer = self.http.send(request, stream=stream)
+                self.answered = True
+            except httpx.TransportError as error:
+                failure = error
             waited += time.monotonic() - begun
             pause = self._pause(answer, failure, repeatable, attempt)
             if pause is None or waited + pause > self.patience:
@@ -163,16 +164,6 @@ class Connection:
             raise errors.unreachable(failure, self.url) from failure
         assert answer is not None
         return answer
-
-    def _once(
-        self, request: httpx.Request, stream: bool
-    ) -> tuple[httpx.Response | None, httpx.TransportError | None]:
-        try:
-            answer = self.http.send(request, stream=stream)
-        except httpx.TransportError as error:
-            return None, error
-        self.answered = True
-        return answer, None
 
     def _pause(
         self,

@@ -1,46 +1,48 @@
 """A run in a notebook: one display, which is updated."""
 
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from html import escape
 from importlib import import_module
-from typing import Any, Self
+from typing import Any
 
 from . import drawing, formatting
 from .polling import RunState
+from .views import Show
 
 UPDATE_SECONDS = 0.5
 WIDTH, HEIGHT = 200, 60
 COLOURS = {"finished": "#2a8f4e", "failed": "#c0392b", "cancelled": "#b7791f"}
 
 
-class Notebook:
-    """The last state stays in the notebook when it is saved."""
+@contextmanager
+def notebook() -> Iterator[Show]:
+    """Update one display; the last state stays in the notebook when it is saved."""
+    handle: Any = None
+    last: RunState | None = None
+    at = float("-inf")
 
-    def __init__(self) -> None:
-        self.handle: Any = None
-        self.state: RunState | None = None
-        self.at = float("-inf")
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self.state is not None:
-            self._display(self.state)
-
-    def show(self, state: RunState) -> None:
-        self.state = state
-        if time.monotonic() - self.at >= UPDATE_SECONDS:
-            self.at = time.monotonic()
-            self._display(state)
-
-    def _display(self, state: RunState) -> None:
-        page = Page(html(state))
-        if self.handle is None:
+    def draw(state: RunState) -> None:
+        nonlocal handle
+        if handle is None:
             display = import_module("IPython.display").display
-            self.handle = display(page, display_id=True)
+            handle = display(Page(html(state)), display_id=True)
         else:
-            self.handle.update(page)
+            handle.update(Page(html(state)))
+
+    def show(state: RunState) -> None:
+        nonlocal last, at
+        last = state
+        if time.monotonic() - at >= UPDATE_SECONDS:
+            at = time.monotonic()
+            draw(state)
+
+    try:
+        yield show
+    finally:
+        if last is not None:
+            draw(last)
 
 
 class Page:

@@ -1,11 +1,23 @@
 """The base of runs and sweeps: a record on the server, and actions on it."""
 
 from collections.abc import Iterable, Mapping
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Generic, Self, TypeVar
 from uuid import UUID
 
 from .connection import Connection
 from .errors import NotFound, Refused
+
+T = TypeVar("T")
+
+
+class Field(Generic[T]):
+    """An attribute that reads the field of its name in `record`."""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    def __get__(self, thing: Any, owner: type) -> T:
+        return thing.record[self.name]
 
 
 class Record:
@@ -13,6 +25,8 @@ class Record:
 
     NOUN: ClassVar[str]
     """Name of the kind in the API."""
+    id = Field[str]()
+    name = Field[str | None]()
 
     def __init__(self, connection: Connection, record: Mapping[str, Any]):
         self._connection = connection
@@ -24,14 +38,6 @@ class Record:
 
     def __hash__(self) -> int:
         return hash(self.id)
-
-    @property
-    def id(self) -> str:
-        return self.record["id"]
-
-    @property
-    def name(self) -> str | None:
-        return self.record["name"]
 
     def refresh(self) -> Self:
         self.record = self._connection.read(self._path)

@@ -11,7 +11,7 @@ from .archive import Archive
 from .columns import Columns, Table, lineage
 from .creature import Creature
 from .errors import NotFound
-from .record import Record
+from .record import Field, Record
 from .sharing import Share, publish
 from .views import watch
 
@@ -20,6 +20,18 @@ class Run(Record):
     """A copy of the server's record; `refresh` reads it again."""
 
     NOUN = "runs"
+    experiment = Field[str]()
+    status = Field[str]()
+    """queued, running, paused, finished, failed or cancelled."""
+    spec = Field[dict[str, Any]]()
+    progress = Field[float]()
+    generation = Field[int]()
+    generations = Field[int]()
+    qd_score = Field[float | None]()
+    coverage = Field[float | None]()
+    best = Field[float | None]()
+    """The best fitness; `archive().best()` is its creature."""
+    error = Field[str | None]()
 
     def __repr__(self) -> str:
         name = f" {self.name!r}" if self.name else ""
@@ -27,50 +39,8 @@ class Run(Record):
         return f"<Run {self.id[:8]}{name}: {self.experiment}, {self.status}, {done}>"
 
     @property
-    def experiment(self) -> str:
-        return self.record["experiment"]
-
-    @property
-    def status(self) -> str:
-        """queued, running, paused, finished, failed or cancelled."""
-        return self.record["status"]
-
-    @property
     def ended(self) -> bool:
         return self.status in polling.ENDED
-
-    @property
-    def spec(self) -> dict[str, Any]:
-        return self.record["spec"]
-
-    @property
-    def progress(self) -> float:
-        return self.record["progress"]
-
-    @property
-    def generation(self) -> int:
-        return self.record["generation"]
-
-    @property
-    def generations(self) -> int:
-        return self.record["generations"]
-
-    @property
-    def qd_score(self) -> float | None:
-        return self.record["qd_score"]
-
-    @property
-    def coverage(self) -> float | None:
-        return self.record["coverage"]
-
-    @property
-    def best(self) -> float | None:
-        """The best fitness; `archive().best()` is its creature."""
-        return self.record["best"]
-
-    @property
-    def error(self) -> str | None:
-        return self.record["error"]
 
     def wait(self, timeout: float | None = None) -> str:
         """Return the status at the end; raise `TimeoutError` after so many seconds."""

@@ -5,19 +5,18 @@ from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from .connection import Connection
+from .record import Field
 
 
 class Share:
     """A published link, valid until it expires or is revoked."""
 
+    slug = Field[str]()
+
     def __init__(self, connection: Connection, document: Mapping[str, Any]):
         self._connection = connection
         self.record = dict(document)
         """All fields that the server has."""
-
-    @property
-    def slug(self) -> str:
-        return self.record["slug"]
 
     @property
     def url(self) -> str:

@@ -6,7 +6,7 @@ from typing import Any, Self
 from .columns import frame
 from .formatting import MEASURES, counts_as_text
 from .polling import ENDED, follow_sweep
-from .record import Record
+from .record import Field, Record
 from .run import Run
 from .views import watch
 
@@ -15,25 +15,16 @@ class Sweep(Record):
     """A copy of the server's record; `refresh` reads it again."""
 
     NOUN = "sweeps"
+    cases = Field[list[dict[str, Any]]]()
+    """Each with its `values`, by the paths of fields, and the ids of its `runs`."""
+    total = Field[int]()
+    status_counts = Field[dict[str, int]]()
+    """Number of runs by status."""
 
     def __repr__(self) -> str:
         name = f" {self.name!r}" if self.name else ""
         counts = counts_as_text(self.status_counts)
         return f"<Sweep {self.id[:8]}{name}: {self.total} runs, {counts}>"
-
-    @property
-    def cases(self) -> list[dict[str, Any]]:
-        """Each with its `values`, by the paths of fields, and the ids of its `runs`."""
-        return self.record["cases"]
-
-    @property
-    def total(self) -> int:
-        return self.record["total"]
-
-    @property
-    def status_counts(self) -> dict[str, int]:
-        """Number of runs by status."""
-        return self.record["status_counts"]
 
     @property
     def ended(self) -> bool:

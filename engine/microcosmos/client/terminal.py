@@ -1,6 +1,7 @@
 """A run in a terminal: its progress, its figures, its curves."""
 
-from typing import Self
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 from rich.console import Console, Group, RenderableType
 from rich.live import Live
@@ -10,32 +11,19 @@ from rich.text import Text
 
 from . import drawing, formatting
 from .polling import RunState
+from .views import Show
 
 CURVE_LINES = 4
 LONGEST_BAR = 32
 """Characters."""
 
 
-class Terminal:
-    """Draws a few times a second, in place; the last state stays."""
-
-    def __init__(self, console: Console | None = None) -> None:
-        self.console = console or Console()
-        self.state: RunState | None = None
-        self.live = Live(console=self.console, get_renderable=self._drawn, refresh_per_second=4)
-
-    def __enter__(self) -> Self:
-        self.live.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.live.stop()
-
-    def show(self, state: RunState) -> None:
-        self.state = state
-
-    def _drawn(self) -> RenderableType:
-        return drawn(self.state, self.console.width) if self.state else Text("...")
+@contextmanager
+def terminal() -> Iterator[Show]:
+    """Draw in place; the last state stays."""
+    console = Console()
+    with Live(Text("..."), console=console, refresh_per_second=4) as live:
+        yield lambda state: live.update(drawn(state, console.width))
 
 
 def drawn(state: RunState, width: int) -> RenderableType:

@@ -2,8 +2,9 @@
 
 import sys
 import time
-from collections.abc import Iterator
-from typing import Any, Protocol, Self
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from typing import Any
 
 from . import formatting
 from .polling import RunState
@@ -11,13 +12,8 @@ from .polling import RunState
 LINE_SECONDS = 30.0
 """Time between two plain lines, unless something changes."""
 
-
-class View(Protocol):
-    def __enter__(self) -> Self: ...
-
-    def __exit__(self, *_: object) -> None: ...
-
-    def show(self, state: RunState) -> None: ...
+Show = Callable[[RunState], None]
+View = AbstractContextManager[Show]
 
 
 def watch(states: Iterator[RunState], what: str, view: View | None = None) -> str:
@@ -27,9 +23,9 @@ def watch(states: Iterator[RunState], what: str, view: View | None = None) -> st
     """
     status = ""
     try:
-        with view or choose() as shown:
+        with view or choose()() as show:
             for state in states:
-                shown.show(state)
+                show(state)
                 status = state.record["status"]
     except KeyboardInterrupt:
         again = f"microcosmos watch {what.rpartition(' ')[2][:8]}"
@@ -38,17 +34,17 @@ def watch(states: Iterator[RunState], what: str, view: View | None = None) -> st
     return status
 
 
-def choose() -> View:
+def choose() -> Callable[[], View]:
     """Return the view for this environment."""
     if in_notebook():
-        from .notebook import Notebook
+        from .notebook import notebook
 
-        return Notebook()
+        return notebook
     if sys.stdout.isatty():
-        from .terminal import Terminal
+        from .terminal import terminal
 
-        return Terminal()
-    return Lines()
+        return terminal
+    return lines
 
 
 def in_notebook() -> bool:
@@ -58,26 +54,21 @@ def in_notebook() -> bool:
     return shell is not None and hasattr(shell, "kernel")
 
 
-class Lines:
-    """Prints a line when the status changes, at each tenth of the way, and each half minute."""
+@contextmanager
+def lines() -> Iterator[Show]:
+    """Print a line when the status changes, at each tenth of the way, and each half minute."""
+    last: Any = None
+    at = float("-inf")
 
-    def __init__(self) -> None:
-        self.shown: tuple[Any, ...] = ()
-        self.at = float("-inf")
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        return None
-
-    def show(self, state: RunState) -> None:
+    def show(state: RunState) -> None:
+        nonlocal last, at
         record = state.record
         now = (record["status"], int(10 * record["progress"]), state.problem)
-        if now == self.shown and time.monotonic() - self.at < LINE_SECONDS:
-            return
-        self.shown, self.at = now, time.monotonic()
-        print(line(state), flush=True)
+        if now != last or time.monotonic() - at >= LINE_SECONDS:
+            last, at = now, time.monotonic()
+            print(line(state), flush=True)
+
+    yield show
 
 
 def line(state: RunState) -> str:

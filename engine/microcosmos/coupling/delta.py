@@ -66,7 +66,7 @@ class Windows(eqx.Module):
     """Zero for the points that fill up the last chunk."""
     points: int = eqx.field(static=True)
     density: Float[Array, "cell"] | None = None
-    """What planes are divided by when they are read; None: by nothing."""
+    """Divisor of planes when they are read; None: 1."""
 
     def chunks(self, values: Float[Array, "node channel"]) -> Float[Array, "chunk row channel"]:
         """Values at points, in the same chunks."""

@@ -28,7 +28,7 @@ class Forced(eqx.Module):
     forcing: Vectors
     target: Vectors
     scale: Float[Array, "group"]
-    """What each body's forcing was multiplied by to stay within the limit; 1 if nothing."""
+    """Factor of each body's forcing to stay within the limit."""
 
 
 def unprojected(error: Vectors, beta: Scalars, positions: Vectors, groups: Groups) -> Vectors:
@@ -89,7 +89,7 @@ def multi_direct_forcing(
         return improve(q, target, interpolate(spread(q, at, rho.shape), by_density)), None
 
     first = improve(jnp.zeros_like(target), target, jnp.zeros_like(target))
-    # A loop, though a short one: written out, XLA forms the weights anew in every iteration.
+    # A loop, though a short one: written out, XLA forms the weights again in every iteration.
     (q, target), _ = jax.lax.scan(iterate, first, None, length=iterations - 1)
     if limit is None:
         return Forced(q, target, jnp.ones(groups.count, q.dtype))

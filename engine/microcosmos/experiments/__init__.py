@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from ..archive.report import Elite, Report, Row
+from ..archive.report import Report
 from ..search import Stopped
 from .resume_check import OtherDevice
 
-__all__ = ["Elite", "Experiment", "OtherDevice", "Report", "Row", "Stopped"]
+__all__ = ["Experiment", "OtherDevice", "Report", "Stopped"]
 
 
 class Experiment(Protocol):

@@ -52,30 +52,29 @@ def save(plan: Plan, state: State) -> bytes:
             "creature": state.creatures[cells],
             "operator": state.operators[cells],
             "device": state.device_of[cells],
-            "genomes": _columns(elites.genotypes),
-            "repeats": _columns(jax.tree.map(lambda x: x[cells], state.repeats)),
+            "genomes": vars(elites.genotypes),
+            "repeats": vars(jax.tree.map(lambda x: x[cells], state.repeats)),
             **{name: getattr(elites, name) for name in ROWS},
             **_centroids(state.cells),
         },
         "curves": {name: state.curves[:, i] for i, name in enumerate(CURVES)},
         "emitters": {name: state.outcomes[:, :, i] for i, name in enumerate(OUTCOMES)},
-        "lineage": _columns(state.lineage),
-        "diverged": _columns(state.failures)
-        | {"genotypes": _columns(state.failures.genotypes)},
+        "lineage": vars(state.lineage),
+        "diverged": vars(state.failures) | {"genotypes": vars(state.failures.genotypes)},
         "loop": {
             "generation": np.int64(state.generation),
             "evaluations": np.int64(state.evaluations),
             "diverged": np.int64(state.diverged),
             "ended": np.int64(state.ended),
             **_clock(plan, state),
-            "counters": _columns(state.counters),
+            "counters": vars(state.counters),
             "nearest_ancestors": state.nearest_ancestors,
             "emitters": leaves(state.emitters),
             **_unrepeated(state, cells),
         },
     }
     if state.initial is not None:
-        genes = _columns(state.initial.genotypes)
+        genes = vars(state.initial.genotypes)
         tree["initial"] = {"creature": state.initial.creature, "genomes": genes}
     return file.dump(tree, _attributes(plan, state))
 
@@ -142,7 +141,6 @@ def _attributes(plan: Plan, state: State) -> dict[str, str]:
 
 
 def _centroids(cells: search.Cells) -> dict[str, Any]:
-    """Centroids, unless the cells are a grid's."""
     return {"centroids": cells.centroids} if isinstance(cells, search.Voronoi) else {}
 
 
@@ -163,11 +161,10 @@ def _unrepeated(state: State, cells: np.ndarray) -> dict[str, Any]:
     """Repeats before a reevaluation that happened only because the run ended."""
     if state.unrepeated is None:
         return {}
-    return {"unrepeated": _columns(jax.tree.map(lambda x: x[cells], state.unrepeated))}
+    return {"unrepeated": vars(jax.tree.map(lambda x: x[cells], state.unrepeated))}
 
 
 def _end(plan: Plan, state: State) -> dict[str, Any] | None:
-    """Reason and last generation of a run that has ended, else None."""
     if not state.ended and state.generation < plan.generations:
         return None
     reason = ENDS[state.ended] or "generations"
@@ -177,7 +174,7 @@ def _end(plan: Plan, state: State) -> dict[str, Any] | None:
 def _placed(module: Module, cells: np.ndarray, columns: dict[str, Any]) -> Module:
     """The module with the rows of some cells replaced.
 
-    NumPy places them: JAX would compile each column anew for each number of cells.
+    NumPy places them: JAX would compile again for each number of cells.
     """
 
     def placed(before: Any, rows: Any) -> Any:
@@ -197,13 +194,8 @@ def _initial(state: State, group: file.Tree | None) -> InitialCreatures | None:
 
 
 def _genotypes(state: State, columns: dict[str, np.ndarray]) -> Genotype:
-    """Genotypes as rows of NumPy arrays."""
     form = state.elites.genotypes
     return jax.tree.unflatten(jax.tree.structure(form), [columns[name] for name in vars(form)])
-
-
-def _columns(module: eqx.Module) -> dict[str, Any]:
-    return dict(vars(module))
 
 
 def leaves(tree: PyTree[Array]) -> dict[str, np.ndarray]:

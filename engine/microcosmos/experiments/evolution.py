@@ -129,7 +129,6 @@ class Evolution:
 
 
 def _failures(state: State, genotypes: Genotype, status: np.ndarray) -> Diverged:
-    """The newest creatures that diverged."""
     failed = np.flatnonzero(status)
     new = Diverged(
         generation=np.full(len(failed), state.generation + 1, np.int32),
@@ -198,14 +197,12 @@ def _summary(plan: Plan, state: State, seconds: float, status: np.ndarray) -> di
 
 
 def _divergences(status: np.ndarray) -> dict[str, int]:
-    """The number of infeasible creatures, by reason."""
     counts = np.bincount(status, minlength=len(search.STATUSES)).tolist()
     named = zip(search.STATUSES, counts, strict=True)
     return {f"diverged: {name}": count for name, count in list(named)[1:] if count}
 
 
 def _species(state: State) -> dict[str, str]:
-    """Members of each species, by its number, if an emitter divides its population."""
     for kept in state.emitters:
         if isinstance(kept, search.emitters.Divided):
             pairs = kept.sizes().items()

@@ -13,7 +13,7 @@ from ..archive.report import Elite
 from ..genomes import Genotype, take, write
 from .state import Lineage, Plan, State
 
-NOBODY = np.zeros(32, np.uint8)
+NO_NAME = np.zeros(32, np.uint8)
 """The name that stands for no creature."""
 
 
@@ -148,8 +148,8 @@ def _forebears(
     A parent from the archive is recorded. A parent from the last generation may not be: then
     its own nearest recorded ancestors take its place.
     """
-    nearest = np.concatenate([names, nearest_ancestors[:, 0], NOBODY[None]])
-    found = nearest[parents]  # −1, for no parent, finds nobody.
+    nearest = np.concatenate([names, nearest_ancestors[:, 0], NO_NAME[None]])
+    found = nearest[parents]  # −1, for no parent, finds the last row.
     alone = (parents[:, 1] == search.NO_PARENT) & (parents[:, 0] >= len(names))
     # An only parent that was not recorded passes both of its own forebears on.
     found[alone] = nearest_ancestors[parents[alone, 0] - len(names)]

@@ -39,7 +39,7 @@ class Taught:
     simulated: int = 0
     """Creatures simulated, forwards and backwards."""
     sound: int = 0
-    """Those whose slopes were finite."""
+    """Creatures with finite slopes."""
     norms: tuple[float, ...] = ()
     """Lengths of the sound slopes of fitness."""
 
@@ -140,16 +140,15 @@ def _emitted(
 def _gathered(
     plan: Plan, state: State, initial: InitialCreatures
 ) -> tuple[search.Elites, np.ndarray]:
-    """An archive of the initial creatures, and their names by cell."""
     count = min(plan.cell_count, len(initial.creature))
-    nobody = search.no_elites(plan.cell_count, len(search.MEASURES), plan.genotype)
+    empty = search.no_elites(plan.cell_count, len(search.MEASURES), plan.genotype)
     genotypes = jax.tree.map(
-        lambda none, x: none.at[:count].set(x[:count]), nobody.genotypes, initial.genotypes
+        lambda none, x: none.at[:count].set(x[:count]), empty.genotypes, initial.genotypes
     )
-    occupied = nobody.occupied.at[:count].set(True)
+    occupied = empty.occupied.at[:count].set(True)
     lacking = np.zeros((max(0, plan.cell_count - count), 32), np.uint8)
     names = np.concatenate([initial.creature, lacking])
-    return replace(nobody, occupied=occupied, genotypes=genotypes), names
+    return replace(empty, occupied=occupied, genotypes=genotypes), names
 
 
 def _replaced(
@@ -159,7 +158,6 @@ def _replaced(
     initial: InitialCreatures,
     places: np.ndarray,
 ) -> Offspring:
-    """The offspring with initial creatures in its first slots."""
     children, count = offspring.children, len(places)
 
     def put(values: Any, new: Any) -> np.ndarray:
@@ -191,7 +189,6 @@ def _teach(
     block: int,
     stop: Callable[[], bool],
 ) -> tuple[search.Children, tuple[Any, ...], Taught]:
-    """Children and emitters' states after all lessons, given for each emitter."""
     parts, kept, taught, first = [], [], Taught(), 0
     for lesson, count, state in zip(lessons, slots, states, strict=True):
         offspring = jax.tree.map(lambda x, a=first, b=first + count: x[a:b], children)

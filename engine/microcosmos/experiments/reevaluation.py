@@ -22,7 +22,7 @@ class Programs:
     """The compiled parts of reevaluation."""
 
     disturb: Callable[..., Disturbance]
-    """From a generation and a sample's number to the conditions in every cell."""
+    """The conditions in every cell, from a generation and a sample's number."""
     evaluate_block: Callable[..., search.Evaluation]
     add: Callable[..., Repeats]
     correct: Callable[..., Float[Array, "cell"]]
@@ -91,7 +91,6 @@ def figures(programs: Programs, state: State) -> tuple[float, float, float]:
 
 
 def _spread(rows: np.ndarray, cells: np.ndarray, count: int) -> np.ndarray:
-    """Rows of some cells as rows of all, zeros elsewhere."""
     everywhere = np.zeros((count, *rows.shape[1:]), rows.dtype)
     everywhere[cells] = rows
     return everywhere

@@ -217,7 +217,6 @@ class Refinement:
 
 
 def _unchanged(state: State) -> Row:
-    """The row of a step without a better trial."""
     if not state.table.rows:
         raise ValueError("`creature` must be one whose simulation stays finite.")
     last = state.table.rows[-1]

@@ -41,17 +41,15 @@ def _refuse_other(held: dict[str, Any], wanted: dict[str, Any]) -> None:
 
 
 def _versions(held: dict[str, Any], wanted: dict[str, Any]) -> str:
-    """Name the plug-in whose version changed."""
     now = dict(_sources(wanted))
     path, then = next((path, of) for path, of in _sources(held) if now.get(path) != of)
     return (
         f"`{path}` must be {then[:12]}, the version with which the run was computed, got "
-        f"{now.get(path, 'none')[:12]}: go on with the module as it was, or begin anew"
+        f"{now.get(path, 'none')[:12]}: continue with that version, or begin a new run"
     )
 
 
 def _sources(spec: Any, path: str = "") -> Iterator[tuple[str, str]]:
-    """Yield the versions of plug-ins with their paths."""
     parts = spec.items() if isinstance(spec, dict) else enumerate(spec)
     for name, part in parts:
         if name == "source":
@@ -61,7 +59,6 @@ def _sources(spec: Any, path: str = "") -> Iterator[tuple[str, str]]:
 
 
 def _unversioned(spec: Any) -> Any:
-    """Return a spec without the versions of its plug-ins."""
     if isinstance(spec, dict):
         return {name: _unversioned(part) for name, part in spec.items() if name != "source"}
     return [_unversioned(part) for part in spec] if isinstance(spec, list) else spec

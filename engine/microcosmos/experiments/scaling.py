@@ -1,11 +1,19 @@
 """Wall time against the number of nodes: the Microcosmos paper's figure, part by part."""
 
-from collections.abc import Mapping, Sequence
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
+import equinox as eqx
+import jax
+import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array, Float
 
+from .. import coupling, filaments, fluid, world
 from ..archive.report import Report, Row, Value
+from ..search import Stopped
 from .table_file import Table
 
 LINEAR_FROM = 16_000
@@ -48,9 +56,184 @@ def summary(rows: Sequence[Mapping[str, Any]]) -> dict[str, Value]:
 
 
 def _exponent(points: list[tuple[float, float]]) -> float | None:
-    """The slope of the line through the logarithms; None where there are too few points."""
     points = [(n, t) for n, t in points if t > 0]
     if len(points) < 2:
         return None
     nodes, seconds = np.log(np.array(points)).T
     return float(np.polyfit(nodes, seconds, 1)[0])
+
+
+REPORTED = 1000
+"""Steps that reported times are for."""
+
+CHUNK = 10
+"""Steps of one call of a program; a run can stop between calls."""
+
+REPEATS = 3
+"""Repeats of each part; the median counts."""
+
+
+class Scene(eqx.Module):
+    """The constants of a step, as an argument, so that the compiler does not fold them."""
+
+    box: world.World
+    rest: filaments.Rest
+
+
+Step = Callable[[Scene, world.State], world.State]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The length of the measurement."""
+
+    steps: int
+    part_steps: int
+    options: Mapping[str, object]
+    stop: Callable[[], bool]
+
+
+def step_row(scene: Scene, start: world.State, plan: Plan) -> dict[str, Value]:
+    """A row for one number of nodes; times in seconds for 1,000 steps."""
+    whole = _compile(_step, scene, start, CHUNK, plan)
+    calls = max(1, plan.steps // CHUNK)
+    seconds, end = _time(whole, scene, start, calls, plan)
+    parts = (("fluid", _fluid), ("coupling", _couple))
+    parts += (("constraints", _constrain), ("steric", _repel))
+    finite = all(bool(jnp.all(jnp.isfinite(x))) for x in jax.tree.leaves(end))
+    return {
+        "method": "microcosmos",
+        "nodes": len(start.positions),
+        "steps": CHUNK * calls,
+        "seconds": seconds * REPORTED / CHUNK,
+        **{name: _median(part, scene, start, plan) for name, part in parts},
+        "memory_bytes": _memory(whole),
+        "status": "ok" if finite else "non-finite",
+    }
+
+
+def pairs_row(positions: Float[Array, "node 2"], size: tuple[int, int], plan: Plan) -> dict:
+    """The same for a repulsion between all pairs of nodes, without fluid or constraints."""
+
+    def step(scene: None, x: Array) -> Array:
+        return x + 1e-3 * _all_pairs(x, size)
+
+    program = _compile(step, None, positions, 1, plan)
+    seconds, _ = _time(program, None, positions, REPEATS, plan)
+    return {
+        "method": "all-pairs",
+        "nodes": len(positions),
+        "steps": REPEATS,
+        "seconds": seconds * REPORTED,
+        "fluid": None,
+        "coupling": None,
+        "constraints": None,
+        "steric": None,
+        "memory_bytes": _memory(program),
+        "status": "ok",
+    }
+
+
+def _all_pairs(positions, size: tuple[int, int]):
+    """The gradient of a Gaussian repulsion of one cell's width, summed over all others."""
+
+    def away(one, others, length):
+        """Components apart: XLA is slow on an axis of length two."""
+        distance = one - others
+        return distance - length * jnp.round(distance / length)
+
+    def pushed(one):
+        dx = away(one[0], positions[:, 0], size[0])
+        dy = away(one[1], positions[:, 1], size[1])
+        weight = jnp.exp(-0.5 * (dx * dx + dy * dy))
+        return jnp.stack([jnp.sum(weight * dx), jnp.sum(weight * dy)])
+
+    return jax.lax.map(pushed, positions, batch_size=16)
+
+
+def _step(scene: Scene, state: world.State) -> world.State:
+    return world.step(scene.box, state, scene.rest)[0]
+
+
+def _fluid(scene: Scene, state: world.State) -> world.State:
+    box, f = scene.box, state.populations
+    none = jnp.zeros((2, *box.size), f[0].dtype)
+    rates = fluid.rates(box.viscosity, box.form.magic)
+    rho, momentum = fluid.density(f), fluid.momentum(f)
+    moved = fluid.advance(f, rho, momentum, none, rates, box.surroundings)
+    return replace(state, populations=moved)
+
+
+def _couple(scene: Scene, state: world.State) -> world.State:
+    """Interpolation, forcing and spreading towards a velocity that nodes do not have."""
+    box = scene.box
+    rho, momentum = fluid.density(state.populations), fluid.momentum(state.populations)
+    at = coupling.windows(state.positions, box.size, box.form.kernel)
+    velocity = coupling.interpolate(momentum, coupling.divided(at, rho))
+    forced = coupling.multi_direct_forcing(
+        velocity,
+        velocity + 1e-3,
+        state.positions,
+        rho,
+        at,
+        groups=box.groups,
+        iterations=box.form.forcing_iterations,
+        projection=box.form.projection,
+        limit=box.limits.force,
+    )
+    force = coupling.spread(forced.forcing, at, box.size)
+    # Every step depends on the one before, so that the compiler drops none.
+    return replace(state, positions=state.positions + 1e-6 * forced.target + force[0, 0, 0])
+
+
+def _constrain(scene: Scene, state: world.State) -> world.State:
+    box = scene.box
+    positions, angles = filaments.project(
+        state.positions,
+        state.angles,
+        box.rods,
+        scene.rest,
+        iterations=box.form.constraint_iterations,
+    )
+    return replace(state, positions=positions, angles=angles)
+
+
+def _repel(scene: Scene, state: world.State) -> world.State:
+    push, drift = world.repel(scene.box, state.positions)
+    return replace(state, positions=state.positions + 1e-3 * (push + drift))
+
+
+def _median(part: Step, scene: Scene, start: world.State, plan: Plan) -> float:
+    """Seconds of 1,000 steps of a part."""
+    program = _compile(part, scene, start, plan.part_steps, plan)
+    found = [_time(program, scene, start, 1, plan)[0] for _ in range(REPEATS)]
+    return float(np.median(found)) * REPORTED / plan.part_steps
+
+
+def _compile(step: Callable, scene: Any, start: Any, steps: int, plan: Plan) -> Any:
+    def run(scene, state):
+        return jax.lax.scan(lambda s, _: (step(scene, s), None), state, None, length=steps)[0]
+
+    program = jax.jit(run, compiler_options=dict(plan.options)).lower(scene, start).compile()
+    jax.block_until_ready(program(scene, start))
+    return program
+
+
+def _time(program: Any, scene: Any, start: Any, calls: int, plan: Plan) -> tuple[float, Any]:
+    state, seconds = start, 0.0
+    for _ in range(calls):
+        if plan.stop():
+            raise Stopped
+        begun = time.perf_counter()
+        state = jax.block_until_ready(program(scene, state))
+        seconds += time.perf_counter() - begun
+    return seconds / calls, state
+
+
+def _memory(program: Any) -> int | None:
+    """Bytes of a program's arguments, results and temporaries, if known."""
+    found = program.memory_analysis()
+    if found is None:
+        return None
+    sizes = ("argument_size_in_bytes", "output_size_in_bytes", "temp_size_in_bytes")
+    return int(sum(getattr(found, name) for name in sizes))

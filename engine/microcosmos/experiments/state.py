@@ -201,7 +201,7 @@ def start(plan: Plan) -> State:
     """The state before the first generation."""
     none, names = np.zeros(0, np.int32), np.zeros((0, 32), np.uint8)
     descriptors = np.zeros((0, len(plan.axes)), np.float32)
-    nobody = jax.tree.map(lambda x: np.zeros((0, *x.shape), x.dtype), plan.genotype)
+    no_genotypes = jax.tree.map(lambda x: np.zeros((0, *x.shape), x.dtype), plan.genotype)
     keys = jax.random.split(jax.random.fold_in(plan.key, BEFORE), len(plan.emitters))
     pairs = zip(plan.emitters, keys, strict=True)
     emitters = tuple(_founded(plan, e, e.init(key=key)) for e, key in pairs)
@@ -231,7 +231,7 @@ def start(plan: Plan) -> State:
             fitness=np.zeros(0, np.float32),
             descriptors=descriptors,
         ),
-        failures=Diverged(none, none, none, nobody),
+        failures=Diverged(none, none, none, no_genotypes),
         devices=(plan.device,),
         initial=plan.initial,
     )

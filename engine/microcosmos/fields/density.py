@@ -1,4 +1,4 @@
-"""How densely nodes lie: each splatted onto the lattice as a Gaussian."""
+"""Density of nodes, each splatted onto the lattice as a Gaussian."""
 
 import jax.numpy as jnp
 from jaxtyping import Array, Float
@@ -25,5 +25,5 @@ def saturated(density: Plane) -> Plane:
 
 
 def unsaturated(density: Plane) -> Plane:
-    """As it is."""
+    """The density itself."""
     return density

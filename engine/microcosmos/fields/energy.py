@@ -15,13 +15,13 @@ Plane = Float[Array, "x y"]
 
 
 class Energy(eqx.Module):
-    """The field at the start and what becomes of it."""
+    """The initial field, its diffusion and consumption."""
 
     start: Plane
     diffusion: Float[Array, ""] | None
-    """Cells² a step, at most 1/4; None: it stays where it is."""
+    """Cells² a step, at most 1/4; None: no diffusion."""
     rate: Float[Array, ""] | None
-    """Share of what a node covers that it takes in a step; None: nothing is taken away."""
+    """Share of the covered energy that a node takes in a step; None: no consumption."""
 
 
 @dataclass(frozen=True)
@@ -61,10 +61,10 @@ def diffuse(field: Plane, diffusion: Float[Array, ""]) -> Plane:
 
 
 def collect(field: Plane, coverage: Plane, rate: Float[Array, ""]) -> tuple[Plane, Plane]:
-    """The field after nodes have taken their share, and the share that each unit of them gets.
+    """The field after consumption, and the part for each unit of coverage.
 
-    `coverage` is how many nodes cover each cell. Together they take at most all there is;
-    a node's part is the second plane interpolated at it, and the parts sum to what is gone.
+    `coverage` is the number of nodes over each cell; together they take at most all. A node's
+    part is the second plane interpolated at it; the parts sum to the consumed energy.
     """
     taken = rate / jnp.maximum(1.0, rate * coverage)
     return field * (1 - taken * coverage), field * taken

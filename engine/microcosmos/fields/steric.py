@@ -24,7 +24,7 @@ SLOPE = (-1 / 32, -4 / 32, -5 / 32, 0.0, 5 / 32, 4 / 32, 1 / 32)
 
 
 class Steric(eqx.Module):
-    """How strongly nodes repel each other."""
+    """The strength and form of the repulsion between nodes."""
 
     strength: Float[Array, ""]
     """Displacement in a step per unit of gradient, cells³."""

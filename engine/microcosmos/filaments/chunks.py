@@ -38,10 +38,10 @@ def first_chunk(
 def in_chunks(
     work: Callable[[PyTree], tuple[Array, ...]], given: PyTree[Array], nodes: int, chunk: int
 ) -> tuple[Array, ...]:
-    """What `work` makes of the arrays of equal bodies, `chunk` of the `nodes` at a time.
+    """Apply `work` to arrays of equal bodies, `chunk` of the `nodes` at a time.
 
-    It is given as many rows of each array as belong to those nodes, of zeros where bodies
-    run out, and returns rows for the first of the arrays.
+    `work` takes the rows of each array that belong to those nodes, zeros after the last body,
+    and returns rows for the first of the arrays.
     """
     chunks = -(-nodes // chunk)
 
@@ -60,5 +60,5 @@ def _repeat(pairs: np.ndarray, bodies: int, members: int) -> bool:
     """Whether every body has the same pairs of its own members."""
     if len(pairs) % bodies:
         return False
-    own = pairs.reshape(bodies, -1, 2) - members * np.arange(bodies)[:, None, None]
-    return bool(np.all(own == own[:1]))
+    relative = pairs.reshape(bodies, -1, 2) - members * np.arange(bodies)[:, None, None]
+    return bool(np.all(relative == relative[:1]))

@@ -33,7 +33,7 @@ class Rods(eqx.Module):
     """The graph of a body and its stiffnesses."""
 
     edges: Int[Array, "edge 2"]
-    """Of all bodies; colours may be those of a first chunk of bodies, which then are equal."""
+    """Edges of all bodies; colours may be of a first chunk of equal bodies."""
     edge_colours: tuple[Pairing, ...]
     joint_colours: tuple[Pairing, ...]
     stretch: Float[Array, "edge"]
@@ -44,7 +44,7 @@ class Rods(eqx.Module):
 
 
 class Rest(eqx.Module):
-    """The shape that the constraints ask for, now or at all times."""
+    """The target of the constraints, now or at all times."""
 
     angle: Float[Array, "*time joint"]
     length: Float[Array, "*time edge"]

@@ -27,7 +27,7 @@ def _forward(*inputs) -> tuple[Populations, Inputs]:
 
 
 def adjoint(inputs: Inputs, h: Populations) -> Inputs:
-    """Cotangents of what `collide` was given, from those of its populations."""
+    """Cotangents of the inputs of `collide` from those of its result."""
     f, rho, momentum, force, rates = inputs
     fx, fy = force[0], force[1]
     jx, jy = momentum[0] + 0.5 * fx, momentum[1] + 0.5 * fy

@@ -1,4 +1,4 @@
-"""What stands around the fluid: walls, a uniform force, a free stream.
+"""Surroundings of the fluid: walls, a uniform force, a free stream.
 
 Halfway bounce-back: Ladd, J. Fluid Mech. 271, 285 (1994), for walls at rest. The wall lies
 half a cell outside the last fluid cell, exactly so for a straight wall at Λ = 3/16.
@@ -17,12 +17,12 @@ class Sponge(eqx.Module):
     """Cells in which the fluid is drawn to a free stream at rest density."""
 
     strength: Float[Array, "x y"]
-    """Share of the difference that a step removes, 0 where the fluid is left alone."""
+    """Share of the difference that a step removes."""
     velocity: Float[Array, "2"]
 
 
 class Surroundings(eqx.Module):
-    """What acts on the fluid besides bodies; what is None costs nothing."""
+    """Actions on the fluid besides bodies; None costs nothing."""
 
     force: Float[Array, "2"] | None = None
     """The same force density in every cell."""
@@ -55,7 +55,7 @@ def advance(
 
 
 def _bounce(streamed: Populations, collided: Populations, solid: Bool[Array, "x y"]):
-    """Where a population would come from a solid cell, its opposite comes back."""
+    """A population from a solid cell is replaced by its opposite."""
     out = [streamed[0]]
     for pair in PAIRS:
         for i, opposite in (pair, pair[::-1]):

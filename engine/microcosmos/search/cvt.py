@@ -88,7 +88,6 @@ def name(cells: int, axes: int, seed: int) -> str:
 
 
 def _kept(path: Path, shape: tuple[int, int]) -> Points | None:
-    """The cached centroids, None if missing or damaged."""
     try:
         found = np.load(path, allow_pickle=False)
     except (OSError, ValueError, EOFError):

@@ -5,14 +5,16 @@ a program of another shape rounds differently; so every creature goes through th
 program, whatever its batch, slot, neighbours or device.
 """
 
+from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import Any, TypeVar
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float, Int, PyTree
 
 from .. import units
@@ -171,3 +173,43 @@ def mapped(function: Callable, block: PyTree[Array]) -> Any:
     if jax.default_backend() == "cpu":
         return jax.lax.map(function, block)
     return jax.vmap(function)(block)
+
+
+Found = TypeVar("Found")
+
+
+class Stopped(Exception):
+    """The run was asked to stop; the unfinished generation is dropped and repeated."""
+
+
+def never() -> bool:
+    return False
+
+
+def evaluate_blocks(
+    program: Callable[[PyTree], Found],
+    items: PyTree[np.ndarray],
+    *,
+    block: int,
+    stop: Callable[[], bool] = never,
+) -> Found:
+    """Evaluate networks (or other items) of NumPy arrays, their number first.
+
+    The last block is padded with its first item. Each device has one block in flight. Raises
+    `Stopped` if `stop` is true before a block.
+    """
+    devices = jax.local_devices()
+    flying: deque[Found] = deque()
+    landed: list[Found] = []
+    count = len(jax.tree.leaves(items)[0])
+    for number, start in enumerate(range(0, count, block)):
+        if stop():
+            raise Stopped
+        if len(flying) == len(devices):
+            landed.append(jax.device_get(flying.popleft()))
+        rows = np.arange(start, start + block)
+        rows = np.where(rows < count, rows, start)
+        part = jax.tree.map(lambda x, rows=rows: x[rows], items)
+        flying.append(program(jax.device_put(part, devices[number % len(devices)])))
+    landed += [jax.device_get(one) for one in flying]
+    return jax.tree.map(lambda *parts: np.concatenate(parts)[:count], *landed)

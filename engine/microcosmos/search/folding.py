@@ -66,7 +66,7 @@ def unfolded(descent: Descent, picture: Plane) -> Fold:
 def update(descent: Descent, fold: Fold) -> tuple[Fold, Float[Array, ""]]:
     """One step of Adam (Kingma and Ba, ICLR 2015), and the loss before it.
 
-    If loss or slope are not finite, the loss is NaN, and the next step begins anew from the
+    If loss or slope are not finite, the loss is NaN, and the next step starts from the
     best genes at half the rate.
     """
     found, slope = jax.value_and_grad(partial(loss, descent))(fold.genes, fold.picture)

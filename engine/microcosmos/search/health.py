@@ -28,7 +28,7 @@ HORIZONS = (1 / 4, 1 / 2)
 """Shares of the whole time, besides the whole itself."""
 
 Build = Callable[[Any], tuple[Task, Actuator]]
-"""From a precision to the creature in it."""
+"""A function from a precision to a creature in it."""
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ def _flat(values: gradients.Values) -> Float[Array, "value"]:
 def _gradient(
     task: Task, actuator: Actuator, of: str, horizon: int | None = None
 ) -> Callable[[gradients.Values], tuple[Array, Array]]:
-    """From values to the measure and its gradient as one vector."""
+    """The program from values to the measure and its gradient as one vector."""
 
     def both(values):
         def measure(values):
@@ -151,7 +151,7 @@ def _error(program: Callable, values: gradients.Values, sizes: tuple[float, ...]
 def _from_other_starts(
     task: Task, actuator: Actuator, of: str, starts: int, seed: int
 ) -> Callable[[gradients.Values], Float[Array, "start value"]]:
-    """From values to gradients with other phases, places and directions."""
+    """The program from values to gradients with other phases, places and directions."""
     spread = Spread(viscosity=0.0, energy=False)
     keys = jax.random.split(jax.random.key(seed), starts)
     size = task.world.size

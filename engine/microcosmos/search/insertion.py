@@ -131,7 +131,7 @@ def _winners(
 ) -> Bool[Array, "row"]:
     """The candidates that come first in their cell, before its elite and each other.
 
-    Genes are looked at only where fitness does not decide.
+    Genes decide only at equal fitness.
     """
     count = archive.occupied.shape[0]
     elite = jnp.where(archive.occupied, _height(archive.fitness), -LAST)
@@ -155,9 +155,9 @@ def _untied(
     leads: Bool[Array, "row"],
     level: Bool[Array, "row"],
 ) -> Bool[Array, "row"]:
-    """Of leaders of equal fitness the first by digest, generation and slot.
+    """The first of equally fit leaders by digest, generation and slot.
 
-    `level` says where the cell's elite is one of those.
+    `level` marks rows whose cell's elite is equally fit.
     """
     count = archive.occupied.shape[0]
     incumbents = jax.tree.map(lambda x: x[there], archive)
@@ -174,7 +174,7 @@ def _untied(
 
 
 def _rank(elites: Elites) -> tuple[Int[Array, "row"], ...]:
-    """What decides among equal fitness, the most important first; smaller is better."""
+    """Keys of the order at equal fitness, most important first; smaller is better."""
     ordered = jax.lax.bitcast_convert_type(digest(elites.genotypes) ^ TOP, jnp.int32)
     return ordered[:, 0], ordered[:, 1], elites.generation, elites.slot
 

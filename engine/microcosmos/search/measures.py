@@ -99,7 +99,7 @@ def curvature(
 
 
 def symmetry(found: Curvature, kept: Bool[Array, "joint"] | None = None) -> Scalar:
-    """How the joints' bending agrees with its mirror along the body, −1 to 1.
+    """Correlation of the joints' bending with its mirror along the body, −1 to 1.
 
     Σ c(t, j) c(t, J − 1 − j) / Σ c(t, j)², with the curvature c less its mean over time.
     1: both halves bend alike at all times, like a jellyfish; −1: they bend oppositely, in S

@@ -57,7 +57,6 @@ def _put_nodes(network: CPPN, nodes: Nodes, kept: Marks, activation: Rows) -> Ro
 
 
 def _put_links(network: CPPN, links: Links, linked: Marks, source: Rows, target: Rows) -> None:
-    """Write the chosen links, numbered in the order of source and target."""
     keys = [np.where(linked, links[..., end], np.inf) for end in (1, 0)]
     order = np.lexsort(keys, axis=1)
     given = np.take_along_axis(linked, order, 1)
@@ -80,7 +79,6 @@ def _rows(nodes: Nodes, keys: Float[np.ndarray, "genome link"]) -> Rows:
 def _live(
     nodes: Nodes, links: Links, source: Rows, target: Rows, inputs: int
 ) -> Bool[np.ndarray, "genome node"]:
-    """Nodes that a path leads to from an input."""
     used = ~np.isnan(links[..., 0])
     live = np.zeros(nodes.shape[:2], bool)
     live[:, :inputs] = True

@@ -50,9 +50,9 @@ class Repeats(eqx.Module):
     count: Int[Array, "cell"]
     """Reevaluations of the present elite."""
     failed: Int[Array, "cell"]
-    """Those that diverged; no mean includes them."""
+    """Reevaluations that diverged; no mean includes them."""
     hits: Int[Array, "cell"]
-    """Those whose descriptors fell into the elite's cell."""
+    """Reevaluations whose descriptors fell into the elite's cell."""
     fitness: Float[Array, "cell"]
     """Mean fitness."""
     squares: Float[Array, "cell"]

@@ -18,7 +18,7 @@ from .strip import strip
 ENCODER = "libx264"
 QUALITY = {"preset": "medium", "crf": "18"}
 X86 = {"x264-params": "asm=SSE4"}
-"""The same film on every x86: with AVX-512, x264 differs even from run to run."""
+"""Gives the same film on every x86: with AVX-512, x264 differs even from run to run."""
 
 BT709, LIMITED = 1, 1
 """The colours of films of high definition, in the numbers of H.264 and FFmpeg."""
@@ -30,9 +30,9 @@ SAMPLES = 12
 def gif(
     replay: Replay, *, width: int = 320, frames: int = 125, rate: int = 20, **options: Any
 ) -> bytes:
-    """A film that starts again at its end, of at most so many frames, `rate` a second.
+    """A looping film of at most `frames` frames, `rate` a second.
 
-    A GIF counts hundredths of a second, of which viewers keep two at least. `options` are
+    A GIF counts hundredths of a second; viewers show a frame for at least two. `options` are
     those of `frame`.
     """
     if not 1 <= rate <= 50:
@@ -56,7 +56,7 @@ def gif(
 
 
 def mp4(replay: Replay, *, width: int = 480, rate: int = 25, **options: Any) -> bytes:
-    """A film in H.264 of all frames, `rate` a second, that browsers play while they load it.
+    """A film in H.264 of all frames, `rate` a second, that browsers stream.
 
     `options` are those of `frame`.
     """
@@ -71,7 +71,7 @@ def mp4(replay: Replay, *, width: int = 480, rate: int = 25, **options: Any) -> 
 
 
 def _palette(pictures: list[np.ndarray]) -> Any:
-    """An image whose palette suits all pictures, so that still parts do not flicker."""
+    """An image with one palette for all pictures, so that still parts do not flicker."""
     some = pictures[:: -(-len(pictures) // SAMPLES)]
     image = require("PIL.Image")
     return image.fromarray(np.concatenate(some)).quantize(256, image.Quantize.MEDIANCUT)
@@ -110,7 +110,7 @@ NEEDS = {".png": ("PIL.Image",), ".gif": ("PIL.Image",), ".mp4": ("PIL.Image", "
 
 
 def check(path: Path) -> None:
-    """Raise where a file of this kind cannot be written, before anything is computed."""
+    """Raise if a file of this kind cannot be written, before anything is computed."""
     kind = path.suffix.lower()
     if kind not in MAKERS:
         raise ValueError(f"`path` must end in {', '.join(MAKERS)}, got {str(path)!r}.")

@@ -1,4 +1,4 @@
-"""Creatures that move in a notebook, and replays of what somebody simulated by hand."""
+"""Films of creatures in a notebook, and replays of simulations by hand."""
 
 from base64 import b64encode
 from collections.abc import Mapping
@@ -10,7 +10,7 @@ from .film import gif
 from .replay_file import Replay, read_replay
 
 SMALL = {"width": 280, "frames": 60}
-"""Of a film that is kept in a notebook: a few hundred kB."""
+"""Size of a film in a notebook: a few hundred kB."""
 
 
 class Film:
@@ -26,12 +26,12 @@ class Film:
 
 
 def show(creature: Mapping[str, Any] | bytes | Replay, **options: Any) -> Film:
-    """A creature file, the bytes of a replay or a replay, moving.
+    """The film of a creature file, the bytes of a replay, or a replay.
 
-    `options` are those of `movie.gif`: `width`, `frames`, `rate`, `theme`, `follow` ...
+    `options` are those of `film.gif`: `width`, `frames`, `rate`, `theme`, `follow` ...
     """
     if isinstance(creature, Mapping):
-        from .replay import record  # Which simulates, with JAX.
+        from .replay import record  # Loads JAX.
 
         creature = record(creature)
     replay = read_replay(creature) if isinstance(creature, bytes) else creature
@@ -39,7 +39,7 @@ def show(creature: Mapping[str, Any] | bytes | Replay, **options: Any) -> Film:
 
 
 def filmed(positions: Any, edges: Any, vorticity: Any, *, every: int = 1) -> Replay:
-    """A replay of frames that were kept of every so many steps of one's own simulation.
+    """A replay of frames from your own simulation, `every` steps apart.
 
     `positions` are (frame, node, 2) in cells, unwrapped, `edges` (edge, 2) node numbers and
     `vorticity` (frame, x, y) in 1/step.

@@ -1,7 +1,6 @@
-"""One moment of a replay as a picture: the flow's vorticity, the way gone, the body.
+"""One frame of a replay as a picture: vorticity, the path so far, the body.
 
-The picture shows the periodic box once, x to the right and y up: what leaves it on one side
-enters on the other. The colours are those of the page.
+The picture shows the periodic box once, x to the right and y up. The colours are the page's.
 """
 
 from dataclasses import dataclass
@@ -72,10 +71,10 @@ def _weights(places: np.ndarray, cells: int) -> np.ndarray:
 
 
 GRID = 8
-"""Cells between the dots that stand still in the fluid."""
+"""Cells between the dots that mark the fluid's rest frame."""
 
 CURVE = 4
-"""Straight lines that an edge is drawn with."""
+"""Straight lines of a drawn edge."""
 
 Colour = tuple[int, int, int]
 
@@ -85,11 +84,11 @@ class Theme:
     """Colours (red, green, blue)."""
 
     vorticity: tuple[Colour, ...]
-    """From the most negative to the most positive, evenly spaced; zero is the background."""
+    """Colours from the most negative vorticity to the most positive; zero is the background."""
 
     ink: Colour
     halo: Colour
-    """What is between the body and the flow around it."""
+    """Colour between the body and the flow."""
 
 
 THEMES = {
@@ -117,8 +116,8 @@ def frame(
 ) -> np.ndarray:
     """Frame `number` (from the end where negative) as pixels (row, column, 3) of uint8.
 
-    The camera rests in the middle of the box, or follows the mean position of the nodes;
-    `way` draws where each creature's mean position has been, with a ring where it began.
+    The camera rests in the middle of the box, or follows the mean position of the nodes.
+    `way` draws the path of each creature's mean position, with a ring at its start.
     """
     number, colours = frame_number(replay, number), theme_of(theme)
     middle = replay.positions[number].mean(0, dtype=float)
@@ -161,7 +160,6 @@ def _water(replay: Replay, number: int, seen: View, theme: str) -> np.ndarray:
 
 @lru_cache
 def _table(theme: str) -> np.ndarray:
-    """Colours (511, 3) from -1 to 1."""
     anchors = np.array(THEMES[theme].vorticity).T
     places = np.linspace(-1, 1, anchors.shape[1])
     table = [np.interp(np.linspace(-1, 1, 511), places, channel) for channel in anchors]
@@ -201,7 +199,6 @@ def _curves(replay: Replay, number: int) -> np.ndarray:
 
 
 def _blend(picture: np.ndarray, colour: Colour, opacity: np.ndarray) -> None:
-    """Paints over a picture where the opacity (row, column) is above zero."""
     painted = np.flatnonzero(opacity)
     pixels = picture.reshape(-1, 3)
     share = opacity.ravel()[painted][:, None].astype(np.float32)
@@ -209,10 +206,10 @@ def _blend(picture: np.ndarray, colour: Colour, opacity: np.ndarray) -> None:
 
 
 PIECE = 6.0
-"""Longer lines are cut into pieces of at most so many pixels."""
+"""Longest piece of a line, in pixels."""
 
 BATCH = 4096
-"""Pieces whose surroundings are looked at together."""
+"""Pieces in one batch."""
 
 
 def distance(
@@ -220,8 +217,8 @@ def distance(
 ) -> np.ndarray:
     """The distance (row, column) from each pixel's middle to the nearest line, at most `reach`.
 
-    Lines are (line, 2) points (column, row) in pixels, the first pixel's middle at 0.5. What
-    leaves the picture on one side enters on the other.
+    Lines are (line, 2) points (column, row) in pixels, the first pixel's middle at 0.5. The
+    picture is periodic.
     """
     field = np.full(shape[0] * shape[1], reach, np.float32)
     starts, ends = _pieces(starts, ends)
@@ -241,9 +238,9 @@ def distance(
 
 
 def coverage(distances: np.ndarray, width: float) -> np.ndarray:
-    """The share of each pixel that lines of this width cover, edges smoothed over a pixel.
+    """The share of each pixel that lines of this width cover, smoothed over a pixel.
 
-    A line thinner than a pixel is a pixel wide and fainter.
+    A line thinner than a pixel is drawn a pixel wide and fainter.
     """
     thickness = max(width, 1.0)
     return (width / thickness) * np.clip(thickness / 2 + 0.5 - distances, 0, 1)
@@ -258,7 +255,6 @@ def _to_line(column: np.ndarray, row: np.ndarray, along: np.ndarray) -> np.ndarr
 
 
 def _pieces(starts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The same lines, cut into equal pieces where they are long."""
     length = np.hypot(*(ends - starts).T)
     count = np.maximum(1, np.ceil(length / PIECE)).astype(int)
     line = np.repeat(np.arange(len(starts)), count)

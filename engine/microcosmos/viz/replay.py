@@ -96,12 +96,11 @@ def record(file: Mapping[str, Any]) -> bytes:
 def _comparison(
     file: Mapping[str, Any], scene: Scene, measures: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Fitness and descriptors as recorded and in this replay."""
     replayed = {name: float(value) for name, value in measures.items()}
     measured = file["measured"] or {}
     recorded = measured.get("fitness")
-    told = creature.scene_of(file).task
-    fitness = fitness_of(told, replayed) if told == scene.task else None
+    task = creature.scene_of(file).task
+    fitness = fitness_of(task, replayed) if task == scene.task else None
     names = list(measured.get("descriptors", ())) or ["bending_effort", "stretching_effort"]
     return {
         "fitness": {
@@ -117,8 +116,8 @@ def _comparison(
 
 
 def watchable(scene: Scene) -> Scene:
-    """The scene without measures of one's own that are not to be had here: what is seen of a
-    creature does not depend on them."""
+    """The scene, without plug-in measures if they are missing here: the motion does not depend
+    on them."""
     try:
         build_measures(scene)
     except plugins.Missing:
@@ -225,8 +224,6 @@ def _program(scene_json: str, every: int) -> Callable[[search.Actuator], tuple]:
 def _filmed(
     task: search.Task, driven: Drive, frames: int, every: int, changes: bool
 ) -> tuple[Film, world.State, world.Measures]:
-    """The film, the last state, and the observations of all steps."""
-
     def frame(state):
         u = world.flow(task.world, state)
         return state.positions, vorticity(u), u, state.energy if changes else None

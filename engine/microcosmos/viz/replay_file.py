@@ -1,4 +1,4 @@
-"""Reading the bytes of a replay (`docs/formats.md`) with NumPy alone."""
+"""Reader of replays (`docs/formats.md`) with NumPy alone."""
 
 import json
 import struct
@@ -25,10 +25,10 @@ class ReplayError(ValueError):
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """What drives a body, and more of the fluid around it."""
+    """The drive of a body, and more of the fluid around it."""
 
     angles: np.ndarray
-    """(frame, joint): rest angles as applied in the step before the frame, in rad."""
+    """(frame, joint): rest angles of the step before the frame, in rad."""
 
     lengths: np.ndarray
     """(frame, edge): rest lengths likewise, in cells."""
@@ -37,7 +37,7 @@ class Drive:
     """(frame, 2, x, y) of the fluid, in cells a step."""
 
     energy: np.ndarray
-    """(plane, x, y): one plane a frame, one for all where nothing changes it, or none."""
+    """(plane, x, y): one plane a frame, one for all if nothing changes it, or none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ class Replay:
     """(frame, x, y) int8: the vorticity in units of `quantum`."""
 
     drive: Drive | None = None
-    """None where only the motion is known."""
+    """None if only the motion is known."""
 
     @property
     def frames(self) -> int:
@@ -99,15 +99,16 @@ class Replay:
         return self.quantum * max(1, strong.max(initial=1))
 
     def step(self, number: int) -> int:
-        """How many steps had been taken at a frame."""
+        """The number of steps before a frame."""
         return number * self.header["every"]
 
 
 def read_replay(data: bytes) -> Replay:
-    """The replay in these bytes. Raises `ReplayError` where they are not sound."""
+    """The replay in these bytes. Raises `ReplayError` if they are invalid."""
     header, start = _header(data)
     frames, nodes, (width, height) = (header[key] for key in ("frames", "nodes", "size"))
-    edges, joints, planes = _counts(header)
+    edges, joints = len(header["edges"]), len(header["joints"])
+    planes = int(header["energy"]["frames"])
     shapes: list[tuple[tuple[int, ...], Any]] = [
         ((frames, nodes, 2), "<f4"),
         ((frames, joints), "<f4"),
@@ -131,29 +132,7 @@ def read_replay(data: bytes) -> Replay:
     return Replay(header, positions, levels, Drive(angles, lengths, *flow))
 
 
-def _counts(header: dict[str, Any]) -> tuple[int, int, int]:
-    """Edges, joints, and planes of energy."""
-    joints, energy = header.get("joints"), header.get("energy")
-    count = len(header["edges"])
-    pairs = f"a list of pairs of edges below {count}"
-    _need(isinstance(joints, list), "joints", pairs, joints)
-    for joint in joints or ():
-        _need(_is_pair(joint, lambda k: _is_node(k, count)), "joints", pairs, joint)
-    _need(isinstance(energy, dict), "energy", "its scale and frames", energy)
-    assert isinstance(energy, dict)
-    assert isinstance(joints, list)
-    planes, scale = energy.get("frames"), energy.get("scale")
-    needed = f"0, 1 or {header['frames']}"
-    _need(planes in (0, 1, header["frames"]), "energy.frames", needed, planes)
-    _need(_is_scale(scale), "energy.scale", "a positive number", scale)
-    speed = header.get("velocity")
-    speed = speed.get("scale") if isinstance(speed, dict) else speed
-    _need(_is_scale(speed), "velocity.scale", "a positive number", speed)
-    return count, len(joints), int(planes or 0)
-
-
 def _header(data: bytes) -> tuple[dict[str, Any], int]:
-    """The header, and where the positions begin."""
     _need(len(data) >= 4, "bytes", "at least 4 of them", len(data))
     (length,) = struct.unpack_from("<I", data)
     _need(4 + length <= len(data), "header", f"{length} bytes", len(data) - 4)
@@ -170,18 +149,29 @@ def _header(data: bytes) -> tuple[dict[str, Any], int]:
 
 def _check(header: dict[str, Any]) -> None:
     for field in ("frames", "every", "nodes"):
-        found = header.get(field)
-        _need(_is_count(found), field, "a whole number from 1", found)
-    size, edges, curl = (header.get(key) for key in ("size", "edges", "vorticity"))
+        _need(_is_count(header.get(field)), field, "a whole number from 1", header.get(field))
+    size = header.get("size")
     _need(_is_pair(size, _is_count), "size", "width and height", size)
-    scale = curl.get("scale") if isinstance(curl, dict) else curl
-    _need(_is_scale(scale), "vorticity.scale", "a positive number", scale)
-    pairs = f"a list of pairs of nodes below {header['nodes']}"
-    _need(isinstance(edges, list), "edges", pairs, edges)
-    for edge in edges or ():
-        _need(_is_pair(edge, lambda k: _is_node(k, header["nodes"])), "edges", pairs, edge)
+    _check_pairs(header, "edges", header["nodes"])
+    _check_pairs(header, "joints", len(header["edges"]))
+    for field in ("vorticity", "velocity", "energy"):
+        plane: Any = header.get(field)
+        _need(isinstance(plane, dict), field, "an object with its scale", plane)
+        scale = plane.get("scale")
+        sound = isinstance(scale, int | float) and 0 < scale < float("inf")
+        _need(sound, f"{field}.scale", "a positive number", scale)
+    planes, frames = header["energy"].get("frames"), header["frames"]
+    _need(planes in (0, 1, frames), "energy.frames", f"0, 1 or {frames}", planes)
     if "member" in header:
         _check_member(header["member"], header["nodes"])
+
+
+def _check_pairs(header: dict[str, Any], field: str, count: int) -> None:
+    pairs: Any = header.get(field)
+    needed = f"a list of pairs of numbers below {count}"
+    _need(isinstance(pairs, list), field, needed, pairs)
+    for pair in pairs:
+        _need(_is_pair(pair, lambda k: type(k) is int and 0 <= k < count), field, needed, pair)
 
 
 def _check_member(member: Any, nodes: int) -> None:
@@ -193,14 +183,6 @@ def _check_member(member: Any, nodes: int) -> None:
 
 def _is_count(value: Any) -> bool:
     return type(value) is int and value >= 1
-
-
-def _is_scale(value: Any) -> bool:
-    return isinstance(value, int | float) and 0 < value < float("inf")
-
-
-def _is_node(value: Any, nodes: int) -> bool:
-    return type(value) is int and 0 <= value < nodes
 
 
 def _is_pair(value: Any, sound: Callable[[Any], bool]) -> bool:

@@ -13,7 +13,7 @@ GAP = 8
 """Pixels around the panels of a strip."""
 
 LETTERS = 14
-"""The height of the captions, in pixels."""
+"""Height of the captions, in pixels."""
 
 
 def png(replay: Replay, number: int, **options: Any) -> bytes:
@@ -70,7 +70,6 @@ def _written(
     texts: list[str],
     ink: tuple[int, int, int],
 ) -> np.ndarray:
-    """The sheet with each text below and right of its corner (column, row)."""
     image = require("PIL.Image").fromarray(sheet)
     font = require("PIL.ImageFont").load_default(LETTERS)
     draw = require("PIL.ImageDraw").Draw(image)
@@ -86,17 +85,16 @@ def encoded(picture: np.ndarray) -> bytes:
 
 
 WIDTH, HEIGHT = 1200, 630
-"""Pixels: what most sites cut pictures to."""
+"""Pixels, to which most sites cut pictures."""
 
 MOMENT = 2 / 3
-"""Of the replay: by then it is under way, and its wake is there."""
+"""Share of the replay by which the wake has formed."""
 
 
 def preview(replay: Replay, theme: str = "light") -> bytes:
     """One moment as a PNG of 1200 × 630 pixels, the creature in the middle.
 
-    It is cut from the periodic box; where that would cut the creature, all of the box is
-    shown.
+    It is cut from the periodic box, or shows the whole box if that would cut the creature.
     """
     number = round(MOMENT * (replay.frames - 1))
     wide, high = replay.size
@@ -109,7 +107,6 @@ def preview(replay: Replay, theme: str = "light") -> bytes:
 
 
 def _placed(picture: np.ndarray, around: tuple[int, int, int]) -> np.ndarray:
-    """The middle of a picture in the middle of one of our size."""
     sheet = np.full((HEIGHT, WIDTH, 3), around, np.uint8)
     rows, columns = picture.shape[:2]
     high, wide = min(rows, HEIGHT), min(columns, WIDTH)

@@ -1,4 +1,4 @@
-"""What a step shows of itself."""
+"""Measures of a step."""
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -12,16 +12,16 @@ Points = Float[Array, "point 2"]
 
 
 class Pushed(eqx.Module):
-    """What happened between bodies and fluid in a step, at the points where they meet."""
+    """Exchange between bodies and fluid in a step, at the points where they meet."""
 
     velocity: Points
-    """Of the fluid, before the step."""
+    """Velocity of the fluid before the step."""
     forcing: Points
-    """The force on the fluid."""
+    """Force on the fluid."""
     target: Points
-    """How the bodies move, but for what moves each as a whole against repulsion."""
+    """Motion of the bodies, without the drift by repulsion."""
     moved: Float[Array, "node 2"]
-    """How nodes wished to move."""
+    """Motion of the nodes before the projection."""
     held: Float[Array, "node"]
     """1 where a limit acted."""
 

@@ -1,4 +1,4 @@
-"""What a world is: its parameters, which stay, and its state, which moves."""
+"""A world: its parameters, which stay fixed, and its state, which changes."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ Vectors = Float[Array, "node 2"]
 
 @dataclass(frozen=True)
 class Form:
-    """How bodies and fluid act on each other; fixed when a program is compiled."""
+    """The form of the coupling, fixed when a program is compiled."""
 
     projection: Callable = coupling.torque_free
     force_factor: float = 2.0
@@ -26,7 +26,7 @@ class Form:
     kernel: coupling.Kernel = coupling.PESKIN
     magic: Callable = fluid.capped_magic
     fluid: bool = True
-    """Whether there is a fluid; without it constraints alone move bodies."""
+    """Without a fluid, constraints alone move bodies."""
 
     def __post_init__(self):
         if self.projection is coupling.torque_free and self.theta_feedback == 0:
@@ -37,19 +37,19 @@ class Form:
 
 
 class Limits(eqx.Module):
-    """What keeps random controllers finite, in cells a step; None: nothing does."""
+    """Limits that keep random controllers finite, in cells a step; None: no limit."""
 
     displacement: Float[Array, ""] | None = None
     force: Float[Array, ""] | None = None
 
 
 class World(eqx.Module):
-    """What stays fixed during a run; array fields can be differentiated."""
+    """The parameters of a run; array fields can be differentiated."""
 
     viscosity: Float[Array, ""]
     rods: filaments.Rods
     groups: Groups
-    """Which body each node belongs to."""
+    """The body of each node."""
     size: tuple[int, int] = eqx.field(static=True)
     form: Form = eqx.field(static=True, default_factory=Form)
     limits: Limits = Limits()
@@ -59,12 +59,12 @@ class World(eqx.Module):
     energy: fields.Energy | None = None
     surroundings: fluid.Surroundings = fluid.Surroundings()
     present: Bool[Array, "node"] | None = None
-    """Nodes that have grown; None: all of them. The others rest where they are and do nothing,
-    and constraints between them and others have stiffness 0."""
+    """Nodes that have grown; None: all. The others rest and do nothing; their constraints have
+    stiffness 0."""
 
 
 class State(eqx.Module):
-    """What changes at every step."""
+    """The state after a step."""
 
     populations: fluid.Populations
     positions: Vectors
@@ -73,7 +73,7 @@ class State(eqx.Module):
     collected: Float[Array, "node"] | None = None
     """Energy that each node has taken since the start."""
     memory: PyTree[Array] = None
-    """What the controller remembers."""
+    """Memory of the controller."""
 
 
 class Measures(eqx.Module):
@@ -100,7 +100,7 @@ class Measures(eqx.Module):
 
 
 def at_rest(world: World, positions: Vectors) -> State:
-    """A fluid at rest with bodies at `positions`, and the energy of the start."""
+    """A fluid at rest with bodies at `positions`, and the initial energy."""
     planes = tuple(jnp.zeros(world.size, positions.dtype) for _ in range(9))
     angles = filaments.edge_angles(positions, world.rods)
     if world.energy is None:

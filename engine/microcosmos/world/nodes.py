@@ -1,4 +1,4 @@
-"""What nodes do beside pushing fluid: repel each other, sense and collect energy."""
+"""Nodes: steric repulsion, sensing and collecting energy."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ Vectors = Float[Array, "node 2"]
 
 
 def sense(world: World, state: State) -> Float[Array, "node"]:
-    """The energy at each node; zero where the world has none."""
+    """The energy at each node; zero in a world without energy."""
     if state.energy is None:
         return jnp.zeros_like(state.positions[:, 0])
     at = coupling.windows(state.positions, world.size, world.form.kernel)
@@ -20,7 +20,7 @@ def sense(world: World, state: State) -> Float[Array, "node"]:
 
 
 def collect(world: World, state: State, at: coupling.Windows) -> State:
-    """What the nodes took of the energy, where they were at the start of the step."""
+    """The state after nodes took energy at their positions before the step."""
     energy, field = world.energy, state.energy
     if energy is None or field is None:
         return state
@@ -40,10 +40,10 @@ def collect(world: World, state: State, at: coupling.Windows) -> State:
 def repel(world: World, positions: Vectors) -> tuple[Vectors, Vectors]:
     """Steric displacement within bodies, and of each body as a whole.
 
-    Forces that must sum to zero over a body would take its mean away; so it is put aside,
-    and moves the body after the fluid has answered. The mean is taken before displacements
-    are cut to the limit: what nodes of one body do to each other is not in it, as it sums to
-    zero, so that no body moves itself.
+    Forces on the fluid sum to zero over a body, which would remove its mean displacement; so
+    the mean moves the body after the fluid's response. It is taken before displacements are
+    limited: displacements between nodes of one body then sum to zero in it, so that no body
+    moves itself.
     """
     if world.steric is None:
         return jnp.zeros_like(positions), jnp.zeros_like(positions)
@@ -56,7 +56,6 @@ def repel(world: World, positions: Vectors) -> tuple[Vectors, Vectors]:
 
 
 def _body_mean(world: World, values: Vectors) -> Vectors:
-    """For every node the mean over its body."""
     ones = jnp.ones_like(values)
     if world.present is not None:
         ones = ones * world.present[:, None]

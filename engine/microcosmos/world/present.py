@@ -1,4 +1,4 @@
-"""Which nodes, edges and joints there are where a body has not grown whole."""
+"""Masks of the nodes, edges and joints of partly grown bodies."""
 
 from dataclasses import replace
 
@@ -10,19 +10,19 @@ from .model import State, World
 
 
 def there(world: World, layers: int = 1) -> Bool[Array, "point"] | None:
-    """The points of nodes that are present; None where all are."""
+    """Mask of the points of present nodes; None: all."""
     if world.present is None or layers == 1:
         return world.present
     return jnp.repeat(world.present, layers)
 
 
 def edges_there(world: World) -> Bool[Array, "edge"] | None:
-    """Edges with both ends."""
+    """Mask of edges with both ends; None: all."""
     return None if world.present is None else jnp.all(world.present[world.rods.edges], 1)
 
 
 def joints_there(world: World) -> Bool[Array, "joint"] | None:
-    """Joints with both edges."""
+    """Mask of joints with both edges; None: all."""
     edges, joints = edges_there(world), world.rods.joints
     return None if edges is None or joints is None else jnp.all(edges[joints], 1)
 
@@ -40,7 +40,7 @@ def grown_rods(rods: filaments.Rods, present: Bool[Array, "node"]) -> filaments.
 
 
 def mean(values: Float[Array, "item *rest"], kept: Bool[Array, "item"] | None):
-    """The mean of what is there, over the first axis."""
+    """The mean of present items, over the first axis."""
     if kept is None:
         return jnp.mean(values, 0)
     mask = kept.reshape(-1, *(1,) * (values.ndim - 1))

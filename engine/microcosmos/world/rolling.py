@@ -15,12 +15,11 @@ from .stepping import step
 
 
 def follow(world: World, state: State, rest: filaments.Rest) -> filaments.Rest:
-    """Open-loop control: the rest shape is what was given."""
+    """Open-loop control: inputs are rest shapes."""
     return rest
 
 
 def keep(world: World, state: State, given: Any) -> PyTree[Array]:
-    """Nothing new is remembered."""
     return state.memory
 
 
@@ -33,13 +32,12 @@ def rollout(
     remember: Callable[[World, State, Any], PyTree[Array]] = keep,
     segment: int | None = None,
 ) -> tuple[State, Any]:
-    """The state after all steps of `inputs` (time first), and what was observed after each.
+    """The state after all steps of `inputs` (time first), and the observations after each.
 
-    `control` makes the rest shape of a step from the world as it stands and the inputs of
-    that time; as it is, inputs are rest shapes. Before that, `remember` says what the state's
-    memory is to hold in this step. With `segment`, reverse mode keeps the state after every
-    so many steps alone, and does those steps again (Griewank and Walther, ACM Trans. Math.
-    Softw. 26, 19, 2000, with two levels).
+    In each step `remember` sets the state's memory, then `control` makes the rest shape from
+    the world, the state and the inputs. With `segment`, reverse mode keeps the state only after
+    every so many steps and repeats the steps (Griewank and Walther, ACM Trans. Math. Softw. 26,
+    19, 2000, with two levels).
     """
 
     def advance(state, given):
@@ -58,7 +56,7 @@ def rollout(
     def joined(many, few):
         return jnp.concatenate([many.reshape(-1, *many.shape[2:]), few])
 
-    # Within a loop nothing else could share the repeated steps' results.
+    # Within a loop no other code could share the repeated results.
     again = jax.checkpoint(partial(jax.lax.scan, advance), prevent_cse=False)
     state, seen = jax.lax.scan(again, state, jax.tree.map(cut, inputs))
     state, last = jax.lax.scan(advance, state, jax.tree.map(lambda x: x[whole:], inputs))

@@ -17,16 +17,16 @@ Vectors = Float[Array, "node 2"]
 
 
 class Motion(eqx.Module):
-    """The bodies on their way through a step: before the fluid's answer."""
+    """The motion of the bodies in a step, before the fluid's response."""
 
     target: Vectors
     angles: Float[Array, "edge"]
     shortened: Float[Array, "node"]
-    """What each displacement was multiplied by to stay within the limit."""
+    """Factor of each displacement to stay within the limit."""
 
 
 def step(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measures]:
-    """One step: the fluid carries the bodies, constraints move them, the fluid answers."""
+    """One step: the fluid carries the bodies, constraints move them, the fluid responds."""
     if not world.form.fluid:
         return step_alone(world, state, rest)
     rho, momentum = fluid.density(state.populations), fluid.momentum(state.populations)
@@ -63,7 +63,7 @@ def step(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measu
 
 
 def step_alone(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measures]:
-    """One step without a fluid: repulsion and constraints move the bodies, nothing answers."""
+    """One step without a fluid: repulsion and constraints move the bodies."""
     push, drift = repel(world, state.positions)
     motion = move(world, state, rest, push)
     positions = state.positions + motion.target + drift
@@ -97,7 +97,6 @@ def move(world: World, state: State, rest: filaments.Rest, velocity: Vectors) ->
 
 
 def _points(world: World, state: State) -> Float[Array, "point 2"]:
-    """Where the bodies act on the fluid."""
     if world.form.layers == 1:
         return state.positions
     grown = edges_there(world)
@@ -111,7 +110,6 @@ def _windows(world: World, state: State) -> coupling.Windows:
 
 
 def _held(motion: Motion, forced: coupling.Forced, groups: Groups) -> Float[Array, "node"]:
-    """1 for nodes whose displacement, or whose body's force, was cut."""
     dtype, layers = motion.target.dtype, len(groups.member) // len(motion.target)
     pressed = groups.each((forced.scale < 1).astype(dtype))[::layers]
     return jnp.maximum(pressed, (motion.shortened < 1).astype(dtype))

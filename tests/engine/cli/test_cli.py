@@ -12,7 +12,7 @@ from importlib import import_module
 import httpx
 import pytest
 
-from microcosmos.archive.table import read_table
+from microcosmos.archive.file import read_table
 from microcosmos.cli import pictures
 
 run_command = import_module("microcosmos.cli.run")

@@ -97,14 +97,10 @@ def test_a_table_shows_its_summary(record):
 
 
 def test_plain_lines_come_when_something_changes(record, capsys):
-    view = views.Lines()
-    for progress, status in (
-        (0.5, "running"),
-        (0.51, "running"),
-        (0.6, "running"),
-        (1, "failed"),
-    ):
-        view.show(RunState(record | {"progress": progress, "status": status, "error": "why"}))
+    states = ((0.5, "running"), (0.51, "running"), (0.6, "running"), (1, "failed"))
+    with views.lines() as show:
+        for progress, status in states:
+            show(RunState(record | {"progress": progress, "status": status, "error": "why"}))
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == 3
     assert "failed: why" in lines[-1]
@@ -129,12 +125,11 @@ def ipython(monkeypatch):
 
 
 def test_a_notebook_brings_one_display_up_to_date(ipython, record):
-    view = views.choose()
-    assert isinstance(view, notebook.Notebook)
+    assert views.choose() is notebook.notebook
     named = record | {"name": "<script>"}
-    with view:
-        view.show(RunState(named, CURVES))
-        view.show(RunState(named | {"status": "finished"}, CURVES))
+    with notebook.notebook() as show:
+        show(RunState(named, CURVES))
+        show(RunState(named | {"status": "finished"}, CURVES))
     first, last = ipython[0]._repr_html_(), ipython[-1]._repr_html_()
     assert first.count("<polyline") == 3
     assert "<script>" not in first
@@ -144,9 +139,9 @@ def test_a_notebook_brings_one_display_up_to_date(ipython, record):
 
 def test_without_a_terminal_or_notebook_there_are_lines(monkeypatch):
     monkeypatch.delitem(sys.modules, "IPython", raising=False)
-    assert isinstance(views.choose(), views.Lines)
+    assert views.choose() is views.lines
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True, raising=False)
-    assert isinstance(views.choose(), terminal.Terminal)
+    assert views.choose() is terminal.terminal
 
 
 def test_columns_are_arrays_with_gaps_as_nan():

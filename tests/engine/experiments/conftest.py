@@ -11,7 +11,7 @@ import pytest
 
 from microcosmos.archive import creature
 from microcosmos.build import build
-from microcosmos.build.experiments import begun
+from microcosmos.build.experiments import with_initial
 from microcosmos.spec import parse
 
 SMALL = {
@@ -202,6 +202,6 @@ def forked_from():
     def fork(experiment, chosen, files):
         text = json.dumps(chosen.model_dump(mode="json"), sort_keys=True)
         plan = replace(experiment.plan, spec=text, generations=chosen.search.generations)
-        return replace(experiment, plan=begun(plan, chosen, files))
+        return replace(experiment, plan=with_initial(plan, chosen, files))
 
     return fork

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from microcosmos import fields, search
 from microcosmos.archive import creature
-from microcosmos.archive.table import read_table
+from microcosmos.archive.file import read_table
 from microcosmos.build import build, build_descent
 from microcosmos.spec import parse
 from microcosmos.viz.figures import experiments

@@ -48,7 +48,7 @@ def test_the_command_begins_from_a_file_and_goes_on_from_its_own(small, evolve, 
     tree, _ = file.load(out.read_bytes())
     assert [bytes(name).hex() for name in tree["initial"]["creature"]] == [best["sha256"]]
     evolve(small(search={"generations": 2}), *begin, "--out", whole)
-    named, _ = with_initial(small(search={"generations": 2}), [tmp_path / "best.json"])
+    named, _ = with_initial(small(search={"generations": 2}), [tmp_path / "best.json"], archive)
     evolve(named, "--out", out)  # Which can only go on: the creature's file is not given.
     assert out.read_bytes() == whole.read_bytes()
     evolve(small(search={"generations": 2}), *begin, "--out", out)
@@ -62,7 +62,7 @@ def test_a_spec_that_names_creatures_takes_only_those_of_the_files(
     small, archive, evolve, best
 ):
     named = small(search={"initial": [best["sha256"]]})
-    chosen, files = with_initial(named, [archive])
+    chosen, files = with_initial(named, [archive], archive)
     assert chosen == named
     assert [file["sha256"] for file in files] == [best["sha256"]]
     other = small(search={"initial": ["0" * 64]})

@@ -10,7 +10,7 @@ from microcosmos.archive import creature
 from microcosmos.archive.initial import counters, fitting, genes_of, renumbered
 from microcosmos.build import build
 from microcosmos.build.creatures import frame
-from microcosmos.build.experiments import begun, build_plan
+from microcosmos.build.experiments import build_plan, with_initial
 from microcosmos.experiments.offspring import next_offspring
 from microcosmos.naming import decode, encode
 from microcosmos.search import OPERATORS, never
@@ -99,7 +99,7 @@ def test_a_creature_forked_into_its_own_world_keeps_its_identity(
 def test_new_genes_get_numbers_that_no_ancestor_has(small, files):
     chosen = small(search={"initial": names_of(files)})
     after, _ = counters(genes_of(chosen, files))
-    plan = begun(build_plan(chosen), chosen, files)
+    plan = with_initial(build_plan(chosen), chosen, files)
     assert int(plan.counters.innovation) == after > 6
 
 

@@ -6,9 +6,8 @@ import pytest
 
 from microcosmos.archive.report import Row
 from microcosmos.build.tables import build_crowd
-from microcosmos.experiments.scaling import LINEAR_FROM, report, summary
+from microcosmos.experiments.scaling import LINEAR_FROM, _all_pairs, report, summary
 from microcosmos.experiments.table_file import TableRun
-from microcosmos.experiments.timing import _all_pairs
 from microcosmos.spec import parse
 from microcosmos.spec.scaling import SPACING
 

@@ -162,4 +162,4 @@ def test_the_fixture_of_the_page_is_what_the_engine_computes_now():
     )
     assert [case["genome"] for case in made] == [case["genome"] for case in kept]
     for now, then in zip(made, kept, strict=True):
-        np.testing.assert_allclose(now["said"], then["said"], rtol=1e-4, atol=1e-4)
+        np.testing.assert_allclose(now["expected"], then["expected"], rtol=1e-4, atol=1e-4)

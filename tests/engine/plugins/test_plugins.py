@@ -197,7 +197,7 @@ def test_a_run_goes_on_from_its_file_with_the_same_bytes(course, module, away):
     changed = build(parse(SPEC))
     module.write_text(MODULE)
     with pytest.raises(
-        ValueError, match=r"plugin\.source` must be \w{12}, .* go on with the module as it was"
+        ValueError, match=r"plugin\.source` must be \w{12}, .* continue with that version"
     ):
         changed.restore(data)
 

@@ -124,7 +124,7 @@ def test_each_emitter_is_told_of_its_own_children_alone(outcome_of):
 
 
 def minimise(function, start, children, generations, sigma=0.3, seed=0):
-    strategy = es.Strategy(len(start), children)
+    strategy = es.strategy(len(start), children)
 
     def generation(distribution, key):
         values, z = es.draw(distribution, keys=jax.random.split(key, children))
@@ -155,7 +155,7 @@ def test_an_ellipsoid_of_condition_a_million_is_learnt(float64):
 def test_turning_the_problem_turns_the_search(float64):
     scales, start = 10.0 ** np.arange(4), np.array([0.5, -0.3, 0.2, 0.1])
     turn = np.linalg.qr(np.random.default_rng(0).normal(size=(4, 4)))[0]
-    strategy = es.Strategy(4, 8)
+    strategy = es.strategy(4, 8)
     straight, turned = (
         es.start(jnp.asarray(start), 0.3),
         es.start(jnp.asarray(turn @ start), 0.3),
@@ -174,7 +174,7 @@ def test_turning_the_problem_turns_the_search(float64):
 
 def test_weights_are_of_the_better_half_and_sum_to_one():
     for children in (1, 2, 3, 10, 64):
-        weights = es.Strategy(5, children).weights
+        weights = es.strategy(5, children).weights
         assert weights.sum() == pytest.approx(1)
         assert (np.diff(weights) <= 0).all()
         assert len(weights) == max(1, children // 2)

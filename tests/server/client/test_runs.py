@@ -1,11 +1,13 @@
 """Runs by the client: submitted once, found, changed, watched, read as columns."""
 
 import json
+from contextlib import nullcontext
 
 import numpy as np
 import pytest
 
 from microcosmos.client import Client, Conflict, NoAnswer, NotFound, Refused, polling
+from microcosmos.client.views import watch
 from server.attempts.claim import claim
 
 
@@ -148,20 +150,15 @@ def test_the_client_sends_its_token(serve, monkeypatch):
 class Kept:
     """A view that keeps what it was shown."""
 
-    def __init__(self, react=lambda standing: None):
+    def __init__(self, react=lambda state: None):
         self.shown: list[tuple[str, int, list[int]]] = []
         self.react = react
 
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_: object) -> None: ...
-
-    def show(self, standing: polling.RunState) -> None:
-        record = standing.record
-        curve = list(standing.curves["generation"])
+    def __call__(self, state: polling.RunState) -> None:
+        record = state.record
+        curve = list(state.curves["generation"])
         self.shown.append((record["status"], record["generation"], curve))
-        self.react(standing)
+        self.react(state)
 
 
 @pytest.fixture
@@ -169,8 +166,8 @@ def worked(attempt, record):
     """The run goes on by a generation whenever it is shown, until its third."""
     left = [1, 2, 3, None]
 
-    def go_on(standing: polling.RunState) -> None:
-        reached = (standing.curves["generation"] or [0])[-1]
+    def go_on(state: polling.RunState) -> None:
+        reached = (state.curves["generation"] or [0])[-1]
         if left and reached == 4 - len(left):
             generation = left.pop(0)
             if generation:
@@ -182,10 +179,11 @@ def worked(attempt, record):
 
 
 def test_a_run_is_followed_by_events(client, run, worked):
-    from microcosmos.client.views import watch
-
     view = Kept(worked)
-    assert watch(polling.follow(client.connection, run.id), "Run x", view) == "finished"
+    assert (
+        watch(polling.follow(client.connection, run.id), "Run x", nullcontext(view))
+        == "finished"
+    )
     status, generation, curve = view.shown[-1]
     assert (status, generation, curve) == ("finished", 3, [1, 2, 3])
     curves = [curve for _, _, curve in view.shown]
@@ -200,8 +198,8 @@ def test_watching_polls_without_a_stream(client, run, worked, monkeypatch):
     monkeypatch.setattr(polling, "events", none)
     monkeypatch.setattr(polling, "POLL", 0.01)
     view = Kept(worked)
-    for standing in polling.follow(client.connection, run.id):
-        view.show(standing)
+    for state in polling.follow(client.connection, run.id):
+        view(state)
     assert view.shown[-1] == ("finished", 3, [1, 2, 3])
 
 
@@ -219,15 +217,15 @@ def test_watching_survives_an_absence_of_the_server(serve, services, run, worked
 
         found = polling.follow(client.connection, run.id)
         view = Kept()
-        view.show(next(found))
+        view(next(found))
         monkeypatch.setattr(client.connection, "read", read)
         troubles = []
-        for standing in found:
-            troubles.append(standing.problem)
-            if standing.problem is None:
-                worked(standing)
+        for state in found:
+            troubles.append(state.problem)
+            if state.problem is None:
+                worked(state)
         assert troubles.count("No server answers.") >= 1
-        assert (troubles[-1], standing.record["status"]) == (None, "finished")
+        assert (troubles[-1], state.record["status"]) == (None, "finished")
 
 
 def test_an_absent_server_is_an_error_at_once():
@@ -242,6 +240,6 @@ def test_a_rewound_run_drops_later_generations(client, services, run, run_id, at
             attempt.save(1, b"state")
     found = polling.follow(client.connection, run.id)
     assert next(found).curves["generation"] == [1, 2, 3]
-    while (standing := next(found)).curves["generation"] == [1, 2, 3]:
+    while (state := next(found)).curves["generation"] == [1, 2, 3]:
         claim(services, run_id, "worker")
-    assert standing.curves["generation"] == [1]
+    assert state.curves["generation"] == [1]

@@ -82,7 +82,7 @@ def test_the_log_names_stopped_workers_dead_jobs_and_the_last_attempt(services, 
     texts = [text for _, _, text in log()]
     assert texts[-2:] == ["Worker stopped after generation 0.", "Queued for another attempt."]
     claim(services, run_id, "worker")
-    leases.job_died(services, run_id, "worker", "killed by signal 9")
+    leases.job_ended(services, run_id, "worker", "killed by signal 9")
     assert ("error", 2, "Attempt 2 ended badly: killed by signal 9") in log()
     for _ in range(lifecycle.ATTEMPTS - 1):
         claim(services, run_id, "worker").fail("no luck")

@@ -1815,7 +1815,7 @@ export interface components {
         };
         /**
          * PrincipalRead
-         * @description Who sends the request, and with which scope.
+         * @description The principal of the request.
          */
         PrincipalRead: {
             /** Expires At */
@@ -2158,7 +2158,7 @@ export interface components {
         };
         /**
          * ShareCreate
-         * @description What to share; by default the creature's file decides title, credit and licence.
+         * @description A request for a share; the creature's file supplies the defaults.
          */
         ShareCreate: {
             /** Creature */

@@ -112,7 +112,7 @@ export interface Vector {
   encoding: "direct" | "weights" | "fold";
   control: Spec;
   values: string;
-  /** Of the network with these weights. */
+  /** Inputs and outputs of the network with these weights. */
   inputs?: string[];
   outputs?: string[];
 }

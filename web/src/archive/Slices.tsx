@@ -26,28 +26,22 @@ function One({ slice, onChange }: { slice: Slice; onChange: Props["onChange"] })
   const { axis, from, to } = slice;
   const all = from === 0 && to === axis.bins - 1;
   const [low, high] = [number(edgeOf(axis, from)), number(edgeOf(axis, to + 1))];
-  const common = { type: "range", min: 0, max: axis.bins - 1 } as const;
+  const ends = [
+    [text.sliceFrom, low, from, (value: number) => onChange(slice, value, Math.max(value, to))],
+    [text.sliceTo, high, to, (value: number) => onChange(slice, Math.min(from, value), value)],
+  ] as const;
   return (
     <fieldset class="slice">
       <legend>{axis.title}</legend>
-      <input
-        {...common}
-        aria-label={text.sliceFrom(axis.title)}
-        aria-valuetext={low}
-        value={from}
-        onInput={({ currentTarget: { valueAsNumber } }) =>
-          onChange(slice, valueAsNumber, Math.max(valueAsNumber, to))
-        }
-      />
-      <input
-        {...common}
-        aria-label={text.sliceTo(axis.title)}
-        aria-valuetext={high}
-        value={to}
-        onInput={({ currentTarget: { valueAsNumber } }) =>
-          onChange(slice, Math.min(from, valueAsNumber), valueAsNumber)
-        }
-      />
+      {ends.map(([label, raw, value, move], i) => (
+        <input
+          key={i}
+          {...{ type: "range", min: 0, max: axis.bins - 1, value }}
+          aria-label={label(axis.title)}
+          aria-valuetext={raw}
+          onInput={(event) => move(event.currentTarget.valueAsNumber)}
+        />
+      ))}
       <output class="quiet small">{all ? text.wholeRange : text.range(low, high, axis.unit)}</output>
     </fieldset>
   );

@@ -6,7 +6,7 @@ import { ROWS, activationsOf, inputsOf, phaseOf } from "./activations";
 import cases from "./networks.fixture.json";
 
 describe("the values of a network", () => {
-  cases.forEach(({ genome, steps, said }, number) => {
+  cases.forEach(({ genome, steps, expected }, number) => {
     it(`equal those of the engine, network ${number + 1}`, () => {
       const inherited = genome as unknown as Genes & Vector;
       const network = "nodes" in genome ? networkOf(inherited) : layeredOf(inherited)!;
@@ -15,9 +15,9 @@ describe("the values of a network", () => {
       outputs.forEach(({ id }, output) => {
         [0, 5, 31, 95].forEach((column, i) => {
           [0, 17, 30, 47].forEach((row, k) => {
-            const expected = said[output]![i]![k]!;
+            const value = expected[output]![i]![k]!;
             const found = values.get(id)![column * ROWS + row]!;
-            expect(Math.abs(found - expected)).toBeLessThan(2e-4 * Math.max(1, Math.abs(expected)));
+            expect(Math.abs(found - value)).toBeLessThan(2e-4 * Math.max(1, Math.abs(value)));
           });
         });
       });

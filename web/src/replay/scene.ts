@@ -18,7 +18,7 @@ interface Scene {
   /** The body's mean position in each frame. */
   path: Point[];
   follow: boolean;
-  /** Of the background under the ink. */
+  /** The brightness of the background. */
   theme: Theme;
   tracers?: Tracers | null;
 }

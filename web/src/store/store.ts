@@ -57,7 +57,7 @@ export function useEach<T>(ids: readonly string[], select: (state: State, id: st
 /** Some runs, undefined if not loaded. */
 export const useRuns = (ids: readonly string[]) => useEach(ids, ({ runs }, id) => runs.get(id));
 
-/** Runs that nobody looks at any more stay in the store for this long. */
+/** Runs without a viewer stay in the store for this long. */
 export const RETAIN_MS = 60_000;
 
 /** Keep the details of runs until the returned function is called, and a little longer. */

@@ -7,7 +7,7 @@ interface Props {
   /** The action and its object. */
   verb: string;
   what: string;
-  /** What the action queues. Without it, the action cannot be undone. */
+  /** A description of the queued work; without it, the action cannot be undone. */
   queues?: string;
   onConfirm: () => Promise<void>;
 }

@@ -69,7 +69,7 @@ class CmaMae:
         here = state.thresholds[jnp.minimum(outcome.cell, self.cells - 1)]
         height = jnp.where(outcome.sound, outcome.fitness - here, -jnp.inf)
         order = jnp.argsort(-height, stable=True)
-        strategy = es.Strategy(state.z.shape[1], self.slots)
+        strategy = es.strategy(state.z.shape[1], self.slots)
         distribution = es.update(state.distribution, state.z, order, strategy)
         flat = (height[order[0]] - height[order[-1]]) < 1e-12
         return replace(

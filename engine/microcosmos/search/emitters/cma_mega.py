@@ -106,7 +106,7 @@ class CmaMega:
         gain = jnp.where(outcome.fresh, outcome.fitness, outcome.improvement)
         gain = jnp.where(outcome.sound, gain, -jnp.inf)
         order = jnp.lexsort((-gain, ~(outcome.fresh & outcome.entered)))
-        strategy = es.Strategy(self.outputs, self.slots)
+        strategy = es.strategy(self.outputs, self.slots)
         best = state.weights[order[: len(strategy.weights)]]
         ahead = jnp.asarray(strategy.weights, best.dtype) @ best @ state.slopes
         distribution = es.update(state.distribution, state.z, order, strategy)

@@ -1,4 +1,4 @@
-"""Children of elites and of nobody, and random search as a baseline."""
+"""Children of elites, newcomers, and random search as a baseline."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

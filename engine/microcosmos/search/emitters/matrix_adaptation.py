@@ -31,45 +31,38 @@ class Distribution(eqx.Module):
 class Strategy:
     """Weights and rates for a number of genes and children."""
 
-    genes: int
-    children: int
+    weights: np.ndarray
+    """Weights of the better half of the children, the best first; they sum to 1."""
+    mu_eff: float
+    """The effective number of children, by variance."""
+    c_s: float
+    c_1: float
+    c_w: float
+    d_s: float
+    expected_length: float
+    """The expected length of a vector drawn from N(0, I)."""
 
-    @property
-    def weights(self) -> np.ndarray:
-        """Weights of the better half of the children, the best first; they sum to 1."""
-        half = max(1, self.children // 2)
-        raw = log((self.children + 1) / 2) - np.log(np.arange(1, half + 1))
-        raw = np.maximum(raw, 0.0)
-        return raw / raw.sum() if raw.sum() > 0 else np.ones(1)
 
-    @property
-    def mu_eff(self) -> float:
-        """The effective number of children, by variance."""
-        return float(1 / np.sum(self.weights**2))
-
-    @property
-    def c_s(self) -> float:
-        return (self.mu_eff + 2) / (self.genes + self.mu_eff + 5)
-
-    @property
-    def c_1(self) -> float:
-        return 2 / ((self.genes + 1.3) ** 2 + self.mu_eff)
-
-    @property
-    def c_w(self) -> float:
-        spread = 2 * (self.mu_eff - 2 + 1 / self.mu_eff)
-        return min(1 - self.c_1, spread / ((self.genes + 2) ** 2 + self.mu_eff))
-
-    @property
-    def d_s(self) -> float:
-        beyond = max(0.0, sqrt((self.mu_eff - 1) / (self.genes + 1)) - 1)
-        return 1 + self.c_s + 2 * beyond
-
-    @property
-    def expected_length(self) -> float:
-        """The expected length of a vector drawn from N(0, I)."""
-        n = self.genes
-        return sqrt(n) * (1 - 1 / (4 * n) + 1 / (21 * n**2))
+def strategy(genes: int, children: int) -> Strategy:
+    """The weights and rates of Hansen, table 1."""
+    half = max(1, children // 2)
+    raw = log((children + 1) / 2) - np.log(np.arange(1, half + 1))
+    raw = np.maximum(raw, 0.0)
+    weights = raw / raw.sum() if raw.sum() > 0 else np.ones(1)
+    mu_eff = float(1 / np.sum(weights**2))
+    c_s = (mu_eff + 2) / (genes + mu_eff + 5)
+    c_1 = 2 / ((genes + 1.3) ** 2 + mu_eff)
+    spread = 2 * (mu_eff - 2 + 1 / mu_eff)
+    beyond = max(0.0, sqrt((mu_eff - 1) / (genes + 1)) - 1)
+    return Strategy(
+        weights,
+        mu_eff,
+        c_s,
+        c_1,
+        c_w=min(1 - c_1, spread / ((genes + 2) ** 2 + mu_eff)),
+        d_s=1 + c_s + 2 * beyond,
+        expected_length=sqrt(genes) * (1 - 1 / (4 * genes) + 1 / (21 * genes**2)),
+    )
 
 
 def start(mean: Float[Array, "gene"], sigma: float) -> Distribution:

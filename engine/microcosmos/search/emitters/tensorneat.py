@@ -60,6 +60,5 @@ class TensorNeat:
         return replace(state, fitness=fitness)
 
     def _untold(self, theirs: State, age: int) -> Foreign:
-        """The state of a population that is not measured yet."""
-        nobody = np.full(self.slots, -np.inf, np.float32)
-        return Foreign(self.backend.to_arrays(theirs), nobody, np.array(age, np.int32))
+        unmeasured = np.full(self.slots, -np.inf, np.float32)
+        return Foreign(self.backend.to_arrays(theirs), unmeasured, np.array(age, np.int32))

@@ -45,7 +45,9 @@ class QdaxEmitter:
     operator: str
 
     def init(self, *, key: PRNGKeyArray) -> Pending:
-        genes = jnp.zeros((self.slots, *jax.eval_shape(self._newcomer).values.shape))
+        genes = jnp.zeros(
+            (self.slots, *jax.eval_shape(lambda: self.newcomer(key=key)).values.shape)
+        )
         place = jnp.zeros((self.slots, len(self.cells.axes)))
         fitness = jnp.full(self.slots, -jnp.inf, genes.dtype)
         with jax.numpy_rank_promotion("allow"):
@@ -92,9 +94,6 @@ class QdaxEmitter:
             extra_scores={},
         )
         return jax.tree.map(lambda new, old: new.astype(old.dtype), learnt, state.emitter)
-
-    def _newcomer(self) -> Any:
-        return self.newcomer(key=jax.random.key(0))
 
 
 def cma_me(

@@ -1,5 +1,5 @@
-"""Figures for print, of archive files: the map, curves, the contact sheet, the tree.
+"""Figures for print of archive files: map, curves, contact sheet, tree.
 
-`drawing` makes them from files to files; `reading.read` with `maps.archive`, `curves.curves`,
-`sheet.sheet` and `lineage.lineage`, within `style.styled()`, makes them in a notebook.
+`drawing` makes files from files. In a notebook, use `reading.read` with `maps.archive`,
+`curves.curves`, `sheet.sheet` and `lineage.lineage` within `style.styled()`.
 """

@@ -1,4 +1,4 @@
-"""Along what an archive is drawn: its own descriptors, or anything else that was measured."""
+"""Axes of figures: an archive's descriptors, or any other measure."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -10,29 +10,28 @@ from ...spec.measures import MEASURES
 from .reading import Archive
 
 BINS = 24
-"""Bins of an axis that is not a grid's, as the page has them."""
+"""Bins of an axis that is not a grid's, as on the page."""
 
 
 @dataclass(frozen=True)
 class Axis:
-    """One measure from end to end; places on it run from 0 to 1 on its own scale."""
+    """One measure with its ends; places run from 0 to 1 on its own scale."""
 
     name: str
     label: str
-    """Its title and unit."""
     low: float
     high: float
     logarithmic: bool
     bins: int
 
     def places(self, values: np.ndarray) -> np.ndarray:
-        """From 0 to 1; what is beyond an end is at it."""
+        """Places of values, cut at the ends."""
         scale = "log10" if self.logarithmic else "linear"
         own = {"low": self.low, "high": self.high, "scale": scale}
         return np.clip(place_on(np.asarray(values, np.float64), own), 0, 1)
 
     def values(self, places: np.ndarray) -> np.ndarray:
-        """What `places` came from."""
+        """Values of places; the inverse of `places`."""
         low, high = self.low, self.high
         if self.logarithmic:
             return 10 ** (np.log10(low) + places * (np.log10(high) - np.log10(low)))
@@ -40,7 +39,6 @@ class Axis:
 
     @property
     def edges(self) -> np.ndarray:
-        """The borders of the bins."""
         return self.values(np.linspace(0, 1, self.bins + 1))
 
 
@@ -53,7 +51,6 @@ def label(archive: Archive, name: str) -> str:
 
 
 def fitness_label(archive: Archive) -> str:
-    """What fitness is, and its unit."""
     task = archive.spec.task
     if task.fitness == "displacement+energy":
         return f"Displacement + {task.energy_weight:g} × energy [cells]"
@@ -61,7 +58,7 @@ def fitness_label(archive: Archive) -> str:
 
 
 def chosen(archive: Archive, names: list[str] | None) -> list[Axis]:
-    """The axes of that name; for none, the archive's first two or its only one."""
+    """The named axes; by default the archive's first two, or its only one."""
     own = {axis.name: axis for axis in archive.axes}
     names = names or list(own)[:2]
     if not 1 <= len(names) <= 2 or len(set(names)) < len(names):
@@ -86,7 +83,7 @@ def _own(archive: Archive, axis: Any) -> Axis:
 
 
 def _other(archive: Archive, name: str) -> Axis:
-    """From end to end of what there is, rounded outwards."""
+    """The axis of another measure, its ends rounded outwards."""
     known, values = MEASURES.get(name), archive.measures[name].astype(float)
     title = label(archive, name)
     if known is not None and known.scale == "log10":
@@ -106,7 +103,7 @@ def _round(least: float) -> float:
 
 
 def dress(panel: Any, axes: list[Axis]) -> None:
-    """Ends, scale and label of each axis of a panel; decades where it is logarithmic."""
+    """Set ends, scale and label of each axis of a panel."""
     from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
     for axis, which in zip(axes, "xy", strict=False):

@@ -1,4 +1,4 @@
-"""Captions that state the spec: what was searched, in which world, how long, on what."""
+"""Captions that state the spec: the search, the world, the length, the device."""
 
 from collections.abc import Sequence
 
@@ -19,11 +19,11 @@ FITNESS = {
 
 
 NAMES = {"best": "best fitness", "mean": "mean fitness", "qd_score": "QD score"}
-"""Of curves, where the words of the column are others."""
+"""Names of curves that differ from those of their columns."""
 
 
 def of_archive(found: Archive, names: list[str] | None) -> str:
-    """What the map shows, then the run."""
+    """The caption of a map."""
     along = chosen(found, names)
     filled, cells = len(found.cells), found.spec.archive.cells
     fittest = "the ring marks the fittest" if len(along) == 2 else "the fittest has"
@@ -38,9 +38,7 @@ def of_archive(found: Archive, names: list[str] | None) -> str:
 
 
 def of_curves(groups: Sequence[Group], shown: Sequence[str]) -> str:
-    """What is shown and what bands are, then the run; of several specs the first, and how
-    others differ.
-    """
+    """The caption of curves; of several specs it states the first and the differences."""
     several = any(len(group.runs) > 1 for group in groups)
     first = _listed([NAMES.get(name, name.replace("_", " ")) for name in shown])
     first = first[0].upper() + first[1:]
@@ -58,7 +56,7 @@ def of_curves(groups: Sequence[Group], shown: Sequence[str]) -> str:
 
 
 def of_sheet(found: Archive, plan: Layout, moments: int) -> str:
-    """What a region shows, then the run."""
+    """The caption of a contact sheet."""
     first = (
         f"The fittest elite of each of {len(plan.regions)} regions over {_over(plan.axes)}, "
         f"at {moments} moments of its {found.spec.task.steps:,} steps, pale at the start, at "
@@ -69,7 +67,7 @@ def of_sheet(found: Archive, plan: Layout, moments: int) -> str:
 
 
 def of_lineage(found: Archive, cell: int | None, ancestors: int) -> str:
-    """Whose ancestors are shown, then the run."""
+    """The caption of a tree."""
     row = found.row(cell)
     who = "fittest elite" if cell is None else f"elite of cell {cell}"
     first = (
@@ -85,13 +83,13 @@ def run(found: Archive, seeds: Sequence[int] | None = None) -> str:
     """The spec and the machine, in three sentences."""
     spec = found.spec
     seeds = [spec.seed] if seeds is None else seeds
-    told = f", {_seeds(seeds)}" if seeds else ""
+    seeded = f", {_seeds(seeds)}" if seeds else ""
     columns = found.curves
     done, evaluations = len(columns["evaluations"]), int(columns["evaluations"][-1])
     method = "NEAT" if spec.experiment == "neuroevolution" else "MAP-Elites"
     return (
         f"{method} ({_emitters(spec)}), {done:,} generations of {spec.search.batch} "
-        f"({evaluations:,} evaluations{told}). {_fitness(spec)} over {spec.task.steps:,} "
+        f"({evaluations:,} evaluations{seeded}). {_fitness(spec)} over {spec.task.steps:,} "
         f"steps; {_body(spec)}, {_control(spec)}, in a periodic world of {spec.world.width} × "
         f"{spec.world.height} cells{_fluid(spec)}. "
         f"Microcosmos {found.version} on {_device(found.devices)}."
@@ -147,7 +145,7 @@ def _fluid(spec: Search) -> str:
 
 
 def _device(devices: Sequence[str]) -> str:
-    """Platform and model; the software beside them is told by the version."""
+    """Platform and model, without the software."""
     said = [", ".join(device.split(", ")[:2]) for device in devices]
     return " and ".join(dict.fromkeys(said))
 

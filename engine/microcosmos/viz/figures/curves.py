@@ -1,4 +1,4 @@
-"""How runs went: QD score, coverage and the best fitness, with bands over seeds."""
+"""Curves of runs: QD score, coverage and best fitness, with bands over seeds."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -12,7 +12,7 @@ from .style import COLOURS, GREY, blank, lettered
 SHOWN = ("best", "coverage", "qd_score")
 
 DASHES = ("-", (0, (4, 1.5)), (0, (1, 1)), (0, (4, 1, 1, 1)))
-"""Of lines whose colours have all been used, and of those that print in grey."""
+"""Dashes that tell lines apart in grey, or when colours repeat."""
 
 
 def curves(
@@ -22,10 +22,10 @@ def curves(
     against: str = "evaluations",
     width: float = 178.0,
 ) -> Any:
-    """A panel for each of `shown`: of each group the median over its seeds, the band between
-    the quartiles, and every run as a thin line.
+    """A panel for each of `shown`, against `evaluations` or `generations`.
 
-    `against` is evaluations or generations.
+    Each group has the median over its seeds, a band between the quartiles, and thin lines for
+    single runs.
     """
     names = _known(shown, groups)
     figure = blank(width, max(45.0, 0.72 * width / len(shown)) + 7 * (len(groups) > 1))
@@ -73,7 +73,7 @@ def _name(group: Group) -> str:
 
 
 def _scaled(values: np.ndarray, name: str) -> np.ndarray:
-    """Shares in per cent."""
+    """Values, those of shares in per cent."""
     return 100 * values if name in ("coverage", "corrected_coverage", "hit_rate") else values
 
 
@@ -99,7 +99,6 @@ def _dress(panel: Any, name: str, against: str, groups: Sequence[Group]) -> None
 
 
 def _label(name: str, groups: Sequence[Group]) -> str:
-    """What a panel shows; the unit of fitness only where all runs have the same."""
     labels = {fitness_label(run) for group in groups for run in group.runs}
     fitness = labels.pop() if len(labels) == 1 else "Fitness"
     title, _, unit = fitness.partition(" [")

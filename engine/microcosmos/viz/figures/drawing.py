@@ -1,4 +1,4 @@
-"""Each figure for print from files to files: read, drawn, captioned, written."""
+"""Figures for print from files to files: read, draw, caption, write."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -12,26 +12,26 @@ from .style import millimetres, styled
 
 @dataclass(frozen=True)
 class Print:
-    """How a figure is printed."""
+    """The form of a printed figure."""
 
     width: str = "single"
-    """`single`, `double`, or so many mm, cm or in."""
+    """`single`, `double`, or a length in mm, cm or in."""
     dpi: int = 300
     under: bool = False
-    """Whether the caption stands under the figure too."""
+    """Whether to write the caption under the figure too."""
     tex: bool = False
-    """Whether the caption is written for LaTeX as well."""
+    """Whether to write the caption for LaTeX as well."""
     palette: str = "viridis"
 
     def publish(self, figure, out: Path, text: str) -> list[Path]:
-        """Writes a figure with its caption, and says what was written."""
+        """Write a figure with its caption; return the paths."""
         return saving.publish(figure, out, text, under=self.under, tex=self.tex, dpi=self.dpi)
 
 
 def archive(
     file: Path, out: Path, how: Print, axes: list[str] | None, colour: str
 ) -> list[Path]:
-    """The map of an archive file."""
+    """Draw the map of an archive file."""
     saving.kind(out)
     found = open_archive(file)
     with styled():
@@ -43,7 +43,7 @@ def archive(
 def progress(
     files: Sequence[Path], out: Path, how: Print, shown: Sequence[str], against: str
 ) -> list[Path]:
-    """The curves of one run or several."""
+    """Draw the curves of one run or several."""
     saving.kind(out)
     found = groups.grouped([open_archive(file) for file in files])
     with styled():
@@ -61,8 +61,8 @@ def contact(
     moments: int,
     tell: Callable[[int, int], None] = lambda done, of: None,
 ) -> list[Path]:
-    """The contact sheet of an archive file; `grid` has columns and rows."""
-    from . import motions  # Which simulates, with JAX.
+    """Draw the contact sheet of an archive file; `grid` has columns and rows."""
+    from . import motions  # Loads JAX.
 
     saving.kind(out)
     found, columns, rows = open_archive(file), *grid
@@ -76,7 +76,7 @@ def contact(
 
 
 def tree(file: Path, out: Path, how: Print, cell: int | None) -> list[Path]:
-    """The descent of an archive's elites, and of one of them."""
+    """Draw the descent of an archive's elites, and of one of them."""
     saving.kind(out)
     found = open_archive(file)
     related = family(found)
@@ -88,7 +88,7 @@ def tree(file: Path, out: Path, how: Print, cell: int | None) -> list[Path]:
 
 
 def open_archive(file: Path) -> Archive:
-    """The archive in a file; what is wrong with it is told with its name."""
+    """Read the archive in a file; errors name the file."""
     try:
         return read(file.read_bytes())
     except ValueError as error:

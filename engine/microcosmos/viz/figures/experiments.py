@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from ...archive.atomic import write_whole
-from ...archive.table import read_table
+from ...archive.file import read_table
 from .gait_sweep import sweep
 from .saving import encoded, kind
 from .scaling import scaling

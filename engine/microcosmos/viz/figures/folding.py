@@ -1,4 +1,4 @@
-"""The figure of a folding: each filament on its way, the picture it folds into, and losses."""
+"""The figure of a folding: each filament at some moments, its picture, and the losses."""
 
 from functools import partial
 from math import ceil
@@ -15,16 +15,17 @@ from ...genomes import Vector
 from .style import COLOURS, GREY, INCH, blank, tidy
 
 MOMENTS = {"early": 0.1, "middle": 0.4, "late": 1.0}
-"""Shares of a life at which filaments are shown."""
+"""Moments of the figure, as shares of the simulation."""
 
 COLUMNS = 10
-"""Filaments side by side at most."""
+"""Most filaments side by side."""
 
 
 def folds(data: bytes) -> Any:
-    """Rows early, middle and late in the life of every filament, a row of pictures, and how
-    the losses fell. `data` is the run's file, finished or not; the filaments are those with the
-    least loss so far, simulated anew.
+    """Rows early, middle and late of every filament, a row of pictures, and the losses.
+
+    `data` is the run's file, finished or not; filaments with the least loss so far are
+    simulated anew.
     """
     tree, attributes = file.load(data)
     chosen = spec.Folding.model_validate_json(attributes["spec"])
@@ -51,7 +52,7 @@ def folds(data: bytes) -> Any:
 
 
 def _courses(chosen: spec.Folding, genes: np.ndarray) -> np.ndarray:
-    """(fold, moment, node, 2) places of the nodes."""
+    """Positions (fold, moment, node, 2) of the nodes."""
     descent = build_descent(chosen)
     steps = [max(1, round(share * chosen.steps)) - 1 for share in MOMENTS.values()]
 
@@ -82,7 +83,7 @@ def _column(
 
 
 def _strokes(panel: Any, ends: np.ndarray) -> None:
-    """Edges in the box that holds their middle."""
+    """Draw each edge in the periodic image that holds its middle."""
     from matplotlib.collections import LineCollection
 
     panel.add_collection(LineCollection(list(ends), colors=COLOURS[0], lw=0.5))

@@ -1,4 +1,4 @@
-"""The figure of a sweep: how far swimmers come at each viscosity, in each form."""
+"""The figure of a sweep: displacement of swimmers at each viscosity, in each form."""
 
 from collections.abc import Sequence
 from math import isfinite, log10
@@ -15,7 +15,7 @@ FORMS = {
 }
 
 UNSOUND = "#f4eee0"
-"""Behind results that are not force-free."""
+"""Background of results that are not force-free."""
 
 MOST_TICKS = 5
 
@@ -75,7 +75,7 @@ def _free_form(rows: Sequence[Row], form: str) -> bool:
 
 
 def _top(rows: Sequence[Row]) -> float:
-    """One scale for all panels that are force-free, and one for those that are not."""
+    """The upper end of the scale: one for force-free panels, one for the others."""
     most = max((row["displacement"] for row in rows if _finished(row)), default=0) or 1
     return most * (1.06 if all(map(_finished, rows)) else 1.25)
 
@@ -97,7 +97,6 @@ def _dress(panel: Any, form: str, rows: Sequence[Row]) -> None:
 
 
 def _reynolds_axis(panel: Any, rows: Sequence[Row]) -> None:
-    """An upper axis with one swimmer's Reynolds numbers at its viscosities."""
     known = [row for row in rows if _finished(row) and (row.get("reynolds") or 0) > 0]
     if not known:
         return
@@ -121,7 +120,6 @@ def _two_digits(value: float) -> str:
 
 
 def _legend(figure: Any, panel: Any, rows: Sequence[Row]) -> None:
-    """The swimmers, and what hollow marks and crosses say where there are some."""
     from matplotlib.lines import Line2D
 
     handles, labels = panel.get_legend_handles_labels()

@@ -1,4 +1,4 @@
-"""Runs that differ in their seed alone stand together, and what tells the others apart."""
+"""Groups of runs that differ in their seed alone, labelled by their differences."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -9,18 +9,18 @@ import numpy as np
 from .reading import Archive
 
 APART = ("seed",)
-"""Fields in which runs of one group may differ."""
+"""Fields that may differ within a group."""
 
 MOST = 3
-"""Fields that a label names at most."""
+"""Most fields that a label names."""
 
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """Runs of one spec, each with a seed of its own."""
+    """Runs of one spec with different seeds."""
 
     label: str
-    """In which fields it differs from the other groups; empty where there are none."""
+    """Fields in which the group differs from the others."""
     runs: tuple[Archive, ...]
 
     @property
@@ -29,10 +29,7 @@ class Group:
 
 
 def grouped(runs: Sequence[Archive]) -> list[Group]:
-    """Groups in the order in which their first runs came.
-
-    Raises `ValueError` where a run was given twice.
-    """
+    """Groups in the order of their first runs. Raises `ValueError` for a run given twice."""
     found: dict[tuple, list[Archive]] = {}
     for run in runs:
         flat = dict(flattened(run.document))
@@ -53,7 +50,7 @@ def grouped(runs: Sequence[Archive]) -> list[Group]:
 
 
 def flattened(document: Any, path: str = "") -> Iterator[tuple[str, Any]]:
-    """Every value of a spec by its dotted path."""
+    """Yield every value of a spec with its dotted path."""
     if isinstance(document, Mapping):
         parts = document.items()
     elif isinstance(document, Sequence) and any(isinstance(x, Mapping) for x in document):
@@ -66,7 +63,7 @@ def flattened(document: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def differing(flats: Sequence[Mapping[str, Any]]) -> list[str]:
-    """The paths whose values are not the same in all; those that all have come first."""
+    """The paths whose values differ; only those that all specs have, if there are any."""
     paths = list(dict.fromkeys(path for flat in flats for path in flat if path not in APART))
     other = [p for p in paths if len({repr(flat.get(p, "none")) for flat in flats}) > 1]
     shared = [path for path in other if all(path in flat for flat in flats)]
@@ -74,12 +71,12 @@ def differing(flats: Sequence[Mapping[str, Any]]) -> list[str]:
 
 
 def _label(flat: Mapping[str, Any], paths: Sequence[str]) -> str:
-    told = [f"{short(path)} {_value(flat.get(path, 'none'))}" for path in paths[:MOST]]
-    return ", ".join(told) + (" …" if len(paths) > MOST else "")
+    parts = [f"{short(path)} {_value(flat.get(path, 'none'))}" for path in paths[:MOST]]
+    return ", ".join(parts) + (" …" if len(paths) > MOST else "")
 
 
 def short(path: str) -> str:
-    """The last two words of a path, places in lists left out."""
+    """The last two words of a path, without indices."""
     words = [word for word in path.split(".") if not word.isdigit()]
     return " ".join(words[-2:]).replace("_", " ")
 
@@ -94,7 +91,7 @@ def _value(value: Any) -> str:
 
 
 def spread(runs: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Lower quartile, median and upper quartile as long as all runs went on."""
+    """Lower quartile, median and upper quartile, as far as all runs go."""
     length = min(map(len, runs))
     values = np.stack([run[:length] for run in runs])
     low, middle, high = np.quantile(values, (0.25, 0.5, 0.75), axis=0)

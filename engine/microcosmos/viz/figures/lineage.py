@@ -8,25 +8,25 @@ import numpy as np
 
 from .axes import fitness_label
 from .reading import Archive
-from .style import GREY, INK, blank, palette
+from .style import GREY, INK, blank, colour_bar, shades
 
 NOBODY = -1
 
 
 @dataclass(frozen=True, eq=False)
 class Family:
-    """Entries of the archive as numbers, and their parents'."""
+    """Entries of an archive and their parents, by number."""
 
     parents: np.ndarray
-    """(entry, 2): entries, −1 for nobody; an only parent is the first."""
+    """(entry, 2) entries, −1 for none; an only parent is the first."""
     generation: np.ndarray
     fitness: np.ndarray
     cell: np.ndarray
     tips: np.ndarray
-    """The entries of the elites that are there now, in the order of the archive's rows."""
+    """The entries of the present elites, in the order of the archive's rows."""
 
     def ancestors(self, entry: int) -> list[int]:
-        """An entry and all that it descends from, the youngest first."""
+        """An entry and all its ancestors, the youngest first."""
         return self.closure([entry], both=True)
 
     def closure(self, entries: Iterable[int], *, both: bool) -> list[int]:
@@ -42,10 +42,7 @@ class Family:
 
 
 def family(found: Archive) -> Family:
-    """The family of an archive's elites.
-
-    Raises `ValueError` where an elite is not among those that came into the archive.
-    """
+    """The family of an archive's elites. Raises `ValueError` if the lineage lacks one."""
     columns = found.lineage
     names = [bytes(row) for row in columns["creature"]]
     number: dict[bytes, int] = {}
@@ -68,13 +65,12 @@ def family(found: Archive) -> Family:
 
 
 def _first(parents: list[int]) -> list[int]:
-    """Whoever is there first."""
     return parents if parents[0] != NOBODY else parents[::-1]
 
 
 def heights(found: Family, entries: list[int]) -> dict[int, float]:
-    """Of each entry its place across the tree: childless ones evenly, others between the
-    children whose first parent they are. `entries` are closed under first parents.
+    """The height of each entry in the tree: childless ones evenly, others between those whose
+    first parent they are. `entries` include all first parents.
     """
     children: dict[int, list[int]] = {NOBODY: []}
     for entry in sorted(entries):
@@ -96,7 +92,7 @@ def heights(found: Family, entries: list[int]) -> dict[int, float]:
 
 
 OTHERS = "#a9b4b9"
-"""Elites that are not the one."""
+"""Colour of other elites."""
 
 
 def lineage(
@@ -110,9 +106,6 @@ def lineage(
     from; the ancestors of the elite of `cell` (none: the fittest) in the colours of their
     fitness, second parents by dashed lines.
     """
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
-
     tree = family(found)
     own = int(tree.tips[found.row(cell)])
     above = tree.ancestors(own)
@@ -122,12 +115,11 @@ def lineage(
     figure = blank(width, float(np.clip(0.9 * ends, 55, 0.62 * width)))
     panel = figure.add_subplot()
     values = tree.fitness[above]
-    low, high = float(values.min()), float(values.max())
-    shades = ScalarMappable(Normalize(low, high if high > low else low + 1), palette(colours))
+    colouring = shades(values, colours)
     _branches(panel, tree, places, whole, colors=[OTHERS], linewidths=0.4, zorder=1)
     last = max(int(tree.generation.max()), len(found.curves["best"]))
     _living(panel, tree, places, last)
-    colour = shades.to_rgba(values)
+    colour = colouring.to_rgba(values)
     _branches(panel, tree, places, above, colors=[INK], linewidths=2.0, zorder=2)
     _branches(panel, tree, places, above, colors=colour, linewidths=1.3, zorder=3)
     _crossings(panel, tree, places, above)
@@ -135,15 +127,13 @@ def lineage(
     panel.scatter(x, y, s=9, c=colour, edgecolors=INK, linewidths=0.4, zorder=4)
     panel.scatter([x[0]], [y[0]], s=34, facecolors="none", edgecolors=INK, lw=0.8, zorder=5)
     _dress(panel, last)
-    bar = figure.colorbar(shades, ax=panel, label=fitness_label(found), pad=0.01, aspect=28)
-    bar.outline.set_linewidth(0.5)
+    colour_bar(panel, colouring, fitness_label(found), pad=0.01, aspect=28)
     return figure
 
 
 def _branches(
     panel: Any, tree: Family, places: dict[int, float], entries: list[int], **look: Any
 ) -> None:
-    """From each first parent along its height's time, then across to the child's height."""
     from matplotlib.collections import LineCollection
 
     lines = []
@@ -159,7 +149,6 @@ def _branches(
 
 
 def _living(panel: Any, tree: Family, places: dict[int, float], last: int) -> None:
-    """Elites live on to the end."""
     from matplotlib.collections import LineCollection
 
     tips = tree.tips.tolist()

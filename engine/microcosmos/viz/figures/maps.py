@@ -7,7 +7,7 @@ import numpy as np
 from ...spec.measures import MEASURES
 from .axes import Axis, chosen, dress, fitness_label, label
 from .reading import Archive
-from .style import EMPTY, GREY, INK, blank, palette
+from .style import EMPTY, GREY, INK, blank, colour_bar, palette
 
 
 def archive(
@@ -18,31 +18,29 @@ def archive(
     colours: str = "viridis",
     width: float = 85.0,
 ) -> Any:
-    """The map over one or two axes; of elites that share a place the fittest is shown.
+    """The map over one or two axes; of elites at one place it shows the fittest.
 
-    `colour` is fitness, or anything else that was measured; a ring marks the fittest elite.
+    `colour` is fitness or any other measure; a ring marks the fittest elite.
     """
     along = chosen(found, axes)
     shown, title = _colour(found, colour)
     figure = blank(width, width * (0.78 if len(along) == 2 else 0.6))
     panel = figure.add_subplot()
     scale = _scale(shown, _logarithmic(found, colour))
-    shades = {"cmap": palette(colours), "norm": scale}
+    look = {"cmap": palette(colours), "norm": scale}
     draw = _bars if len(along) == 1 else _cells if _whole(found, along) else _bins
-    drawn = draw(panel, found, along, shown, shades)
+    drawn = draw(panel, found, along, shown, look)
     dress(panel, along)
     if len(along) == 2:
         x, y = (found.measures[axis.name][found.best] for axis in along)
         x, y = (np.clip(v, a.low, a.high) for v, a in zip((x, y), along, strict=True))
         for edge, size in (("white", 1.8), (INK, 0.8)):
             panel.plot(x, y, "o", ms=5, mfc="none", mec=edge, mew=size, clip_on=False)
-    bar = figure.colorbar(drawn, ax=panel, label=title, pad=0.02, aspect=28)
-    bar.outline.set_linewidth(0.5)
+    colour_bar(panel, drawn, title, pad=0.02, aspect=28)
     return figure
 
 
 def _colour(found: Archive, name: str) -> tuple[np.ndarray, str]:
-    """Of each elite the number that is shown, and what it is."""
     if name == "fitness":
         return found.fitness, fitness_label(found)
     if name not in found.measures:
@@ -52,14 +50,12 @@ def _colour(found: Archive, name: str) -> tuple[np.ndarray, str]:
 
 
 def _logarithmic(found: Archive, name: str) -> bool:
-    """Whether a measure goes in decades: as its axis does, where it is one of the archive's."""
     own = {axis.name: axis.scale for axis in found.axes}
     usual = MEASURES[name].scale if name in MEASURES else "linear"
     return own.get(name, usual) == "log10"
 
 
 def _scale(shown: np.ndarray, logarithmic: bool) -> Any:
-    """From the least to the greatest."""
     from matplotlib.colors import LogNorm, Normalize
 
     low, high = float(shown.min()), float(shown.max())
@@ -69,13 +65,13 @@ def _scale(shown: np.ndarray, logarithmic: bool) -> Any:
 
 
 def _whole(found: Archive, along: list[Axis]) -> bool:
-    """Whether the map shows Voronoi cells as they are: over both of their own axes."""
+    """Whether the map is over all axes of Voronoi cells, so that it can show them."""
     names = [axis.name for axis in found.axes]
     return found.centroids is not None and sorted(a.name for a in along) == sorted(names)
 
 
 def bins(found: Archive, along: list[Axis]) -> np.ndarray:
-    """(axis, elite): in which bin each elite is; by its cell where the axis is a grid's."""
+    """The bin of each elite (axis, elite); from its cell if the axis is a grid's."""
     own = [axis.name for axis in found.axes]
     grid = found.centroids is None
     places = np.unravel_index(found.cells, found.spec.archive.shape) if grid else ()
@@ -92,7 +88,7 @@ def bins(found: Archive, along: list[Axis]) -> np.ndarray:
 
 
 def fittest(found: Archive, places: np.ndarray) -> np.ndarray:
-    """The rows of the fittest elite at each place that has any; places are (axis, elite)."""
+    """The rows of the fittest elites, one for each occupied place (axis, elite)."""
     order = np.lexsort((-found.fitness, *places))
     new = np.any(np.diff(places[:, order], axis=1) != 0, axis=0)
     return order[np.concatenate([[True], new])]
@@ -108,7 +104,7 @@ def _bins(panel: Any, found: Archive, along: list[Axis], shown: np.ndarray, shad
     mesh = panel.pcolormesh(
         x.edges, y.edges, np.ma.masked_invalid(values), rasterized=False, lw=0, **shades
     )
-    mesh.set_edgecolor("face")  # Viewers of PDF files else show gaps between cells.
+    mesh.set_edgecolor("face")  # Otherwise viewers of PDF files show gaps between cells.
     mesh.set_linewidth(0.1)
     return mesh
 
@@ -116,7 +112,6 @@ def _bins(panel: Any, found: Archive, along: list[Axis], shown: np.ndarray, shad
 def _cells(
     panel: Any, found: Archive, along: list[Axis], shown: np.ndarray, shades: Any
 ) -> Any:
-    """Every cell of a tessellation, those with nobody pale."""
     from matplotlib.collections import PolyCollection
 
     assert found.centroids is not None
@@ -137,7 +132,6 @@ def _cells(
 
 
 def _bars(panel: Any, found: Archive, along: list[Axis], shown: np.ndarray, shades: Any) -> Any:
-    """Over one axis: how fit the best of each bin or cell is."""
     from matplotlib.cm import ScalarMappable
 
     (axis,) = along
@@ -175,7 +169,7 @@ def cells(centroids: np.ndarray) -> list[np.ndarray]:
 
 
 def borders(centroids: np.ndarray) -> np.ndarray:
-    """(cell, 2): from where to where the cell of each centroid on one axis goes."""
+    """The ends (cell, 2) of each centroid's cell on one axis."""
     order = np.argsort(centroids)
     inside = (centroids[order][1:] + centroids[order][:-1]) / 2
     ends = np.concatenate([[0.0], inside, [1.0]])

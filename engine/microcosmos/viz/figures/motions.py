@@ -1,4 +1,4 @@
-"""How elites of an archive move: their creature files, simulated anew."""
+"""Motions of elites, simulated anew from their creature files."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -21,7 +21,7 @@ def documents(data: bytes, cells: Sequence[int]) -> list[dict[str, Any]]:
 def motions(
     data: bytes, cells: Sequence[int], tell: Callable[[int], None] = lambda done: None
 ) -> list[Motion]:
-    """The elites in some cells, each simulated once; `tell` hears how many are done."""
+    """Simulate the elites in some cells; `tell` is called with the number done."""
     found = []
     for file in documents(data, cells):
         replay = read_replay(record(parse(file)))

@@ -1,4 +1,4 @@
-"""An archive file as figures need it, read with NumPy alone."""
+"""Archive files for figures, read with NumPy alone."""
 
 import json
 from dataclasses import dataclass
@@ -18,27 +18,26 @@ NO_ARCHIVE = "an archive is needed, as searches have; got the table of {!r}"
 
 @dataclass(frozen=True, eq=False)
 class Archive:
-    """The elites of a run, and how it came to them."""
+    """The elites of a run, its curves and its lineage."""
 
     spec: Search
     version: str
     devices: tuple[str, ...]
-    """Kinds of device that computed it, the last one last."""
+    """Kinds of device that computed it, in order."""
     measures: dict[str, np.ndarray]
-    """Of each elite, every measure by its name."""
+    """Measures of each elite, by name."""
     cells: np.ndarray
     fitness: np.ndarray
     generation: np.ndarray
     centroids: np.ndarray | None
-    """(cell, axis) from 0 to 1 on the axes' own scales; None where bins make a grid."""
+    """(cell, axis) from 0 to 1 on the axes' own scales; None for a grid."""
     curves: dict[str, np.ndarray]
     lineage: dict[str, np.ndarray]
-    """Columns with an entry for each creature that came into the archive, in order."""
+    """Columns with an entry for each creature that entered the archive, in order."""
     operators: tuple[str, ...]
 
     @property
     def axes(self) -> tuple[Descriptor, ...]:
-        """The archive's descriptors."""
         return self.spec.archive.descriptors
 
     @property
@@ -54,11 +53,10 @@ class Archive:
 
     @cached_property
     def document(self) -> dict[str, Any]:
-        """The whole spec, defaults written out."""
         return self.spec.model_dump(mode="json")
 
     def row(self, cell: int | None) -> int:
-        """The row of a cell's elite, of the fittest for none. `ValueError` if it is empty."""
+        """The row of a cell's elite; None: of the fittest. Raises `ValueError` if empty."""
         if cell is None:
             return self.best
         found = np.flatnonzero(self.cells == cell)
@@ -71,9 +69,9 @@ class Archive:
 
 
 def read(data: bytes) -> Archive:
-    """The archive in a run's file. Raises `ValueError` where there is none, or nobody in it."""
-    tree, told = file.load(data)
-    document = json.loads(told["spec"])
+    """The archive in a run's file. Raises `ValueError` if it has none, or an empty one."""
+    tree, attributes = file.load(data)
+    document = json.loads(attributes["spec"])
     if "archive" not in tree:
         raise ValueError(NO_ARCHIVE.format(document["experiment"]))
     spec = parse(document)
@@ -82,11 +80,11 @@ def read(data: bytes) -> Archive:
     archive = tree["archive"]
     if not len(archive["cell"]):
         raise ValueError("an archive with an elite is needed, got one without")
-    names = json.loads(told["measures"])
+    names = json.loads(attributes["measures"])
     return Archive(
         spec=spec,
-        version=told["version"],
-        devices=tuple(json.loads(told["device"])),
+        version=attributes["version"],
+        devices=tuple(json.loads(attributes["device"])),
         measures=dict(zip(names, archive["measures"].T, strict=True)),
         cells=archive["cell"],
         fitness=archive["fitness"].astype(float),
@@ -94,5 +92,5 @@ def read(data: bytes) -> Archive:
         centroids=archive.get("centroids"),
         curves=tree["curves"],
         lineage=tree["lineage"],
-        operators=tuple(json.loads(told["operators"])),
+        operators=tuple(json.loads(attributes["operators"])),
     )

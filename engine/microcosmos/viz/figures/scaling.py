@@ -50,7 +50,7 @@ def scaling(rows: Sequence[Row], summary: Row | None = None) -> Any:
 
 
 def _line(panel: Any, rows: Sequence[Row], name: str, label: str, style: dict) -> None:
-    """What is known of a column; parts below the clock's resolution have no logarithm."""
+    """Draw the positive values of a column: parts below the clock's resolution have no log."""
     known = [row for row in rows if (row.get(name) or 0) > 0]
     if known:
         nodes = [row["nodes"] for row in known]
@@ -63,7 +63,6 @@ def _power(summary: Row | None, name: str, what: str = "") -> str:
 
 
 def _proportional(panel: Any, rows: Sequence[Row]) -> None:
-    """A line proportional to the nodes through the largest of our runs."""
     if len(rows) < 2:
         return
     first, last = rows[0]["nodes"], rows[-1]["nodes"]

@@ -9,12 +9,12 @@ import numpy as np
 from .axes import Axis, chosen, fitness_label
 from .maps import fittest
 from .reading import Archive
-from .style import GREY, INK, PALE, blank, palette
+from .style import GREY, INK, PALE, blank, colour_bar, shades
 
 
 @dataclass(frozen=True)
 class Region:
-    """A part of the sheet: which elite is shown at (column, row) from the low ends."""
+    """The elite shown at (column, row), counted from the low ends."""
 
     column: int
     row: int
@@ -23,11 +23,11 @@ class Region:
 
 @dataclass(frozen=True)
 class Layout:
-    """The regions of a sheet that have somebody, and what of each axis it shows."""
+    """The occupied regions of a sheet, and its part of each axis."""
 
     axes: tuple[Axis, Axis]
     ends: np.ndarray
-    """(axis, 2): places from 0 to 1 between which the sheet lies."""
+    """Ends (axis, 2) of the sheet, as places from 0 to 1."""
     columns: int
     rows: int
     regions: tuple[Region, ...]
@@ -35,7 +35,7 @@ class Layout:
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """A body over its life."""
+    """The motion of one body."""
 
     positions: np.ndarray
     """(frame, node, 2), unwrapped, in cells."""
@@ -46,9 +46,9 @@ class Motion:
 def layout(
     found: Archive, *, axes: list[str] | None = None, columns: int = 6, rows: int = 4
 ) -> Layout:
-    """Regions of equal size over what of two axes has elites; the fittest stands for each.
+    """Regions of equal size over the occupied part of two axes, each with its fittest elite.
 
-    Raises `ValueError` where there is one axis alone.
+    Raises `ValueError` for a single axis.
     """
     along = chosen(found, axes)
     if len(along) != 2:
@@ -68,14 +68,13 @@ def layout(
 
 
 def _ends(axis: Axis, places: np.ndarray) -> np.ndarray:
-    """Between which places there are elites, rounded outwards to the axis' bins."""
     low = np.floor(places.min() * axis.bins + 1e-9)
     high = np.ceil(places.max() * axis.bins - 1e-9)
     return np.array([low, max(high, low + 1)]) / axis.bins
 
 
 def numerals(count: int) -> list[str]:
-    """i, ii, iii, iv ... as the paper numbers its gaits."""
+    """i, ii, iii, iv ..., the paper's numerals for gaits."""
     digits = (("c", 100), ("xc", 90), ("l", 50), ("xl", 40), ("x", 10), ("ix", 9), ("v", 5),
               ("iv", 4), ("i", 1))  # fmt: skip
     found = []
@@ -88,12 +87,12 @@ def numerals(count: int) -> list[str]:
 
 
 def reading_order(regions: Sequence[Region]) -> list[int]:
-    """The numbers of regions row by row from the top."""
+    """Indices of regions row by row from the top."""
     return sorted(range(len(regions)), key=lambda k: (-regions[k].row, regions[k].column))
 
 
 FILLED = 0.8
-"""The share of a region's side that the largest motion takes up."""
+"""Share of a region's side that the largest motion fills."""
 
 BAR = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 """Lengths of the scale bar, in cells."""
@@ -108,12 +107,9 @@ def sheet(
     colours: str = "viridis",
     width: float = 178.0,
 ) -> Any:
-    """Each region's swimmer at `moments` of its life, all at one scale: pale at the start, at
-    the end in the colour of its fitness, with the way of its middle.
+    """Each region's swimmer at some moments, all at one scale: pale at the start, at the end
+    in the colour of its fitness, with the path of its middle.
     """
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
-
     if not 1 <= moments <= 50:
         raise ValueError(f"`moments` must be from 1 to 50, got {moments}.")
     side = 0.86 * width / plan.columns
@@ -121,19 +117,17 @@ def sheet(
     panel = figure.add_subplot()
     panel.set(xlim=(0, plan.columns), ylim=(0, plan.rows), aspect="equal")
     fitness = found.fitness[[region.elite for region in plan.regions]]
-    low, high = float(fitness.min()), float(fitness.max())
-    shades = ScalarMappable(Normalize(low, high if high > low else low + 1), palette(colours))
+    colouring = shades(fitness, colours)
     scale = FILLED / max(_extent(motion, moments) for motion in motions)
-    digits = max(0, 2 - int(np.floor(np.log10(max(abs(low), abs(high), 1e-9)))))
+    digits = max(0, 2 - int(np.floor(np.log10(max(np.abs(fitness).max(), 1e-9)))))
     names = dict(zip(reading_order(plan.regions), numerals(len(motions)), strict=True))
     for number, (region, motion) in enumerate(zip(plan.regions, motions, strict=True)):
         corner = np.array([region.column, region.row])
-        _body(panel, motion, corner + 0.5, scale, moments, shades.to_rgba(fitness[number]))
+        _body(panel, motion, corner + 0.5, scale, moments, colouring.to_rgba(fitness[number]))
         _named(panel, corner, names[number], f"{fitness[number]:.{digits}f}")
     _dress(panel, plan)
     _bar(panel, plan, scale, side)
-    bar = figure.colorbar(shades, ax=panel, label=fitness_label(found), pad=0.01, aspect=32)
-    bar.outline.set_linewidth(0.5)
+    colour_bar(panel, colouring, fitness_label(found), pad=0.01, aspect=32)
     return figure
 
 
@@ -145,7 +139,6 @@ def _shown(motion: Motion, moments: int) -> np.ndarray:
 
 
 def _extent(motion: Motion, moments: int) -> float:
-    """The longer side of the box around what is shown."""
     return float(np.ptp(_shown(motion, moments).reshape(-1, 2), axis=0).max()) or 1.0
 
 
@@ -171,7 +164,7 @@ def _body(
 
 
 def _strokes(last: bool, colour: Any, pale: Any) -> list[dict[str, Any]]:
-    """The end stands on a dark border, so that light colours are seen on paper."""
+    """The last moment has a dark border, so that light colours show on paper."""
     if not last:
         return [{"colors": [pale], "linewidths": 0.7, "zorder": 2}]
     border = {"colors": [INK], "linewidths": 1.9, "zorder": 3}
@@ -185,7 +178,6 @@ def _named(panel: Any, corner: np.ndarray, name: str, fitness: str) -> None:
 
 
 def _dress(panel: Any, plan: Layout) -> None:
-    """Regions as a faint grid, and ticks at round values of the axes."""
     for at in range(1, plan.columns):
         panel.axvline(at, color=PALE, lw=0.4, zorder=1)
     for at in range(1, plan.rows):
@@ -212,7 +204,6 @@ def _ticks(axis: Axis, ends: np.ndarray) -> tuple[np.ndarray, list[str]]:
 
 
 def _bar(panel: Any, plan: Layout, scale: float, side: float) -> None:
-    """A bar of a round number of cells above the sheet."""
     length = max((cells for cells in BAR if cells * scale <= 0.6), default=BAR[0])
     y, end = plan.rows + 2.2 / side, plan.columns
     start = end - length * scale

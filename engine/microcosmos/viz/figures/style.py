@@ -5,6 +5,8 @@ from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from typing import Any
 
+import numpy as np
+
 from ...optional import require
 
 INCH = 25.4
@@ -77,6 +79,21 @@ def palette(name: str) -> Any:
         raise ValueError(f"`palette` must be one of {', '.join(SAMPLES)}, got {name!r}.")
     colours = ["#" + colour for colour in re.findall("......", SAMPLES[name])]
     return require("matplotlib.colors").LinearSegmentedColormap.from_list(name, colours)
+
+
+def shades(values: np.ndarray, colours: str) -> Any:
+    """The colours of values from their least to their greatest."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    low, high = float(values.min()), float(values.max())
+    scale = Normalize(low, high if high > low else low + 1)
+    return ScalarMappable(scale, palette(colours))
+
+
+def colour_bar(panel: Any, drawn: Any, label: str, *, pad: float, aspect: int) -> None:
+    bar = panel.figure.colorbar(drawn, ax=panel, label=label, pad=pad, aspect=aspect)
+    bar.outline.set_linewidth(0.5)
 
 
 def millimetres(width: str) -> float:

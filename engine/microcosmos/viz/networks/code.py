@@ -17,7 +17,7 @@ from .network import Network
 
 TOLERANCE = 1e-12
 PROVED_STEPS = 4
-"""Steps of a recurrent network in the check: more of them compute the same, longer."""
+"""Steps of a recurrent network in the check; more prove no more."""
 
 
 def messages(*values):
@@ -32,7 +32,7 @@ def kept(old, new, *sources):
 def numpy_code(network: Network) -> str:
     """The text of a module with a function `network(inputs)`, (input, …) to (output, …).
 
-    Checked over a few steps: on random inputs it gives what the network gives, or `ValueError`.
+    Raises `ValueError` if it differs from the network on random inputs over a few steps.
     """
     few = replace(network, steps=network.steps and min(network.steps, PROVED_STEPS))
     require_same(few, _module(few))
@@ -46,13 +46,13 @@ def _module(network: Network) -> str:
 
 
 def require_same(network: Network, text: str) -> None:
-    """Carry the code out on random inputs; `ValueError` where a value differs by 1e-12."""
+    """Run the code on random inputs; raise `ValueError` if a value differs by 1e-12."""
     space: dict[str, Callable] = {}
     exec(compile(text, "<network>", "exec"), space)
     inputs = probes(network.inputs)
     with np.errstate(all="ignore"):
-        came = space["network"](inputs)
-    if not agree(evaluate(network, inputs), came, TOLERANCE):
+        found = space["network"](inputs)
+    if not agree(evaluate(network, inputs), found, TOLERANCE):
         raise ValueError(
             f"standalone code must compute the same within {TOLERANCE:g}, got other values: "
             "the network's own overflow"
@@ -67,7 +67,6 @@ def _sources() -> dict[str, str]:
 
 
 def _head(network: Network, body: str) -> str:
-    """What the module is, and the functions that it uses."""
     sources = _sources()
     used = [name for name in sources if re.search(rf"\b{name}\(", body)]
     if "mean" in used and "total" not in used:
@@ -117,14 +116,13 @@ def _feed_forward(network: Network) -> list[str]:
 
 
 def _recurrent(network: Network) -> list[str]:
-    """Every node from the values before, `steps` times over."""
     keys = [key for key in network.keys if key >= network.inputs]
     start = "np.nan" if network.rule == "live" else "0.0"
     lines = [f"    n{key} = np.full_like(x0, {start})" for key in keys]
     lines.append(f"    for _ in range({network.steps}):")
     for key in keys:
         new = _node(network, key, set(network.keys))
-        sources = [_variable(network, source) for source, _ in _incoming(network, key)]
+        sources = [_variable(network, link.source) for link in network.incoming[key]]
         if network.rule == "live":
             new = f"kept(n{key}, {new}, {', '.join(sources)})" if sources else f"n{key}"
         lines += _wrapped(f"m{key} = {new}", 8)
@@ -133,13 +131,13 @@ def _recurrent(network: Network) -> list[str]:
 
 def _node(network: Network, key: int, live: set[int]) -> str:
     """The expression of a node's value, adding in the order in which `evaluate` does."""
-    row = network.keys.index(key)
+    node = network.node[key]
     terms = [
-        f"{weight!r} * {_variable(network, source)}"
-        for source, weight in _incoming(network, key)
-        if source in live
+        f"{link.weight!r} * {_variable(network, link.source)}"
+        for link in network.incoming[key]
+        if link.source in live
     ]
-    name = AGGREGATIONS[network.aggregation[row]].__name__
+    name = AGGREGATIONS[node.aggregation].__name__
     plain = network.steps is None or network.rule == "always"
     if not terms:
         gathered = "np.zeros_like(x0)"
@@ -147,12 +145,11 @@ def _node(network: Network, key: int, live: set[int]) -> str:
         gathered = " + ".join(terms)
     else:
         gathered = f"{name}(*messages({', '.join(terms)}))"
-    bias, response = network.bias[row], network.response[row]
-    if response != 1:
-        gathered = f"{response!r} * ({gathered})"
-    if bias:
-        gathered = f"{bias!r} + ({gathered})"
-    return _activated(network, network.activation[row], gathered)
+    if node.response != 1:
+        gathered = f"{node.response!r} * ({gathered})"
+    if node.bias:
+        gathered = f"{node.bias!r} + ({gathered})"
+    return _activated(network, node.activation, gathered)
 
 
 def _activated(network: Network, activation: str, z: str) -> str:
@@ -162,27 +159,17 @@ def _activated(network: Network, activation: str, z: str) -> str:
     return value
 
 
-def _incoming(network: Network, key: int) -> list[tuple[int, float]]:
-    row = {key: place for place, key in enumerate(network.keys)}
-    links = zip(network.source, network.target, network.weight, strict=True)
-    return sorted(
-        ((source, weight) for source, target, weight in links if target == key),
-        key=lambda link: row[link[0]],
-    )
-
-
 def _variable(network: Network, key: int) -> str:
     return f"x{key}" if key < network.inputs else f"n{key}"
 
 
 def _listed(network: Network, keys) -> str:
-    """Names for people; nothing in them can end the text that they stand in."""
+    """Names for a docstring, without characters that could end it."""
     names = network.names
     return ", ".join(re.sub(r"[^\w .()-]", "", names[key]) or str(key) for key in keys)
 
 
 def _wrapped(line: str, indent: int = 4) -> list[str]:
-    """A statement in lines of at most 96 columns, broken inside of its brackets."""
     name, equals, value = line.partition(" = ")
     if len(line) + indent > 96 and equals:
         line = f"{name}\u00a0=\u00a0({value})"  # No break beside the sign.

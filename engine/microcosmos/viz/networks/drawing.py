@@ -1,11 +1,77 @@
-"""Networks as SVG pictures that can be read in light and in dark."""
+"""Networks as SVG pictures for light and dark schemes, and in Graphviz' language."""
 
+import json
 from html import escape
 from itertools import pairwise
 
-from .colours import NEGATIVE, POSITIVE, described, fill, label, thickness, value_text
 from .layout import Layout, layout
 from .network import Network
+
+ACTIVATION = {
+    "identity": "#dfe3e8",
+    "sigmoid": "#b9d7f5",
+    "tanh": "#9fe0da",
+    "relu": "#f9d59b",
+    "sin": "#d5c4f4",
+    "cos": "#f3c3e4",
+    "gaussian": "#c8e6a8",
+    "abs": "#f6bfb4",
+    "square": "#f2e59a",
+}
+"""Light colours, on which dark letters are readable in either scheme."""
+
+OTHER, INPUT = "#cfd8dc", "#ffffff"
+POSITIVE, NEGATIVE = "#3a86c8", "#d9643a"
+
+
+def fill(network: Network, key: int) -> str:
+    if key < network.inputs:
+        return INPUT
+    return ACTIVATION.get(activation(network, key), OTHER)
+
+
+def activation(network: Network, key: int) -> str:
+    """The activation of a node; an output also has the transform."""
+    name = network.node[key].activation
+    transform = network.output_transform
+    return transform if key in network.outputs and transform and name == "identity" else name
+
+
+def label(network: Network, key: int) -> str:
+    if key < network.inputs:
+        return network.names[key]
+    name = activation(network, key)
+    aggregation = network.node[key].aggregation
+    return name if aggregation == "sum" else f"{aggregation} {name}"
+
+
+def value_text(network: Network, key: int) -> str:
+    """The description of a node, for a tooltip."""
+    if key < network.inputs:
+        return network.names[key]
+    name = network.names.get(key, f"node {key}")
+    return f"{name}: {label(network, key)}, bias {network.node[key].bias:.4g}"
+
+
+def thickness(network: Network, weight: float, least: float, most: float) -> float:
+    """The width of a connection, in proportion to its weight."""
+    largest = max(abs(link.weight) for link in network.links)
+    return least + (most - least) * (abs(weight) / largest if largest else 0.0)
+
+
+def described(network: Network) -> str:
+    """The network in one sentence."""
+    kind = f"recurrent network ({network.steps} steps)" if network.steps else "network"
+    inputs, outputs = _count(network.inputs, "input"), _count(len(network.outputs), "output")
+    hidden = _count(len(network.hidden), "hidden node")
+    return f"A {kind} with {inputs}, {outputs}, {hidden} and " + _count(
+        len(network.links), "connection"
+    )
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}" + ("" if number == 1 else "s")
+
 
 LETTER = 7.2
 """Width of a letter, about."""
@@ -53,7 +119,6 @@ def svg(network: Network) -> str:
 
 
 def _frame(network: Network, drawn: Layout) -> tuple[float, float, float, float]:
-    """Left, top, width and height of everything, names and legend included."""
     points = [point for way in drawn.ways.values() for point in way]
     points += drawn.place.values()
     loops = any(len(way) > 1 and way[-1][0] <= way[0][0] for way in drawn.ways.values())
@@ -71,12 +136,9 @@ def _width(network: Network, key: int) -> float:
 
 
 def _links(network: Network, drawn: Layout) -> list[str]:
-    """The thin ones last, so that no thick one hides them."""
-    links = zip(network.pairs, network.weight, strict=True)
-    return [
-        _link(network, pair, weight, drawn)
-        for pair, weight in sorted(links, key=lambda link: -abs(link[1]))
-    ]
+    """Thin links come last, so that no thick one hides them."""
+    links = sorted(network.links, key=lambda link: -abs(link.weight))
+    return [_link(network, (x.source, x.target), x.weight, drawn) for x in links]
 
 
 def _link(network: Network, pair: tuple[int, int], weight: float, drawn: Layout) -> str:
@@ -90,7 +152,6 @@ def _link(network: Network, pair: tuple[int, int], weight: float, drawn: Layout)
 
 
 def _path(network: Network, pair: tuple[int, int], drawn: Layout) -> str:
-    """A smooth way from a node's right side to another's left, level at every column."""
     way = list(drawn.ways[pair])
     source, target = pair
     way[0] = (way[0][0] + _width(network, source) / 2, way[0][1])
@@ -122,10 +183,40 @@ def _node(network: Network, key: int, drawn: Layout) -> str:
 
 
 def _legend(x: float, y: float) -> list[str]:
-    """What colours and widths of connections mean."""
     entries = (("positive", 0.0, "positive weight"), ("negative", 135.0, "negative weight"))
     return [
         f'<path class="link {sign}" d="M{x + at:.1f} {y:.1f} h22" stroke-width="3"/>'
         f'<text class="legend" x="{x + at + 29:.1f}" y="{y + 4:.1f}">{words}</text>'
         for sign, at, words in entries
     ]
+
+
+def dot(network: Network) -> str:
+    """A directed graph from left to right, the inputs in one rank and the outputs in one."""
+    lines = [
+        "digraph network {",
+        f"  label={_quoted(described(network))};",
+        "  rankdir=LR; bgcolor=transparent;",
+        '  node [shape=box, style="rounded,filled", fontname="sans-serif"];',
+    ]
+    for key in network.keys:
+        words = label(network, key)
+        if key in network.outputs:
+            words = f"{network.names[key]}\n{words}"
+        lines.append(
+            f"  {key} [label={_quoted(words)}, fillcolor={_quoted(fill(network, key))}];"
+        )
+    for rank, keys in (("min", range(network.inputs)), ("max", network.outputs)):
+        lines.append(f"  {{rank={rank}; {' '.join(f'{key};' for key in keys)}}}")
+    for link in network.links:
+        lines.append(
+            f"  {link.source} -> {link.target} "
+            f"[penwidth={thickness(network, link.weight, 0.5, 4.0):.2f}, "
+            f"color={_quoted(POSITIVE if link.weight >= 0 else NEGATIVE)}, "
+            f"tooltip={_quoted(f'{link.weight:.4g}')}];"
+        )
+    return "\n".join([*lines, "}", ""])
+
+
+def _quoted(words: str) -> str:
+    return json.dumps(words, ensure_ascii=False)

@@ -1,27 +1,13 @@
 """The values of a network in double precision, and whether two networks agree."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-
 import numpy as np
 
 from .functions import ACTIVATIONS, AGGREGATIONS
 from .graph import order
-from .network import Network
+from .network import Network, Node
 
 TOLERANCE = 1e-6
-"""Of max(1, |value|): within this, two networks compute the same."""
-
-
-@dataclass(frozen=True)
-class _Node:
-    key: int
-    sources: tuple[int, ...]
-    weights: np.ndarray
-    bias: float
-    response: float
-    aggregate: Callable
-    activate: Callable
+"""Largest difference of equal networks, relative to max(1, |value|)."""
 
 
 def evaluate(network: Network, inputs: np.ndarray) -> np.ndarray:
@@ -32,7 +18,8 @@ def evaluate(network: Network, inputs: np.ndarray) -> np.ndarray:
     start = np.nan if network.rule == "live" else 0.0
     values = {key: np.full(inputs.shape[1], start) for key in network.keys}
     values.update(enumerate(inputs))
-    nodes = _nodes(network)
+    keys = network.keys if network.steps else order(network.keys, network.pairs)
+    nodes = [network.node[key] for key in keys if key >= network.inputs]
     with np.errstate(all="ignore"):
         if network.steps is None:
             for node in nodes:
@@ -77,48 +64,20 @@ def _beyond(one: Network, other: Network) -> str:
     return f" (only one of the two keeps values within ±{min(one.bound, other.bound):g})"
 
 
-def _nodes(network: Network) -> list[_Node]:
-    """What is computed, in the order in which it is; sources by their rows."""
-    row = {key: place for place, key in enumerate(network.keys)}
-    incoming: dict[int, list[tuple[int, float]]] = {key: [] for key in network.keys}
-    for (source, target), weight in zip(network.pairs, network.weight, strict=True):
-        incoming[target].append((source, weight))
-    keys = network.keys
-    if network.steps is None:
-        keys = order(network.keys, network.pairs)
-    nodes = []
-    for key in keys:
-        if key < network.inputs:
-            continue
-        place = row[key]
-        arriving = sorted(incoming[key], key=lambda pair: row[pair[0]])
-        nodes.append(
-            _Node(
-                key,
-                tuple(source for source, _ in arriving),
-                np.array([weight for _, weight in arriving])[:, None],
-                network.bias[place],
-                network.response[place],
-                AGGREGATIONS[network.aggregation[place]],
-                ACTIVATIONS[network.activation[place]],
-            )
-        )
-    return nodes
-
-
-def _value(network: Network, node: _Node, values: dict[int, np.ndarray]) -> np.ndarray:
-    """A node's new value at every point; where no message is live, the one it had."""
-    old = values[node.key]
-    if not node.sources:
+def _value(network: Network, node: Node, values: dict[int, np.ndarray]) -> np.ndarray:
+    """A node's new value at every point, the old one if no message is live."""
+    old, links = values[node.key], network.incoming[node.key]
+    if not links:
         return _emitted(network, node, np.zeros_like(old)) if network.rule == "always" else old
-    sources = np.stack([values[source] for source in node.sources])
+    sources = np.stack([values[link.source] for link in links])
+    weights = np.array([link.weight for link in links])[:, None]
     live = np.ones(sources.shape, bool)
     if network.rule == "live":
         live = ~np.isnan(sources)
-    new = _emitted(network, node, node.aggregate(node.weights * sources, live))
+    new = _emitted(network, node, AGGREGATIONS[node.aggregation](weights * sources, live))
     return np.where(live.any(0), new, old)
 
 
-def _emitted(network: Network, node: _Node, gathered: np.ndarray) -> np.ndarray:
+def _emitted(network: Network, node: Node, gathered: np.ndarray) -> np.ndarray:
     z = node.bias + node.response * gathered
-    return np.clip(node.activate(z), -network.bound, network.bound)
+    return np.clip(ACTIVATIONS[node.activation](z), -network.bound, network.bound)

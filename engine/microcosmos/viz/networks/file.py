@@ -16,7 +16,7 @@ from .writing import Genome
 
 MEMBERS = ("nodes.npy", "conns.npy", "fitness.npy", "meta.npy")
 LARGEST = 64 * 2**20
-"""Bytes of an array in a file, so that a small file cannot ask for all memory."""
+"""Most bytes of an array, so that a small file cannot ask for all memory."""
 
 
 def dump_tensorneat(genome: Genome, fitness: float = float("nan")) -> bytes:
@@ -35,10 +35,9 @@ def dump_tensorneat(genome: Genome, fitness: float = float("nan")) -> bytes:
 def load_tensorneat(
     data: bytes, meta: Mapping[str, Any] | None = None
 ) -> tuple[Network, float]:
-    """The network in a file, and its fitness or NaN.
+    """The network in a file, and its fitness or NaN. Raises `ValueError` for other files.
 
-    A file that TensorNEAT itself wrote holds no names: give them as `meta`. Raises
-    `ValueError` for whatever is not such a file.
+    A file that TensorNEAT itself wrote holds no names: give them as `meta`.
     """
     arrays = _arrays(data)
     names = _meta(arrays) if meta is None else meta
@@ -84,7 +83,7 @@ def _arrays(data: bytes) -> dict[str, np.ndarray]:
 
 
 def _array(name: str, file: ZipFile) -> np.ndarray:
-    """One array; its header is held against the bytes before there is memory for it."""
+    """One array; its header must fit the bytes before memory is allocated."""
     with file.open(name) as member:
         data = member.read(LARGEST + 1)
     if len(data) > LARGEST:

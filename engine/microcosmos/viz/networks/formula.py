@@ -1,4 +1,4 @@
-"""A network as lines that a person can read: one for each node."""
+"""A network as readable lines, one for each node."""
 
 from .graph import order
 from .network import Network
@@ -20,24 +20,20 @@ def formula(network: Network) -> str:
 
 
 def _value(network: Network, key: int, names: dict[int, str]) -> str:
-    row = network.keys.index(key)
-    links = zip(network.source, network.target, network.weight, strict=True)
-    terms = [(weight, names[source]) for source, target, weight in links if target == key]
-    bias, response = network.bias[row], network.response[row]
+    node = network.node[key]
+    terms = [(link.weight, names[link.source]) for link in network.links if link.target == key]
     if not terms and network.rule == "live":
         return "no value"
-    if network.aggregation[row] != "sum" and len(terms) > 1:
+    if node.aggregation != "sum" and len(terms) > 1:
         listed = ", ".join(_term(weight, name) for weight, name in terms)
-        terms = [(response, f"{network.aggregation[row]}({listed})")]
+        terms = [(node.response, f"{node.aggregation}({listed})")]
     else:
-        terms = [(response * weight, name) for weight, name in terms]
-    z = _sum(bias, terms)
-    activation = network.activation[row]
-    return z if activation == "identity" else f"{activation}({z})"
+        terms = [(node.response * weight, name) for weight, name in terms]
+    z = _sum(node.bias, terms)
+    return z if node.activation == "identity" else f"{node.activation}({z})"
 
 
 def _sum(bias: float, terms: list[tuple[float, str]]) -> str:
-    """Terms joined by their signs."""
     parts = [(bias, _number(bias))] if bias or not terms else []
     parts += [(weight, _term(abs(weight), name)) for weight, name in terms]
     first = parts[0]

@@ -1,7 +1,7 @@
-"""What nodes of networks compute: activations and aggregations by name, on NumPy arrays.
+"""Activations and aggregations of networks by name, on NumPy arrays.
 
-The names that TensorNEAT has built in are its own; the formulas are in `docs/networks.md`.
-`code` writes the source of these functions into standalone modules, so each needs NumPy only.
+Names are TensorNEAT's; the formulas are in `docs/networks.md`. `code` writes the source of
+these functions into standalone modules, so each needs NumPy only.
 """
 
 from functools import reduce
@@ -88,10 +88,10 @@ ACTIVATIONS = {
 }
 
 TO_REGISTER = ("cos", "gaussian", "square")
-"""Those which TensorNEAT lacks: its users give it these by name."""
+"""Activations that TensorNEAT lacks; its users register them by name."""
 
 WITHIN_ONE = ("sigmoid", "tanh", "sin", "cos", "gaussian")
-"""Those whose values need no bound."""
+"""Activations whose values need no bound."""
 
 
 # Aggregations take messages and whether each is live, both (message, point).

@@ -1,6 +1,5 @@
 """Networks from the genes of a creature, and genes of those networks that ours can express."""
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import isinf
@@ -11,17 +10,16 @@ import numpy as np
 from ...naming import ACTIVATIONS, decode, encode
 from .evaluation import require_agreement
 from .graph import depths, order, reached
-from .network import Network
-from .rewiring import delegated, outputs_first
+from .network import Link, Network, Node, delegated, outputs_first
 
 BOUND = 1e6
-"""Our engine keeps values within this; see `genomes.cppn`."""
+"""Largest value of a node in our engine; see `genomes.cppn`."""
 
 
 def of_creature(identity: Mapping[str, Any]) -> Network:
-    """The network in a creature's identity; raises `ValueError` where its genes are none.
+    """The network in a creature's identity. Raises `ValueError` if its genes are none.
 
-    A recurrent one is computed as often as the simulation has steps, its inputs held.
+    A recurrent one runs for the steps of the simulation with constant inputs.
     """
     genome = identity["genome"]
     if "nodes" not in genome:
@@ -37,29 +35,21 @@ def from_genes(
     outputs: Sequence[str],
     steps: int | None = None,
 ) -> Network:
-    """The network of a creature's genes, whose disabled connections are left out.
+    """The network of a creature's genes without disabled connections.
 
     Feed-forward, or recurrent over so many `steps` from values of 0.
     """
     nodes, connections = genes["nodes"], genes["connections"]
-    on = np.flatnonzero(connections["enabled"]).tolist()
-    ids = tuple(nodes["id"])
-
-    def enabled(values: Sequence) -> tuple:
-        return tuple(values[place] for place in on)
-
+    biases, weights = decode(nodes["bias"]).tolist(), decode(connections["weight"]).tolist()
+    names = zip(nodes["id"], biases, nodes["activation"], strict=True)
+    columns = (connections[name] for name in ("source", "target", "innovation", "enabled"))
+    rows = zip(weights, *columns, strict=True)
+    first = len(inputs)
     return Network(
-        inputs=len(inputs),
-        outputs=ids[len(inputs) : len(inputs) + len(outputs)],
-        keys=ids,
-        bias=tuple(decode(nodes["bias"]).tolist()),
-        response=(1.0,) * len(ids),
-        aggregation=("sum",) * len(ids),
-        activation=tuple(nodes["activation"]),
-        source=enabled(connections["source"]),
-        target=enabled(connections["target"]),
-        weight=enabled(decode(connections["weight"]).tolist()),
-        marker=enabled(connections["innovation"]),
+        inputs=first,
+        outputs=tuple(nodes["id"][first : first + len(outputs)]),
+        nodes=tuple(Node(key, bias, activation=name) for key, bias, name in names),
+        links=tuple(Link(a, b, weight, number) for weight, a, b, number, on in rows if on),
         rule="always",
         steps=steps,
         bound=BOUND,
@@ -69,12 +59,11 @@ def from_genes(
 
 
 def to_genes(network: Network, *, check: bool = True) -> dict[str, Any]:
-    """The genes of a network, checked: they compute the same for random inputs.
+    """The genes of a network; `check` proves on random inputs that they compute the same.
 
-    Nodes that never have a value are left out, responses and means become weights; without
+    Nodes that never have a value are left out, responses and means become weights. Without
     historical markers, innovation numbers follow source and target. Raises `ValueError` with
-    the reason where our genes cannot express the network. `check` evaluates both, which a
-    population that is converted in every generation need not do again.
+    the reason if our genes cannot express the network.
     """
     ours = outputs_first(_transformed(_summing(_live_part(_unrolled(network)))))
     genes = _genes(ours)
@@ -96,7 +85,7 @@ def _unrolled(network: Network) -> Network:
 
 
 def _live_part(network: Network) -> Network:
-    """Without the nodes that no way leads to from an input, whose messages never count."""
+    """The network without the nodes that no input reaches; their messages never count."""
     if network.rule == "always":
         return network
     live = reached(range(network.inputs), network.pairs)
@@ -105,45 +94,30 @@ def _live_part(network: Network) -> Network:
             f"`outputs` must be reached from an input, got {dead}: never live, they are NaN, "
             "where ours would compute a value"
         )
-    rows = [row for row, key in enumerate(network.keys) if key in live]
-    links = [row for row, key in enumerate(network.source) if key in live]
-
-    def kept(values: tuple, places: list[int]) -> tuple:
-        return tuple(values[place] for place in places)
-
     return replace(
         network,
-        keys=kept(network.keys, rows),
-        bias=kept(network.bias, rows),
-        response=kept(network.response, rows),
-        aggregation=kept(network.aggregation, rows),
-        activation=kept(network.activation, rows),
-        source=kept(network.source, links),
-        target=kept(network.target, links),
-        weight=kept(network.weight, links),
-        marker=None if network.marker is None else kept(network.marker, links),
+        nodes=tuple(node for node in network.nodes if node.key in live),
+        links=tuple(link for link in network.links if link.source in live),
     )
 
 
 def _summing(network: Network) -> Network:
     """Responses and means as weights; any aggregation of one message is that message."""
-    count = Counter(network.target)
     factor = {}
-    for key, name, response in zip(
-        network.keys, network.aggregation, network.response, strict=True
-    ):
-        if name not in ("sum", "mean") and count[key] > 1:
+    for node in network.nodes:
+        count, name = len(network.incoming[node.key]), node.aggregation
+        if name not in ("sum", "mean") and count > 1:
             raise ValueError(
                 f"`aggregation` must be sum, mean, or of one message, got {name} of "
-                f"{count[key]} at node {key}"
+                f"{count} at node {node.key}"
             )
-        factor[key] = response / count[key] if name == "mean" and count[key] else response
-    weights = zip(network.target, network.weight, strict=True)
+        factor[node.key] = node.response / count if name == "mean" and count else node.response
     return replace(
         network,
-        aggregation=("sum",) * len(network.keys),
-        response=(1.0,) * len(network.keys),
-        weight=tuple(factor[target] * weight for target, weight in weights),
+        nodes=tuple(replace(node, aggregation="sum", response=1.0) for node in network.nodes),
+        links=tuple(
+            replace(link, weight=factor[link.target] * link.weight) for link in network.links
+        ),
     )
 
 
@@ -152,43 +126,39 @@ def _transformed(network: Network) -> Network:
     transform = network.output_transform
     if transform is not None:
         for output in network.outputs:
-            linear = network.activation[network.keys.index(output)] == "identity"
-            if output in network.source or not linear:
+            read = any(link.source == output for link in network.links)
+            if read or network.node[output].activation != "identity":
                 network = delegated(network, output, transform)
         network = replace(
             network,
             output_transform=None,
-            activation=tuple(
-                transform if key in network.outputs else name
-                for key, name in zip(network.keys, network.activation, strict=True)
+            nodes=tuple(
+                replace(node, activation=transform) if node.key in network.outputs else node
+                for node in network.nodes
             ),
         )
-    if wrong := sorted(set(network.activation) - set(ACTIVATIONS)):
+    if wrong := sorted({node.activation for node in network.nodes} - set(ACTIVATIONS)):
         raise ValueError(f"`activation` must be among {', '.join(ACTIVATIONS)}, got {wrong}")
     return network
 
 
 def _genes(network: Network) -> dict[str, Any]:
-    links = range(len(network.source))
-    if network.marker is None:
-        places = sorted(links, key=lambda place: network.pairs[place])
-        innovation = list(links)
-    else:
-        marker = network.marker
-        places = sorted(links, key=lambda place: marker[place])
-        innovation = [marker[place] for place in places]
+    def place(link: Link) -> tuple[int, ...]:
+        return (link.marker or 0,) if network.marked else (link.source, link.target)
+
+    links = sorted(network.links, key=place)
     return {
         "nodes": {
             "id": list(network.keys),
-            "activation": list(network.activation),
-            "bias": _encoded("bias", network.bias),
+            "activation": [node.activation for node in network.nodes],
+            "bias": _encoded("bias", [node.bias for node in network.nodes]),
         },
         "connections": {
-            "innovation": innovation,
-            "source": [network.source[place] for place in places],
-            "target": [network.target[place] for place in places],
-            "enabled": [True for _ in places],
-            "weight": _encoded("weight", [network.weight[place] for place in places]),
+            "innovation": [x.marker if network.marked else i for i, x in enumerate(links)],
+            "source": [link.source for link in links],
+            "target": [link.target for link in links],
+            "enabled": [True for _ in links],
+            "weight": _encoded("weight", [link.weight for link in links]),
         },
     }
 

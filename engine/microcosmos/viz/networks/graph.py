@@ -1,4 +1,4 @@
-"""Nodes and the ways between them: order, depth, and what can be reached."""
+"""Graphs: order, depth, reachable nodes."""
 
 from collections.abc import Collection, Iterable, Sequence
 from heapq import heapify, heappop, heappush
@@ -10,7 +10,7 @@ Pairs = Sequence[tuple[int, int]]
 def order(keys: Sequence[int], pairs: Pairs) -> list[int]:
     """Keys with every source before its targets, otherwise as they stand (Kahn's algorithm).
 
-    Raises `ValueError` where there is a cycle.
+    Raises `ValueError` if there is a cycle.
     """
     ordered = partial_order(keys, pairs)
     if len(ordered) < len(keys):
@@ -23,7 +23,7 @@ def order(keys: Sequence[int], pairs: Pairs) -> list[int]:
 
 
 def partial_order(keys: Sequence[int], pairs: Pairs) -> list[int]:
-    """The same without the nodes that lie on a cycle or behind one."""
+    """The order without the nodes on a cycle or behind one."""
     row = {key: place for place, key in enumerate(keys)}
     waiting = dict.fromkeys(keys, 0)
     targets: dict[int, list[int]] = {key: [] for key in keys}
@@ -44,7 +44,7 @@ def partial_order(keys: Sequence[int], pairs: Pairs) -> list[int]:
 
 
 def reached(starts: Iterable[int], pairs: Pairs) -> set[int]:
-    """The starts, and every key that a way leads to from one of them."""
+    """The starts and every key that a path leads to from them."""
     targets: dict[int, list[int]] = {}
     for source, target in pairs:
         targets.setdefault(source, []).append(target)
@@ -59,7 +59,7 @@ def reached(starts: Iterable[int], pairs: Pairs) -> set[int]:
 
 
 def depths(keys: Sequence[int], pairs: Pairs) -> dict[int, int]:
-    """The longest way to each key, along the connections that close no cycle."""
+    """The longest path to each key along the connections that close no cycle."""
     back = closing(keys, pairs)
     forward = [pair for pair in pairs if pair not in back]
     depth = dict.fromkeys(keys, 0)
@@ -72,7 +72,7 @@ def depths(keys: Sequence[int], pairs: Pairs) -> dict[int, int]:
 
 
 def closing(keys: Sequence[int], pairs: Pairs) -> Collection[tuple[int, int]]:
-    """Connections back to a node on the way: those which a search in depth finds open."""
+    """Connections that close a cycle: back edges of a depth-first search."""
     targets: dict[int, list[int]] = {key: [] for key in keys}
     for source, target in pairs:
         targets[source].append(target)

@@ -1,4 +1,4 @@
-"""Where the nodes of a drawn network stand: columns by depth, few crossings.
+"""Layout of drawn networks: columns by depth, few crossings.
 
 Columns, places held for long connections and ordering by means of neighbours follow
 Sugiyama, Tagawa and Toda, IEEE Trans. Syst. Man Cybern. 11, 109 (1981).
@@ -14,7 +14,7 @@ Item = int | tuple[int, int, int]
 """A node's key, or the place in a column that a long connection passes through."""
 
 COLUMN, ROW, PASSAGE = 150.0, 46.0, 20.0
-"""Distances of columns, and what nodes and passing connections take in a column."""
+"""Distance of columns, and heights of a node and of a passing connection."""
 
 SWEEPS = 12
 
@@ -51,7 +51,7 @@ def layout(network: Network) -> Layout:
 
 
 def _columns(network: Network) -> dict[int, int]:
-    fed = {*range(network.inputs), *network.target}
+    fed = {*range(network.inputs), *(link.target for link in network.links)}
     bare = [(0, key) for key in network.keys if key not in fed]  # As if an input led there.
     column = depths(network.keys, [*network.pairs, *bare])
     last = max([1, *(column[key] + 1 for key in network.hidden)])
@@ -59,7 +59,6 @@ def _columns(network: Network) -> dict[int, int]:
 
 
 def _chain(pair: tuple[int, int], column: dict[int, int]) -> list[Item]:
-    """A connection's ends, and the places between them in the columns that it crosses."""
     source, target = pair
     between = range(column[source] + 1, column[target])
     return [source, *((source, target, level) for level in between), target]
@@ -79,9 +78,9 @@ def _neighbours(chains: dict[tuple[int, int], list[Item]]) -> dict[Item, list[It
 
 
 def _ordered(columns: list[list[Item]], near: dict[Item, list[Item]]) -> dict[Item, float]:
-    """Heights, found by drawing every item towards its neighbours again and again.
+    """Heights, found by repeatedly moving every item towards its neighbours.
 
-    Inputs and outputs keep their order; the others change places with their wishes.
+    Inputs and outputs keep their order; the others are sorted by their targets.
     """
     height: dict[Item, float] = {}
     for items in columns:
@@ -90,10 +89,10 @@ def _ordered(columns: list[list[Item]], near: dict[Item, list[Item]]) -> dict[It
         forward = sweep % 2 == 0
         for number in range(len(columns)) if forward else reversed(range(len(columns))):
             items = columns[number]
-            wish = {item: _mean(height, near.get(item, [item])) for item in items}
+            target = {item: _mean(height, near.get(item, [item])) for item in items}
             if 0 < number < len(columns) - 1:
-                items.sort(key=lambda item, wish=wish: wish[item])
-            height |= _apart(items, [wish[item] for item in items])
+                items.sort(key=lambda item, target=target: target[item])
+            height |= _apart(items, [target[item] for item in items])
     return height
 
 
@@ -101,8 +100,8 @@ def _mean(height: dict[Item, float], items: list[Item]) -> float:
     return sum(height[item] for item in items) / len(items)
 
 
-def _apart(items: list[Item], wishes: list[float]) -> dict[Item, float]:
-    """Heights in this order and far enough apart, nearest to the wishes in least squares.
+def _apart(items: list[Item], targets: list[float]) -> dict[Item, float]:
+    """Heights in this order and far enough apart, closest to the targets in least squares.
 
     The offsets taken away, this is isotonic regression by pooling neighbours.
     """
@@ -112,8 +111,8 @@ def _apart(items: list[Item], wishes: list[float]) -> dict[Item, float]:
             offset += (_size(item) + _size(items[place - 1])) / 2
         offsets.append(offset)
     pools: list[tuple[float, int]] = []
-    for wish, offset in zip(wishes, offsets, strict=True):
-        total, count = wish - offset, 1
+    for target, offset in zip(targets, offsets, strict=True):
+        total, count = target - offset, 1
         while pools and pools[-1][0] / pools[-1][1] >= total / count:
             total, count = total + pools[-1][0], count + pools[-1][1]
             pools.pop()

@@ -1,6 +1,8 @@
-"""A network as data, in whichever of two conventions it is meant."""
+"""Networks as data, in either of two conventions, and changes of their nodes."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
 from math import inf, isfinite
 from typing import Literal
 
@@ -12,33 +14,46 @@ LARGEST_KEY = 2**24
 
 
 @dataclass(frozen=True)
-class Network:
-    """Nodes by key, the inputs 0, 1, … among them, and connections between keys.
+class Node:
+    """z = bias + response × aggregation(messages); the value is activation(z)."""
 
-    A node computes z = bias + response × aggregation(weight × value of each source), and its
-    value is activation(z) kept within ±`bound`. Where the rule is `live` (TensorNEAT's), a
-    message counts only if its source has a value, and a node without one has none: NaN.
-    Where it is `always` (ours), a node without sources computes activation(bias).
+    key: int
+    bias: float = 0.0
+    response: float = 1.0
+    aggregation: str = "sum"
+    activation: str = "identity"
+
+
+@dataclass(frozen=True)
+class Link:
+    """A connection between keys, whose message is weight × value of the source."""
+
+    source: int
+    target: int
+    weight: float
+    marker: int | None = None
+    """Historical number, if the network has them."""
+
+
+@dataclass(frozen=True)
+class Network:
+    """Nodes by key, the inputs 0, 1, … among them, and links between keys.
+
+    Values are kept within ±`bound`. Under the rule `live` (TensorNEAT's), a message counts
+    only if its source has a value, and a node without messages has none: NaN. Under `always`
+    (ours), a node without links computes activation(bias).
 
     Feed-forward, or `steps` times computed all at once from the values before (recurrent).
     """
 
     inputs: int
     outputs: tuple[int, ...]
-    keys: tuple[int, ...]
-    bias: tuple[float, ...]
-    response: tuple[float, ...]
-    aggregation: tuple[str, ...]
-    activation: tuple[str, ...]
-    source: tuple[int, ...]
-    target: tuple[int, ...]
-    weight: tuple[float, ...]
-    marker: tuple[int, ...] | None = None
-    """Historical numbers of the connections, where they have any."""
+    nodes: tuple[Node, ...]
+    links: tuple[Link, ...]
     rule: Literal["live", "always"] = "live"
     steps: int | None = None
     output_transform: str | None = None
-    """An activation that is applied to every output at the end, unseen by other nodes."""
+    """An activation for every output at the end, unseen by other nodes."""
     bound: float = inf
     input_names: tuple[str, ...] = ()
     output_names: tuple[str, ...] = ()
@@ -46,7 +61,7 @@ class Network:
     def __post_init__(self):
         _check_nodes(self)
         _check_functions(self)
-        _check_connections(self)
+        _check_links(self)
         if self.rule not in ("live", "always"):
             raise ValueError(f"`rule` must be live or always, got {self.rule!r}")
         if self.steps is None:
@@ -54,10 +69,34 @@ class Network:
         elif self.steps < 1:
             raise ValueError(f"`steps` must be at least 1, got {self.steps}")
 
+    @cached_property
+    def keys(self) -> tuple[int, ...]:
+        """Keys in the order of the nodes."""
+        return tuple(node.key for node in self.nodes)
+
+    @cached_property
+    def node(self) -> dict[int, Node]:
+        """Nodes by key."""
+        return {node.key: node for node in self.nodes}
+
+    @cached_property
+    def incoming(self) -> dict[int, list[Link]]:
+        """Links by target, in the order of their sources' nodes."""
+        row = {key: place for place, key in enumerate(self.keys)}
+        found: dict[int, list[Link]] = {key: [] for key in self.keys}
+        for link in sorted(self.links, key=lambda link: row[link.source]):
+            found[link.target].append(link)
+        return found
+
     @property
+    def marked(self) -> bool:
+        """Whether the links have historical numbers."""
+        return bool(self.links) and all(link.marker is not None for link in self.links)
+
+    @cached_property
     def pairs(self) -> tuple[tuple[int, int], ...]:
-        """Source and target of every connection."""
-        return tuple(zip(self.source, self.target, strict=True))
+        """Source and target of every link."""
+        return tuple((link.source, link.target) for link in self.links)
 
     @property
     def hidden(self) -> tuple[int, ...]:
@@ -66,16 +105,54 @@ class Network:
 
     @property
     def names(self) -> dict[int, str]:
-        """What inputs and outputs are called, by key."""
+        """Names of inputs and outputs, by key."""
         inputs = self.input_names or tuple(f"input {i}" for i in range(self.inputs))
         outputs = self.output_names or tuple(f"output {i}" for i in range(len(self.outputs)))
         return dict(enumerate(inputs)) | dict(zip(self.outputs, outputs, strict=True))
 
 
+def renumbered(network: Network, key: Callable[[int], int]) -> Network:
+    """The network with every key exchanged, nodes in the order of the new ones."""
+    nodes = [replace(node, key=key(node.key)) for node in network.nodes]
+    return replace(
+        network,
+        outputs=tuple(map(key, network.outputs)),
+        nodes=tuple(sorted(nodes, key=lambda node: node.key)),
+        links=tuple(
+            replace(link, source=key(link.source), target=key(link.target))
+            for link in network.links
+        ),
+    )
+
+
+def outputs_first(network: Network) -> Network:
+    """Outputs follow the inputs, hidden nodes the outputs; a key has one new key always."""
+    fixed = {key: network.inputs + place for place, key in enumerate(network.outputs)}
+
+    def key(old: int) -> int:
+        if old < network.inputs:
+            return old
+        return fixed.get(old, old + sum(output > old for output in network.outputs))
+
+    return renumbered(network, key)
+
+
+def delegated(network: Network, output: int, activation: str) -> Network:
+    """A new hidden node takes an output's place; the output reads it and has the activation."""
+    new = max(network.keys) + 1
+    moved = replace(network.node[output], key=new)
+    nodes = [node if node.key != output else Node(output) for node in network.nodes]
+    nodes = [replace(n, activation=activation) if n.key == output else n for n in nodes]
+
+    def instead(key: int) -> int:
+        return new if key == output else key
+
+    links = [Link(instead(x.source), instead(x.target), x.weight) for x in network.links]
+    return replace(network, nodes=(*nodes, moved), links=(*links, Link(new, output, 1.0)))
+
+
 def _check_nodes(network: Network) -> None:
     keys = network.keys
-    columns = (network.bias, network.response, network.aggregation, network.activation)
-    _same_length("keys", keys, *columns)
     if len(set(keys)) < len(keys):
         raise ValueError(f"`keys` must differ, got {_first(_repeated(keys))} more than once")
     if wrong := [k for k in keys if not 0 <= k < 2**31]:
@@ -91,8 +168,8 @@ def _check_nodes(network: Network) -> None:
         )
     if missing := {*range(network.inputs), *network.outputs} - set(keys):
         raise ValueError(f"`keys` must hold all inputs and outputs, misses {_first(missing)}")
-    _finite("bias", network.bias)
-    _finite("response", network.response)
+    _finite("bias", [node.bias for node in network.nodes])
+    _finite("response", [node.response for node in network.nodes])
     for field, names, needed in (
         ("input_names", network.input_names, network.inputs),
         ("output_names", network.output_names, len(network.outputs)),
@@ -102,9 +179,9 @@ def _check_nodes(network: Network) -> None:
 
 
 def _check_functions(network: Network) -> None:
-    if wrong := set(network.activation) - set(ACTIVATIONS):
+    if wrong := {node.activation for node in network.nodes} - set(ACTIVATIONS):
         raise ValueError(f"`activation` must be among {list(ACTIVATIONS)}, got {_first(wrong)}")
-    if wrong := set(network.aggregation) - set(AGGREGATIONS):
+    if wrong := {node.aggregation for node in network.nodes} - set(AGGREGATIONS):
         raise ValueError(
             f"`aggregation` must be among {list(AGGREGATIONS)}, got {_first(wrong)}"
         )
@@ -115,33 +192,24 @@ def _check_functions(network: Network) -> None:
         )
 
 
-def _check_connections(network: Network) -> None:
-    _same_length("source", network.source, network.target, network.weight)
-    if network.marker is not None:
-        _same_length("marker", network.marker, network.source)
-        if len(set(network.marker)) < len(network.marker):
-            raise ValueError(
-                f"`marker` must differ, got {_first(_repeated(network.marker))} twice"
-            )
-    if missing := {*network.source, *network.target} - set(network.keys):
+def _check_links(network: Network) -> None:
+    markers = [link.marker for link in network.links if link.marker is not None]
+    if len(set(markers)) < len(markers):
+        raise ValueError(f"`marker` must differ, got {_first(_repeated(markers))} twice")
+    targets = [link.target for link in network.links]
+    if missing := {*targets, *(link.source for link in network.links)} - set(network.keys):
         raise ValueError(f"connections must join existing nodes, got {_first(missing)}")
-    if wrong := [target for target in network.target if target < network.inputs]:
+    if wrong := [target for target in targets if target < network.inputs]:
         raise ValueError(f"`target` must not be an input, got {_first(wrong)}")
     if len(set(network.pairs)) < len(network.pairs):
         twice = _first(_repeated(network.pairs))
         raise ValueError(f"connections must join a pair of nodes once, got twice {twice}")
-    _finite("weight", network.weight)
+    _finite("weight", [link.weight for link in network.links])
 
 
-def _finite(field: str, values: tuple[float, ...]) -> None:
+def _finite(field: str, values: list[float]) -> None:
     if wrong := [value for value in values if not isfinite(value)]:
         raise ValueError(f"`{field}` must be finite, got {_first(wrong)}")
-
-
-def _same_length(field: str, *columns) -> None:
-    if len({len(column) for column in columns}) > 1:
-        lengths = [len(column) for column in columns]
-        raise ValueError(f"`{field}` and its columns must be of one length, got {lengths}")
 
 
 def _repeated(items) -> list:

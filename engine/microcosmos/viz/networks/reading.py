@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from .network import LARGEST_KEY, Network
+from .network import LARGEST_KEY, Link, Network, Node
 
 NODES = {
     "DefaultNode": ("bias", "response", "aggregation", "activation"),
@@ -25,9 +25,8 @@ MAX_STEPS = 10_000
 def read_tensorneat(nodes: np.ndarray, conns: np.ndarray, meta: Mapping[str, Any]) -> Network:
     """The network of one genome: `nodes` (row, column), `conns` (row, column), NaN if unused.
 
-    `meta` names the classes and, in order, the functions; see `docs/networks.md`. Outputs
-    are linear and inputs have no attributes there, whatever their columns say. Raises
-    `ValueError` naming the field, what was needed and what came.
+    `meta` names the classes and, in order, the functions; see `docs/networks.md`. Outputs are
+    linear and inputs have no attributes, whatever their columns hold. Raises `ValueError`.
     """
     one_of(meta, "genome_class", GENOMES)
     node_columns = NODES[one_of(meta, "node_class", tuple(NODES))]
@@ -48,25 +47,35 @@ def read_tensorneat(nodes: np.ndarray, conns: np.ndarray, meta: Mapping[str, Any
     kept = keys[used]
     is_input = kept < inputs
     linear = is_input | np.isin(kept, outputs)
-    markers = conns[given, 2] if "marker" in conn_columns else None
+    response = columns.get("response", np.ones(len(kept)))
+    columns_of_nodes = (
+        kept.tolist(),
+        np.where(is_input, 0, columns["bias"]).tolist(),
+        np.where(is_input, 1, response).tolist(),
+        _replaced(aggregation, is_input, "sum"),
+        _replaced(activation, linear, "identity"),
+    )
     return Network(
         inputs=inputs,
         outputs=outputs,
-        keys=tuple(kept.tolist()),
-        bias=_numbers(np.where(is_input, 0, columns["bias"])),
-        response=_numbers(np.where(is_input, 1, columns.get("response", np.ones(len(kept))))),
-        aggregation=_replaced(aggregation, is_input, "sum"),
-        activation=_replaced(activation, linear, "identity"),
-        source=_keys("source", conns[given, 0]),
-        target=_keys("target", conns[given, 1]),
-        weight=_numbers(conns[given, -1]),
-        marker=None if markers is None else _keys("historical marker", markers),
+        nodes=tuple(Node(*row) for row in zip(*columns_of_nodes, strict=True)),
+        links=_links(conns[given], "marker" in conn_columns),
         rule="live",
         steps=_steps(meta),
         output_transform=_transform(meta),
         input_names=_labels(meta, "input_names"),
         output_names=_labels(meta, "output_names"),
     )
+
+
+def _links(conns: np.ndarray, marked: bool) -> tuple[Link, ...]:
+    columns = (
+        _keys("source", conns[:, 0]),
+        _keys("target", conns[:, 1]),
+        conns[:, -1].tolist(),
+        *([_keys("historical marker", conns[:, 2])] if marked else []),
+    )
+    return tuple(Link(*row) for row in zip(*columns, strict=True))
 
 
 def one_of(meta: Mapping[str, Any], field: str, allowed: tuple[str, ...]) -> str:
@@ -173,9 +182,5 @@ def _refuse_other_rows(keys: np.ndarray, ends: tuple[int, ...]) -> None:
             )
 
 
-def _numbers(values: np.ndarray) -> tuple[float, ...]:
-    return tuple(values.tolist())
-
-
 def _replaced(names: tuple[str, ...], where: np.ndarray, name: str) -> tuple[str, ...]:
-    return tuple(name if there else own for own, there in zip(names, where, strict=True))
+    return tuple(name if there else old for old, there in zip(names, where, strict=True))

@@ -1,6 +1,6 @@
 """Networks as the arrays of a TensorNEAT genome and the names that belong to them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Any
@@ -9,9 +9,8 @@ import numpy as np
 
 from .evaluation import require_agreement
 from .functions import ACTIVATIONS, AGGREGATIONS, TO_REGISTER
-from .network import LARGEST_KEY, Network
+from .network import LARGEST_KEY, Link, Network, delegated, outputs_first, renumbered
 from .reading import CONNECTIONS, NODES, read_tensorneat
-from .rewiring import delegated, joined, outputs_first, renumbered
 
 FORMAT = "microcosmos-tensorneat/1"
 
@@ -21,7 +20,7 @@ SMALLEST = 16
 
 @dataclass(frozen=True)
 class Genome:
-    """What TensorNEAT knows of a network, and the names that it does not keep."""
+    """The arrays of a network for TensorNEAT, and the names that it does not keep."""
 
     nodes: np.ndarray
     conns: np.ndarray
@@ -33,7 +32,7 @@ def write_tensorneat(
 ) -> Genome:
     """The genome of a network, checked: read back, it computes the same for random inputs.
 
-    Raises `ValueError` where it does not, or where there is no room.
+    Raises `ValueError` if it does not, or if there is no room.
     """
     written = _written(outputs_first(as_live(network)), max_nodes, max_conns)
     back = read_tensorneat(written.nodes, written.conns, written.meta)
@@ -48,11 +47,12 @@ def as_live(network: Network) -> Network:
     would have no value, gets one with weight 0.
     """
     if network.rule == "always":
-        fed = set(network.target)
-        bare = [k for k in network.keys if k >= network.inputs and k not in fed]
-        network = replace(joined(network, 0, bare, 0.0), rule="live", marker=None, bound=inf)
+        links = [replace(link, marker=None) for link in network.links]
+        computed = network.keys[network.inputs :]
+        links += [Link(0, key, 0.0) for key in computed if not network.incoming[key]]
+        network = replace(network, rule="live", links=tuple(links), bound=inf)
     for output in network.outputs:
-        if network.activation[network.keys.index(output)] != "identity":
+        if network.node[output].activation != "identity":
             network = delegated(network, output, "identity")
     if max(network.keys) < LARGEST_KEY - len(network.outputs):
         return network
@@ -69,28 +69,26 @@ def room(needed: int) -> int:
 
 
 def _written(network: Network, max_nodes: int | None, max_conns: int | None) -> Genome:
-    has_response = any(response != 1 for response in network.response)
+    has_response = any(node.response != 1 for node in network.nodes)
     node_class = "DefaultNode" if has_response else "BiasNode"
-    marked = network.marker is not None and max(network.marker, default=0) < LARGEST_KEY
+    marked = network.marked and max(x.marker or 0 for x in network.links) < LARGEST_KEY
     conn_class = "OriginConn" if marked else "DefaultConn"
-    activations = [name for name in ACTIVATIONS if name in network.activation]
-    aggregations = [name for name in AGGREGATIONS if name in network.aggregation]
-    columns = {
-        "bias": network.bias,
-        "response": network.response,
-        "aggregation": [aggregations.index(name) for name in network.aggregation],
-        "activation": [activations.index(name) for name in network.activation],
-        "marker": network.marker,
-        "weight": network.weight,
-    }
-    nodes = [network.keys, *(columns[name] for name in NODES[node_class])]
-    ends = [network.source, network.target]
-    conns = ends + [columns[name] for name in CONNECTIONS[conn_class]]
-    size = len(network.keys) if max_nodes is None else max_nodes
-    length = len(network.source) if max_conns is None else max_conns
+    used = {node.activation for node in network.nodes}
+    activations = [name for name in ACTIVATIONS if name in used]
+    used = {node.aggregation for node in network.nodes}
+    aggregations = [name for name in AGGREGATIONS if name in used]
+    number = {"aggregation": aggregations.index, "activation": activations.index}
+    nodes = [
+        [node.key, *(_numbered(getattr(node, x), number.get(x)) for x in NODES[node_class])]
+        for node in network.nodes
+    ]
+    columns = ("source", "target", *CONNECTIONS[conn_class])
+    conns = [[getattr(link, name) for name in columns] for link in network.links]
+    size = room(len(nodes)) if max_nodes is None else max_nodes
+    length = room(len(conns)) if max_conns is None else max_conns
     genome = (
-        _padded("max_nodes", nodes, room(size) if max_nodes is None else size),
-        _padded("max_conns", conns, room(length) if max_conns is None else length),
+        _padded("max_nodes", nodes, 1 + len(NODES[node_class]), size),
+        _padded("max_conns", conns, len(columns), length),
     )
     meta = {"node_class": node_class, "conn_class": conn_class}
     meta |= {"activation_names": activations, "aggregation_names": aggregations}
@@ -98,9 +96,8 @@ def _written(network: Network, max_nodes: int | None, max_conns: int | None) -> 
 
 
 def _described(network: Network) -> dict[str, Any]:
-    """What does not depend on the layout of the arrays."""
     recurrent = network.steps is not None
-    used = {*network.activation, network.output_transform}
+    used = {*(node.activation for node in network.nodes), network.output_transform}
     return {
         "format": FORMAT,
         "genome_class": "RecurrentGenome" if recurrent else "DefaultGenome",
@@ -118,11 +115,13 @@ def _described(network: Network) -> dict[str, Any]:
     }
 
 
-def _padded(field: str, columns: Sequence, rows: int) -> np.ndarray:
-    """Columns as float32 rows, the rest NaN."""
-    needed = len(columns[0])
-    if needed > rows:
-        raise ValueError(f"`{field}` must be at least {needed}, got {rows}")
-    table = np.full((rows, len(columns)), np.nan, np.float32)
-    table[:needed] = np.array(columns, float).T.reshape(needed, len(columns))
+def _numbered(value: Any, number: Callable[[Any], int] | None) -> Any:
+    return value if number is None else number(value)
+
+
+def _padded(field: str, given: list[list[Any]], columns: int, rows: int) -> np.ndarray:
+    if len(given) > rows:
+        raise ValueError(f"`{field}` must be at least {len(given)}, got {rows}")
+    table = np.full((rows, columns), np.nan, np.float32)
+    table[: len(given)] = np.array(given, float).reshape(len(given), columns)
     return table

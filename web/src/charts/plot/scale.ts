@@ -8,8 +8,8 @@ export interface Scale {
 
 /** The position of a value, from 0 to 1 along the axis. */
 export function place({ log, low, high }: Scale, value: number): number {
-  const at = log ? Math.log10 : (x: number) => x;
-  return (at(value) - at(low)) / (at(high) - at(low));
+  if (!log) return (value - low) / (high - low);
+  return (Math.log10(value) - Math.log10(low)) / (Math.log10(high) - Math.log10(low));
 }
 
 /** The value at a position, from 0 to 1 along the axis. */
