@@ -74,7 +74,7 @@ def searched(http: httpx.Client, run: dict[str, Any] | None) -> Iterator[Place]:
     if run:
         archive = http.get(f"/runs/{run['id']}/archive").raise_for_status().json()
         best = max(range(len(archive["cell"])), key=lambda i: archive["fitness"][i])
-        yield Place("guide", f"/runs/{run['id']}", "Explain")
+        yield Place("tour", f"/runs/{run['id']}", "Explain")
         yield Place("gallery", f"/runs/{run['id']}?view=gallery")
         yield Place("creature", f"/creatures/{archive['creature'][best]}?run={run['id']}")
 

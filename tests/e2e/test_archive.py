@@ -52,7 +52,7 @@ def test_arrow_keys_walk_the_map_and_enter_opens_a_creature(shared_page: Page, s
     page.keyboard.press("ArrowRight")
     archive = archive_of(page, searched)
     best = archive["creature"][archive["fitness"].index(max(archive["fitness"]))]
-    reading = page.locator("#map-reading")
+    reading = page.locator("#elite-measures")
     expect(reading).to_contain_text(best[:8], timeout=FAST)
     page.keyboard.press("ArrowLeft")
     expect(reading).not_to_contain_text(best[:8], timeout=FAST)
@@ -135,7 +135,7 @@ def test_the_gallery_moves_and_is_walked_by_keys(shared_page: Page, searched: st
     wall = page.get_by_role("application", name=re.compile("Gallery"))
     wall.focus()
     page.keyboard.press("ArrowDown")
-    sha = page.locator("#map-reading code").inner_text()
+    sha = page.locator("#elite-measures code").inner_text()
     page.keyboard.press("Enter")
     page.wait_for_url(re.compile(f"/creatures/{sha}"), timeout=FAST)
 
@@ -208,23 +208,23 @@ def test_the_tour_scrolls_to_what_it_explains(shared, shared_page: Page):
     page = shared_page
     page.set_viewport_size({"width": 1280, "height": 800})
     page.goto(f"{shared.product.url}/runs/{shared.finished('search')}")
-    guide = page.get_by_role("complementary", name="Tour")
+    tour = page.get_by_role("complementary", name="Tour")
     expect(page.get_by_text(re.compile(r"^\d+ elites$"))).to_be_visible(timeout=FAST)
-    expect(guide).not_to_be_visible()  # It opens by itself over the demonstration only.
+    expect(tour).not_to_be_visible()  # It opens by itself over the demonstration only.
     page.get_by_role("button", name="Explain").click()
-    expect(guide).to_contain_text("of 256 kinds have one", timeout=FAST)
+    expect(tour).to_contain_text("of 256 kinds have one", timeout=FAST)
     for title in ("Cells are kinds", "Colour is fitness", "The history", "Open a creature"):
-        guide.get_by_role("button", name="Next").press("Enter")
-        expect(guide.get_by_role("heading", name=title)).to_be_visible(timeout=FAST)
+        tour.get_by_role("button", name="Next").press("Enter")
+        expect(tour.get_by_role("heading", name=title)).to_be_visible(timeout=FAST)
         if title == "The history":
             expect(page.locator(".time-slider")).to_be_in_viewport(ratio=1, timeout=FAST)
-    expect(page.locator("#map-reading")).to_contain_text("Fitness")
-    guide.get_by_role("button", name="Finish").press("Enter")
-    expect(guide).not_to_be_visible()
+    expect(page.locator("#elite-measures")).to_contain_text("Fitness")
+    tour.get_by_role("button", name="Finish").press("Enter")
+    expect(tour).not_to_be_visible()
     page.reload()
     expect(page.get_by_text(re.compile(r"^\d+ elites$"))).to_be_visible(timeout=FAST)
-    expect(guide).not_to_be_visible()
+    expect(tour).not_to_be_visible()
     page.get_by_role("button", name="Explain").click()
-    expect(guide).to_be_visible(timeout=FAST)
+    expect(tour).to_be_visible(timeout=FAST)
     page.keyboard.press("Escape")
-    expect(guide).not_to_be_visible()
+    expect(tour).not_to_be_visible()

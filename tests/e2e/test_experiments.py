@@ -55,7 +55,7 @@ def look_along_other_axes(page: Page) -> None:
 
 def open_the_best(page: Page) -> None:
     plot = page.get_by_role("application", name=re.compile("Archive map"))
-    reading = page.locator("#map-reading")
+    reading = page.locator("#elite-measures")
     plot.focus()
     page.wait_for_timeout(300)  # What was fetched is drawn.
     page.keyboard.press("ArrowRight")

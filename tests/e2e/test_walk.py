@@ -63,7 +63,7 @@ def open_an_elite(page: Page, address: str, run: str) -> str:
     y = box["y"] + (rows - j - 0.5) * box["height"] / rows
     sha = archive["creature"][k]
     page.mouse.move(x, y)
-    expect(page.locator("#map-reading")).to_contain_text(sha[:8], timeout=FAST)
+    expect(page.locator("#elite-measures")).to_contain_text(sha[:8], timeout=FAST)
     page.mouse.click(x, y)
     page.wait_for_url(re.compile(f"/creatures/{sha}"), timeout=FAST)
     return sha

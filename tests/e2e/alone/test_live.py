@@ -94,7 +94,7 @@ def best_creature(page: Page) -> str:
     """The best elite of the archive, to which the first arrow key leads."""
     if "cell=" not in page.url:
         page.get_by_role("application", name=MAP).press("ArrowRight")
-    return page.locator("#map-reading code").inner_text()
+    return page.locator("#elite-measures code").inner_text()
 
 
 def first_number(found: Locator) -> float:

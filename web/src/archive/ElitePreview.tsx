@@ -2,7 +2,7 @@
 
 import { useLayoutEffect, useState } from "preact/hooks";
 import { ReplayLoop } from "../replay/Loop";
-import { useReplays } from "../replay/recordings";
+import { useReplays } from "../replay/replays";
 import { text } from "./text";
 
 /** A moving pointer requests no replays. */

@@ -49,7 +49,7 @@ export function colouringOf(measure: Measure, palette: Palette, tiles: Tiles): C
 }
 
 /** The position of a tile along the colours, from 0 to 1; null if the value is unknown. */
-export function placeOf({ measure, scale }: Colouring, tile: Tile): number | null {
+export function colourPosition({ measure, scale }: Colouring, tile: Tile): number | null {
   const value = measure.valueOf(tile.elite);
   if (value === null || (scale.log && value <= 0)) return null;
   if (scale.low === scale.high) return 0;
@@ -76,7 +76,7 @@ export function binColours(
   const shades = shadesOf(colouring.palette);
   const colours = new Uint32Array(count).fill(empty);
   for (const [bin, tile] of tiles) {
-    const place = placeOf(colouring, tile);
+    const place = colourPosition(colouring, tile);
     colours[bin] = place === null ? unknown : shades[Math.round(place * (SHADES - 1))]!;
   }
   return colours;

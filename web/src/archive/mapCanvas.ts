@@ -7,7 +7,7 @@ import { useSize } from "../ui/canvas";
 import { prefersStillness, useTheme } from "../ui/theme";
 import { FLASH_MS, MapPainter, type Picture } from "./drawMap";
 
-type MapContent = Pick<Picture, "layout" | "tiles" | "colouring" | "chosen">;
+type MapContent = Pick<Picture, "layout" | "tiles" | "colouring" | "selected">;
 
 /** Draw the map when it changes, and flash changed cells. */
 export function useMapCanvas(plot: RefObject<HTMLElement | null>, drawn: MapContent, elites: Elites) {

@@ -59,8 +59,8 @@ describe("a box on the map", () => {
 });
 
 describe("a key on the map", () => {
-  const press = (key: string, chosen: Set<number>, next: number | null = null, shiftKey = false) =>
-    selectByKey({ key, shiftKey } as KeyboardEvent, chosen, projection, 5, next);
+  const press = (key: string, selected: Set<number>, next: number | null = null, shiftKey = false) =>
+    selectByKey({ key, shiftKey } as KeyboardEvent, selected, projection, 5, next);
 
   it("toggles a bin with Space", () => {
     expect(press(" ", set(100))).toEqual(set(100, 101, 102));

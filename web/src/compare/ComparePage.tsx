@@ -4,12 +4,12 @@ import { useMemo } from "preact/hooks";
 import type { Experiment, Run } from "../api/types";
 import { CurveOptions } from "../charts/curves/CurveOptions";
 import { Curves } from "../charts/curves/Curves";
-import { type OtherRun, curveViewOf, overlayPlots } from "../charts/curves/look";
+import { type OtherRun, curveViewOf, overlayPlots } from "../charts/curves/curveView";
 import { type Plot, scoresOf } from "../charts/curves/plots";
 import { LineKey, MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
 import { StatusBadge, timeOf } from "../run/RunStatus";
 import { SCORES } from "../run/figures";
-import { differences, written } from "../run/spec/difference";
+import { differences, valueText } from "../run/spec/difference";
 import type { Curves as Columns } from "../store/curves";
 import { useCurvesOf, useExperiments } from "../store/fetch";
 import { setQuery } from "../store/router";
@@ -17,7 +17,7 @@ import { useRuns } from "../store/store";
 import { Card, Empty, Page } from "../ui/Page";
 import { Table } from "../ui/Table";
 import { Term } from "../ui/Term";
-import { short, titleOf, DASH, count, duration, number } from "../ui/format";
+import { shortId, titleOf, DASH, count, duration, number } from "../ui/format";
 import { text } from "./text";
 
 export function ComparePage({ query }: { query: URLSearchParams }) {
@@ -57,7 +57,7 @@ export function ComparePage({ query }: { query: URLSearchParams }) {
 }
 
 const nameOf = (run: Run, experiments: Experiment[]) =>
-  run.name ?? `${titleOf(run, experiments)} ${short(run.id)}`;
+  run.name ?? `${titleOf(run, experiments)} ${shortId(run.id)}`;
 
 function Legend({ runs, ids }: { runs: Compared[]; ids: string[] }) {
   const without = (id: string) => ids.filter((each) => each !== id).join() || null;
@@ -88,15 +88,15 @@ interface PlotsProps {
 }
 
 function Plots({ runs, curves, query }: PlotsProps) {
-  const look = curveViewOf(query);
+  const view = curveViewOf(query);
   const drawn = runs.flatMap(({ run, name, place }): OtherRun[] => {
     const own = curves.get(run.id);
     return own ? [{ name, colour: colourOf(place), dash: dashOf(place), curves: own }] : [];
   });
   return (
     <Card id="curves" kind="wide-curves" title={text.curves}>
-      <CurveOptions look={look} />
-      <Curves plots={overlayPlots(oneLinePerRun, drawn, look)} x={NO_X} look={look} />
+      <CurveOptions view={view} />
+      <Curves plots={overlayPlots(oneLinePerRun, drawn, view)} x={NO_X} view={view} />
     </Card>
   );
 }
@@ -138,7 +138,7 @@ function Figures({ runs }: { runs: Compared[] }) {
 function Specs({ runs }: { runs: Compared[] }) {
   const specs = runs.map(({ run }) => run.spec);
   const differing = useMemo(() => differences(specs), specs);
-  const rows = differing.map(({ path, values }) => ({ title: path, values: values.map(written) }));
+  const rows = differing.map(({ path, values }) => ({ title: path, values: values.map(valueText) }));
   return (
     <Card id="specs" title={text.differences}>
       {rows.length === 0 && <p class="quiet">{text.noDifferences}</p>}

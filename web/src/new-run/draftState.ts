@@ -51,7 +51,7 @@ export function useDraft(query: URLSearchParams, experiments: Experiment[]) {
   };
   const startFrom = (base: Base) => replace({ base, spec: base.spec }, text.replaced);
   useBase(wanted, shown, current !== null, experiments, startFrom, setProblem);
-  useKept(current, changed);
+  useStoredDraft(current, changed);
   return {
     current,
     changed,
@@ -103,7 +103,7 @@ function useBase(
 }
 
 /** Keep changes in this tab; remove the undo note when the page is left. */
-function useKept(current: Draft | null, changed: ReadonlySet<string>): void {
+function useStoredDraft(current: Draft | null, changed: ReadonlySet<string>): void {
   useEffect(() => () => dismissToast(undoToast), []);
   useEffect(() => {
     if (!current) return;

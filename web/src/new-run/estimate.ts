@@ -9,7 +9,7 @@ import { text } from "./text";
 const SETTLED_MS = 350;
 
 /** An error of the server: its fields, and a sentence. */
-export function refusalOf(error: unknown): { errors: FieldError[]; problem: string } {
+export function serverErrors(error: unknown): { errors: FieldError[]; problem: string } {
   const errors = error instanceof Problem ? error.errors : [];
   return { errors, problem: errors.length > 0 ? text.hasErrors : messageOf(error) };
 }
@@ -34,7 +34,7 @@ export function useEstimate<Asked, T>(
     const timer = setTimeout(() => {
       estimateOf(asked).then(
         (estimate) => show({ estimate }),
-        (error) => show(refusalOf(error)),
+        (error) => show(serverErrors(error)),
       );
     }, SETTLED_MS);
     return () => {

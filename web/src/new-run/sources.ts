@@ -8,7 +8,7 @@ import { type Address, type Base, type ForkSource, FORK_PARAMETERS, forkAddress 
 import { completed } from "./form/defaults";
 import { isSearch, withInitial } from "./initialCreatures";
 import { type Found, specOf } from "./readDocument";
-import { count, short } from "../ui/format";
+import { count, shortId } from "../ui/format";
 import { text } from "./text";
 
 /** The largest number of initial creatures, as in the schema of `search.initial`. */
@@ -113,7 +113,7 @@ export function ofFound(found: Found, file: string, experiments: Experiment[]): 
 
 export function titleOfBase({ kind, name }: Base): string {
   if (kind === "preset") return text.preset(name.split("/")[1]);
-  if (kind === "run") return text.runOf(short(name));
-  if (kind === "creature") return text.creature(short(name));
+  if (kind === "run") return text.runOf(shortId(name));
+  if (kind === "creature") return text.creature(shortId(name));
   return name || text.pastedSpec;
 }

@@ -7,11 +7,11 @@ import { discardDraft } from "../store/draft";
 import { applyResponse } from "../store/store";
 import { navigate } from "../store/router";
 import { newIdempotencyKey } from "../ui/idempotencyKey";
-import { refusalOf } from "./estimate";
+import { serverErrors } from "./estimate";
 
 export type Alternative = { sweep: SweepRequest } | { fork: ForkRequest };
 
-type Refusal = ReturnType<typeof refusalOf> & { asked: Spec | Alternative };
+type Refusal = ReturnType<typeof serverErrors> & { asked: Spec | Alternative };
 
 /** Send the spec, or another request; the same request sent again after a lost answer has the same key. */
 export function useSubmission(spec: Spec, instead: Alternative | null) {
@@ -28,7 +28,7 @@ export function useSubmission(spec: Spec, instead: Alternative | null) {
       discardDraft();
       navigate(page);
     } catch (error) {
-      setRefusal({ asked, ...refusalOf(error) });
+      setRefusal({ asked, ...serverErrors(error) });
       setBusy(false);
       requestAnimationFrame(showFirstError);
     }

@@ -3,7 +3,7 @@
 import { useEffect, useRef } from "preact/hooks";
 import type { Run } from "../api/types";
 import { useExperiments, useRunChoices } from "../store/fetch";
-import { moment, short, titleOf } from "../ui/format";
+import { dateTime, shortId, titleOf } from "../ui/format";
 import { useDisclosure } from "../ui/disclosure";
 import { InlineForm } from "./InlineForm";
 import { text } from "./text";
@@ -51,7 +51,7 @@ function RunSelect({ run, label, fits, onChoose, onClose }: Props & { onClose: (
             <option value="">{value ? text.selectRun : text.loadingRuns}</option>
             {fitting.map((other) => (
               <option key={other.id} value={other.id}>
-                {titleOf(other, experiments)} {short(other.id)}, {moment(other.created_at)}
+                {titleOf(other, experiments)} {shortId(other.id)}, {dateTime(other.created_at)}
               </option>
             ))}
           </select>

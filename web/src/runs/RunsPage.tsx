@@ -10,7 +10,7 @@ import { useStore } from "../store/store";
 import { useSweeps } from "../store/sweeps";
 import { showFailure } from "../store/toasts";
 import { setQuery } from "../store/router";
-import { wasGuided } from "../archive/guide";
+import { hasTakenTour } from "../archive/tour";
 import { Empty, Page } from "../ui/Page";
 import { Heading } from "../ui/Table";
 import { Filters } from "./Filters";
@@ -189,7 +189,7 @@ function NothingListed({ query }: { query: RunQuery }) {
 
 function Welcome() {
   const demonstration = useStore((state) => [...state.runs.values()].find((run) => run.demonstration));
-  if (wasGuided() || !demonstration) return null;
+  if (hasTakenTour() || !demonstration) return null;
   return (
     <p class="banner welcome">
       {text.welcome} <a href={`/runs/${demonstration.id}`}>{text.tour}</a>

@@ -6,7 +6,7 @@ import { LineKey } from "../charts/lineStyle";
 import { SCORES } from "../run/figures";
 import { Card } from "../ui/Page";
 import { type Column, Table } from "../ui/Table";
-import { type ShownCase, memberName } from "./bands";
+import { type ShownCase, memberName } from "./summaryPlots";
 import { text } from "./text";
 
 interface LegendProps {

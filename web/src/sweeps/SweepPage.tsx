@@ -14,9 +14,9 @@ import {
 } from "../store/sweeps";
 import { setQuery } from "../store/router";
 import { Curves } from "../charts/curves/Curves";
-import { type ShownCase, bandsOf, caseName } from "./bands";
-import { SweepProgress, SweepStates, sizeOf, sweepTitle } from "./SweepStatus";
-import { moment } from "../ui/format";
+import { type ShownCase, summaryPlotsOf, caseName } from "./summaryPlots";
+import { SweepProgress, SweepStates, sizeText, sweepTitle } from "./SweepStatus";
+import { dateTime } from "../ui/format";
 import { Card, Page, useTitle } from "../ui/Page";
 import { ConfirmButton } from "../ui/ConfirmButton";
 import { NotFound } from "../ui/NotFound";
@@ -90,10 +90,10 @@ interface CurvesProps {
 
 function CaseCurves({ shown, query, curves }: CurvesProps) {
   const log = query.get("log") === "1";
-  const plots = bandsOf(shown, curves);
+  const plots = summaryPlotsOf(shown, curves);
   if (shown.length === 0) return <p class="quiet">{text.chooseCase}</p>;
   if (plots.length === 0) return <p class="quiet waiting">{text.noCurves}</p>;
-  return <Curves plots={plots} x={NO_X} look={{ over: "generation", log, smooth: 1 }} />;
+  return <Curves plots={plots} x={NO_X} view={{ over: "generation", log, smooth: 1 }} />;
 }
 
 /** Each case has its own x values. */
@@ -114,7 +114,7 @@ function Head({ sweep }: { sweep: Sweep }) {
         <Actions sweep={sweep} title={title} />
       </header>
       <p class="quiet sweep-about">
-        {kind ?? sweep.experiment} · {sizeOf(sweep)} · {moment(sweep.created_at)}
+        {kind ?? sweep.experiment} · {sizeText(sweep)} · {dateTime(sweep.created_at)}
         {sweep.owner && <> · {text.by(sweep.owner)}</>} · <a href={`/?sweep=${sweep.id}`}>{text.listRuns}</a>
       </p>
       {sweep.deleted > 0 && <BinNotice sweep={sweep} />}

@@ -12,7 +12,7 @@ export const text = {
   file: "file",
   creatureFile: "Creature file",
   fork: "Fork",
-  guide: "Tour",
+  tour: "Tour",
   step: (number: number, count: number) => `${number} of ${count}`,
   close: "Close",
   skip: "Skip",

@@ -15,7 +15,7 @@ export interface Point {
   hollow?: boolean;
   href?: string;
   /** Tooltip: a name, then figures. */
-  says: [name: string, ...figures: string[]];
+  tooltip: [name: string, ...figures: string[]];
 }
 
 export interface Line {
@@ -31,7 +31,7 @@ export interface Line {
 export interface Axis {
   title: string;
   scale: Scale;
-  write: (value: number) => string;
+  format: (value: number) => string;
 }
 
 interface Props {
@@ -126,7 +126,7 @@ function Marks({ line, spots, near, width, faint, onNear }: MarksProps) {
     <Mark
       key={point.x}
       {...{ point, line, spot: spots[i]!, flip: spots[i]![0] > width / 2, onNear }}
-      look={point === near ? "near" : faint}
+      state={point === near ? "near" : faint}
     />
   ));
 }
@@ -137,11 +137,11 @@ interface Drawn {
 }
 
 /** Maximal distance of the pointer from a point, in pixels. */
-const REACH = 22;
+const MAX_DISTANCE = 22;
 
 /** The point nearest to the pointer. */
 function nearest(drawn: Drawn[], x: number, y: number): Point | null {
-  let [found, least]: [Point | null, number] = [null, REACH];
+  let [found, least]: [Point | null, number] = [null, MAX_DISTANCE];
   for (const { line, spots } of drawn) {
     spots.forEach(([left, top], i) => {
       const distance = Math.hypot(left - x, top - y);

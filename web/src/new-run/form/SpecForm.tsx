@@ -5,7 +5,7 @@ import type { Json } from "../../api/types";
 import { Term } from "../../ui/Term";
 import { Options } from "../../ui/Select";
 import { words } from "../../ui/format";
-import { countWithin, isOff, isThere, partOf, valueAt, withChoice } from "./document";
+import { countWithin, isOff, isApplicable, partOf, valueAt, withChoice } from "./document";
 import type { Field, Rows, Section, Union } from "./fields";
 import { Entry, EntryName, type FormState, Messages } from "./Entry";
 import { text } from "./text";
@@ -128,7 +128,7 @@ function Kinds({ union, state }: { union: Union; state: FormState }) {
 }
 
 function Fields({ section, state }: { section: Section; state: FormState }) {
-  const there = section.fields.filter((field) => isThere(field, state.document));
+  const there = section.fields.filter((field) => isApplicable(field, state.document));
   return there.map((field) => {
     if (field.kind === "constant") return null;
     if (field.kind === "rows") return <RowList key={field.path} rows={field} state={state} />;

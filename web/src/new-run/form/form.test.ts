@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Spec } from "../../api/types";
-import { complaints, messagesByPath, partOf, valueAt, withChoice } from "./document";
+import { schemaErrors, messagesByPath, partOf, valueAt, withChoice } from "./document";
 import type { Field, Rows, Section, Union } from "./fields";
 import { FORM } from "./schema.fixture";
 
@@ -92,7 +92,7 @@ describe("a form", () => {
     expect(chosen.fresh).toEqual({ operator: "line", step: 0.5 });
     expect(chosen.fields.map(({ path }) => path)).toEqual(["emitters.2.step"]);
     const spec: Spec = { emitters: [{ operator: "any" }, { operator: "line", step: 0 }] };
-    const wrong = complaints(FORM, spec).filter(({ field }) => field.startsWith("emitters"));
+    const wrong = schemaErrors(FORM, spec).filter(({ field }) => field.startsWith("emitters"));
     expect(wrong).toEqual([{ field: "emitters.1.step", message: "Needs more than 0." }]);
     const error = { field: "emitters.1.step", message: "no" };
     expect([...messagesByPath([error], FORM, spec).keys()]).toEqual(["emitters.1.step"]);

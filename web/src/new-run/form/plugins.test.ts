@@ -3,7 +3,7 @@
 import { describe, expect, it } from "vitest";
 import type { Schema, Spec } from "../../api/types";
 import { completed } from "./defaults";
-import { changedPaths, complaints, valueAt, withChoice } from "./document";
+import { changedPaths, schemaErrors, valueAt, withChoice } from "./document";
 import { type Choice, type Section, formOf } from "./fields";
 
 const settings: Schema = {
@@ -63,10 +63,10 @@ describe("a choice with plug-ins", () => {
 
   it("has its settings checked where it is chosen, and only there", () => {
     const wrong = { fitness: "mine.straight", plugin: { settings: { strictness: 11 } } };
-    expect(complaints(form, { ...SPEC, task: wrong })).toEqual([
+    expect(schemaErrors(form, { ...SPEC, task: wrong })).toEqual([
       { field: "task.plugin.settings.strictness", message: "Needs at most 10." },
     ]);
-    expect(complaints(form, { ...SPEC, task: { ...wrong, fitness: "displacement" } })).toEqual([]);
+    expect(schemaErrors(form, { ...SPEC, task: { ...wrong, fitness: "displacement" } })).toEqual([]);
   });
 });
 

@@ -10,7 +10,7 @@ import { formsOf, reynoldsAxis, sweepAxes, sweepLines } from "./gaits";
 import { Card } from "../../ui/Page";
 import { Segments } from "../../ui/Select";
 import { ReplayLoop } from "../../replay/Loop";
-import { RecordingStatus, useReplays } from "../../replay/recordings";
+import { ReplayStatus, useReplays } from "../../replay/replays";
 import { useDebounced } from "../../store/timing";
 import { type ResultsProps, TableCard, hrefOf, useTable } from "../results/resultsPage";
 import { text } from "./text";
@@ -137,10 +137,10 @@ function MarkReplay({ point }: { point: Point | null }) {
 function Playing({ point }: { point: Point }) {
   const rendering = useReplays([shaOf(point.href!)]);
   const replay = rendering.replays?.[0];
-  const [name, ...figures] = point.says;
+  const [name, ...figures] = point.tooltip;
   return (
     <>
-      <RecordingStatus {...rendering} what={text.simulating} />
+      <ReplayStatus {...rendering} what={text.simulating} />
       {replay && <ReplayLoop replay={replay} name={text.swimming(name)} />}
       <p class="small">
         <b>{name}</b>

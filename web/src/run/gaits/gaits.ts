@@ -22,14 +22,14 @@ export const formsOf = (spec: Spec) => strings(spec.forms);
 /** Common axes of several forms make them comparable. */
 export function sweepAxes(spec: Spec, rows: readonly ResultRow[]): { x: Axis; y: Axis } {
   const ways = rows.filter(finished).map((row) => Number(row.displacement));
-  const write = (value: number) => number(value, 2);
+  const format = (value: number) => number(value, 2);
   return {
     x: {
       title: text.viscosity,
       scale: logAround(numbers(spec.viscosities)),
-      write,
+      format,
     },
-    y: { title: text.displacement, scale: fromZero(ways), write },
+    y: { title: text.displacement, scale: fromZero(ways), format },
   };
 }
 
@@ -70,7 +70,7 @@ function pointOf(row: ResultRow, hrefOf: Href): Point {
     y: way,
     hollow: doubtful(row),
     ...(row.creature && { href: hrefOf(row.creature) }),
-    says: [text.mark(words(String(row.swimmer)), number(Number(row.viscosity))), ...figures],
+    tooltip: [text.mark(words(String(row.swimmer)), number(Number(row.viscosity))), ...figures],
   };
 }
 

@@ -12,7 +12,7 @@ import { prefersStillness, useTheme } from "../../ui/theme";
 import { text } from "./text";
 
 /** Seconds of playback, and of rest at the end. */
-const [LIFE_S, REST_S] = [4, 1.5];
+const [PLAY_SECONDS, PAUSE_SECONDS] = [4, 1.5];
 /** Shares of the simulation that are shown as pictures. */
 const MOMENTS = [0, 0.1, 0.4, 1];
 
@@ -29,8 +29,8 @@ export function FoldPlayer({ replay, target }: { replay: Replay; target: Target 
   const [time, setTime] = useState(() => (prefersStillness() ? last : 0));
   const [shown, setShown] = useState(0.6);
   useClock(playing, (seconds) => {
-    const whole = last * (1 + REST_S / LIFE_S);
-    setTime((now) => (now + (seconds * last) / LIFE_S) % Math.max(1, whole));
+    const whole = last * (1 + PAUSE_SECONDS / PLAY_SECONDS);
+    setTime((now) => (now + (seconds * last) / PLAY_SECONDS) % Math.max(1, whole));
   });
   const fold = useMemo((): Fold => {
     const { picture, ...ink } = INK[theme];
@@ -120,7 +120,7 @@ export function pictureOf({ width, height, pixels }: Target, rgb: readonly numbe
 }
 
 /** Place of a picture on the lattice: left, top (upwards), width and height, in cells. */
-export function placeOf(target: Target, [width, height]: readonly [number, number]) {
+export function pictureBox(target: Target, [width, height]: readonly [number, number]) {
   const scale = target.size / Math.max(target.width, target.height);
   const [wide, high] = [Math.round(scale * target.width), Math.round(scale * target.height)];
   const [left, bottom] = [Math.floor((width - wide) / 2), Math.floor((height - high) / 2)];
@@ -133,7 +133,7 @@ function drawFold(canvas: HTMLCanvasElement, size: Size, fold: Fold, time: numbe
   const world = fold.replay.header.size;
   const scale = size.width / world[0];
   const screen = ([x, y]: Point): Point => [(x + 0.5) * scale, (world[1] - 0.5 - y) * scale];
-  const { left, top, wide, high } = placeOf(fold.target, world);
+  const { left, top, wide, high } = pictureBox(fold.target, world);
   context.globalAlpha = fold.shown;
   context.imageSmoothingQuality = "high";
   context.drawImage(fold.picture, ...screen([left, top]), wide * scale, high * scale);

@@ -6,11 +6,11 @@ import type { ResultRow, Run, Target } from "../../api/types";
 import { useFetched } from "../../store/fetch";
 import { useStore } from "../../store/store";
 import { setQuery } from "../../store/router";
-import { number, short } from "../../ui/format";
+import { number, shortId } from "../../ui/format";
 import { Card } from "../../ui/Page";
 import { FoldPlayer } from "./FoldPlayer";
 import { pictureOf } from "./FoldPlayer";
-import { RecordingStatus, useReplays } from "../../replay/recordings";
+import { ReplayStatus, useReplays } from "../../replay/replays";
 import { hrefOf } from "../results/resultsPage";
 import { text } from "./text";
 import "./folds.css";
@@ -83,12 +83,12 @@ function Fold({ run, row, target }: { run: Run; row: ResultRow; target: Target }
   const replay = rendering.replays?.[0];
   return (
     <>
-      <RecordingStatus {...rendering} what={text.recordingFold} />
+      <ReplayStatus {...rendering} what={text.recordingFold} />
       {replay && <FoldPlayer replay={replay} target={target} />}
       <p class="quiet small">
         {text.losses(number(Number(row.first)), number(Number(row.least)), number(Number(row.empty)))}{" "}
         <a href={hrefOf(run)(row.creature!)}>
-          {text.openCreature} <code>{short(row.creature!)}</code>
+          {text.openCreature} <code>{shortId(row.creature!)}</code>
         </a>
       </p>
     </>

@@ -22,8 +22,8 @@ function axesOf({ generation, size }: Stack): { x: Axis; y: Axis } {
   const [first, last] = [generation[0]!, generation.at(-1)!];
   const generations = { log: false, low: first, high: Math.max(last, first + 1) };
   return {
-    x: { title: text.generation, scale: generations, write: whole },
-    y: { title: text.members, scale: { log: false, low: 0, high: size }, write: whole },
+    x: { title: text.generation, scale: generations, format: whole },
+    y: { title: text.members, scale: { log: false, low: 0, high: size }, format: whole },
   };
 }
 
@@ -70,7 +70,7 @@ export function SpeciesPlot({ history }: { history: SpeciesHistory }) {
         role="application"
         tabIndex={0}
         aria-label={text.plot(summaryOf(stack))}
-        aria-describedby="species-reading"
+        aria-describedby="species-at-cursor"
         onPointerMove={follow}
         onPointerDown={follow}
         onPointerLeave={() => setPlace(null)}
@@ -84,7 +84,7 @@ export function SpeciesPlot({ history }: { history: SpeciesHistory }) {
           </>
         )}
       </div>
-      <figcaption id="species-reading" class="small" aria-live="polite">
+      <figcaption id="species-at-cursor" class="small" aria-live="polite">
         {reading ? reading.text : summaryOf(stack)}
       </figcaption>
     </figure>

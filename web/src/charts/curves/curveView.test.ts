@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { type Curves, MAX_POINTS, NO_CURVES, appendCurves } from "../../store/curves";
-import { arrangePlots, curveViewOf, runningMean, tableOf } from "./look";
+import { arrangePlots, curveViewOf, runningMean, tableOf } from "./curveView";
 import { divergedBy, scoresOf, workOf } from "./plots";
 
 const curvesOf = (qd_score: (number | null)[], batch = 16, summary = {}): Curves => {
@@ -39,8 +39,8 @@ describe("the view of curves", () => {
 
   it("adds other runs in their colours, with their own x values", () => {
     const others = [{ name: "Demo 12", colour: "--series-2", curves: curvesOf([5, 6], 32) }];
-    const look = { ...plain, over: "evaluations" } as const;
-    const [score] = arrangePlots(scoresOf, curvesOf([1, 2]), others, look);
+    const view = { ...plain, over: "evaluations" } as const;
+    const [score] = arrangePlots(scoresOf, curvesOf([1, 2]), others, view);
     expect(score!.series.map(({ colour }) => colour)).toEqual(["--series-1", "--series-2"]);
     expect(score!.series.map(({ other }) => other ?? false)).toEqual([false, true]);
     expect(tableOf(score!.series, [16, 32], false)).toEqual([

@@ -3,7 +3,7 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import { text } from "./text";
 import { prefersStillness } from "./theme";
-import "./guide.css";
+import "./tour.css";
 
 export interface Step {
   title: string;
@@ -22,7 +22,7 @@ interface Props {
   onEnd: () => void;
 }
 
-export function Guide({ steps, asked, onStep, onEnd }: Props) {
+export function Tour({ steps, asked, onStep, onEnd }: Props) {
   const [number, setNumber] = useState(0);
   const panel = useRef<HTMLElement>(null);
   const step = steps[number]!;
@@ -46,8 +46,8 @@ export function Guide({ steps, asked, onStep, onEnd }: Props) {
     return () => window.removeEventListener("keydown", press);
   }, [onEnd]);
   return (
-    <aside ref={panel} class="guide" aria-label={text.guide} tabIndex={-1}>
-      <p class="guide-count quiet small">{text.step(number + 1, steps.length)}</p>
+    <aside ref={panel} class="tour" aria-label={text.tour} tabIndex={-1}>
+      <p class="tour-count quiet small">{text.step(number + 1, steps.length)}</p>
       <div aria-live="polite">
         <h2>{step.title}</h2>
         <p>{step.text}</p>
