@@ -64,7 +64,7 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
       {tour.open && (
         <Tour
           steps={stepsOf(run, archive, view)}
-          asked={tour.asked}
+          requested={tour.requested}
           onStep={({ about }) => {
             setAbout(about);
             const best = fittest(view.elites);
@@ -123,7 +123,7 @@ function Head({ count: elites, gallery, onTour }: { count: number; gallery: bool
         label={text.view}
         choices={VIEWS}
         value={gallery ? "gallery" : "map"}
-        onChoose={(view) => setQuery({ view: view === "map" ? null : view })}
+        onSelect={(view) => setQuery({ view: view === "map" ? null : view })}
       />
     </div>
   );
@@ -139,16 +139,16 @@ const DELAY_MS = 300;
 /** The generation shown, null for the newest; the address follows with a delay. */
 function useShownGeneration(query: URLSearchParams, last: number) {
   const given = query.get("at");
-  const asked = given !== null && /^\d+$/.test(given) ? Number(given) : null;
-  const [at, setAt] = useState(asked);
-  const written = useRef(asked);
+  const requested = given !== null && /^\d+$/.test(given) ? Number(given) : null;
+  const [at, setAt] = useState(requested);
+  const written = useRef(requested);
   useEffect(() => {
     // Back and forward change the address too.
-    if (asked !== written.current) setAt(asked);
-    written.current = asked;
-  }, [asked]);
+    if (requested !== written.current) setAt(requested);
+    written.current = requested;
+  }, [requested]);
   useEffect(() => {
-    if (at === asked) return;
+    if (at === requested) return;
     const timer = setTimeout(() => {
       written.current = at;
       setQuery({ at: at === null ? null : String(at) });

@@ -127,7 +127,7 @@ function SelectionBox({ from, to }: Box) {
   );
 }
 
-/** Placed so that it hides neither the bin nor much of the map. */
+/** Content beside a bin, placed so that it hides neither the bin nor much of the map. */
 function PlacedBeside({
   layout,
   bin,

@@ -36,7 +36,7 @@ interface FiguresProps extends Pick<Props, "onOpen" | "actions"> {
   measures: readonly Measure[];
 }
 
-function Figures({ tile: { elite, cell, behind }, measures, onOpen, actions }: FiguresProps) {
+function Figures({ tile: { elite, cell, hidden }, measures, onOpen, actions }: FiguresProps) {
   const shown = new Map(measures.map((measure) => [measure.name, measure]));
   for (const name of [FITNESS, AGE]) shown.delete(name);
   const figures = [
@@ -51,9 +51,9 @@ function Figures({ tile: { elite, cell, behind }, measures, onOpen, actions }: F
           {title} <b>{value}</b>
         </span>
       ))}
-      {behind > 0 && (
+      {hidden > 0 && (
         <span>
-          {text.bestOf} <b>{count(behind + 1)}</b> {text.here}
+          {text.bestOf} <b>{count(hidden + 1)}</b> {text.here}
         </span>
       )}
       <button class="link" onClick={() => onOpen(cell)}>

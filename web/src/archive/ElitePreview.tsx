@@ -5,7 +5,7 @@ import { ReplayLoop } from "../replay/Loop";
 import { useReplays } from "../replay/replays";
 import { text } from "./text";
 
-/** A moving pointer requests no replays. */
+/** Delay of a request, so that a moving pointer requests no replays. */
 const HOVER_MS = 12;
 
 export function ElitePreview({ sha }: { sha: string }) {

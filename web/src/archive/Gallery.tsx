@@ -5,7 +5,7 @@ import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Motion } from "../decode/motion";
 import { useClock } from "../replay/clock";
 import { type Size, useSize } from "../ui/canvas";
-import { prefersStillness, useTheme } from "../ui/theme";
+import { prefersReducedMotion, useTheme } from "../ui/theme";
 import { AxisLabels } from "./AxisLabels";
 import { type ArchiveViewProps, useBinFocus } from "./binFocus";
 import { ColourLegend } from "./ColourLegend";
@@ -44,7 +44,7 @@ export function Gallery(props: Props) {
   const side = bounded(props.side ?? Math.max(MIN_READABLE, Math.floor(size.width / shape[0])));
   const wall = [side * shape[0], side * shape[1]] as const;
   const shown = { width: Math.min(size.width, wall[0]), height: Math.min(size.height, wall[1]) };
-  const focus = useBinFocus(props, (bin) => reveal(port.current!, cornerOf(bin, shape, side), side));
+  const focus = useBinFocus(props, (bin) => scrollToTile(port.current!, cornerOf(bin, shape, side), side));
   const seen = useSeen({ projection, shape, side, scroll, size }, props.onSee);
   const picture = { shape, side, seen, focused: focus.focused, size: shown, scroll };
   const binUnder = (event: MouseEvent): number | null => {
@@ -201,7 +201,7 @@ function AxisRail({ class: name, by, length, shown, upright = false, children }:
 }
 
 /** Scroll just enough to show the whole tile. */
-function reveal(port: HTMLElement, [left, top]: [number, number], side: number): void {
+function scrollToTile(port: HTMLElement, [left, top]: [number, number], side: number): void {
   const { scrollLeft, scrollTop, clientWidth, clientHeight } = port;
   port.scrollTo({
     left: Math.min(left, Math.max(scrollLeft, left + side - clientWidth)),
@@ -222,7 +222,7 @@ function useAnimation(
     const element = canvas.current; // Null in the frame after the page was left.
     if (element && size.width > 0) drawGallery(element, size, picture, scroll, share.current);
   };
-  useClock(onScreen && !prefersStillness(), (seconds) => {
+  useClock(onScreen && !prefersReducedMotion(), (seconds) => {
     share.current = (share.current + seconds / SECONDS) % 1;
     draw();
   });

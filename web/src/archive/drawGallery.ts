@@ -61,8 +61,8 @@ function drawTile(
 ): void {
   const { body, quiet, tint } = INKS[theme];
   const tile = tiles.get(bin)!;
-  const place = colourPosition(colouring, tile);
-  context.fillStyle = place === null ? quiet : css(sequential(place, colouring.palette));
+  const position = colourPosition(colouring, tile);
+  context.fillStyle = position === null ? quiet : css(sequential(position, colouring.palette));
   const strength = !selected || selected.has(bin) ? 1 : FADED;
   context.globalAlpha = tint * strength;
   context.fillRect(left + 1, top + 1, side - 2, side - 2);

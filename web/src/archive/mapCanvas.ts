@@ -4,7 +4,7 @@ import type { RefObject } from "preact";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import type { Elites } from "../store/elites";
 import { useSize } from "../ui/canvas";
-import { prefersStillness, useTheme } from "../ui/theme";
+import { prefersReducedMotion, useTheme } from "../ui/theme";
 import { FLASH_MS, MapPainter, type Picture } from "./drawMap";
 
 type MapContent = Pick<Picture, "layout" | "tiles" | "colouring" | "selected">;
@@ -39,7 +39,7 @@ function useChanges(elites: Elites): ReadonlyMap<number, number> {
     const before = seen.current;
     const now = performance.now();
     const next = new Map([...times.current].filter(([, time]) => now - time < FLASH_MS));
-    for (const [cell, elite] of before && !prefersStillness() ? elites : []) {
+    for (const [cell, elite] of before && !prefersReducedMotion() ? elites : []) {
       if (before!.get(cell)?.creature !== elite.creature) next.set(cell, now);
     }
     seen.current = elites;

@@ -30,7 +30,7 @@ const mapOf = <T>(entries: Record<number, T>) =>
 /** A map of 4 × 4 bins with two elites in bin 5. */
 const layout = gridLayout([4, 4]);
 const elite = { fitness: 1, descriptors: [], generation: 1, creature: "c", seenAt: 1 };
-const tile = (cell: number, behind = 0) => ({ cell, elite, behind });
+const tile = (cell: number, hidden = 0) => ({ cell, elite, hidden });
 const projection: Projection = {
   layout,
   tiles: mapOf({ 0: tile(100), 5: tile(101, 1), 15: tile(103) }),

@@ -10,7 +10,7 @@ import { text } from "./text";
 
 const STORAGE_KEY = "microcosmos:guided";
 
-/** If storage is forbidden, the tour is offered again. */
+/** True if this browser has shown the tour; false if it forbids storage. */
 export function hasTakenTour(): boolean {
   try {
     return localStorage.getItem(STORAGE_KEY) !== null;
@@ -33,16 +33,16 @@ export const opensByItself = (run: Pick<Run, "demonstration">) => run.demonstrat
 /** Open on the first visit of the demonstration, and on request. */
 export function useTour(run: Run) {
   const [open, setOpen] = useState(() => opensByItself(run));
-  const [asked, setAsked] = useState(false);
+  const [requested, setRequested] = useState(false);
   const begin = () => {
-    setAsked(true);
+    setRequested(true);
     setOpen(true);
   };
   const end = () => {
     rememberTour();
     setOpen(false);
   };
-  return { open, asked, begin, end };
+  return { open, requested, begin, end };
 }
 
 export function stepsOf(run: Run, archive: Archive, { axes, elites, colouring }: ArchiveView): Step[] {

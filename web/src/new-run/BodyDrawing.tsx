@@ -143,7 +143,7 @@ export function tilesOf({ positions }: DrawnBody, width: number, height: number)
   return tiles;
 }
 
-/** The largest shift; a tangle far outside would need ever more. */
+/** The largest shift, which bounds the number of copies of a body far outside the world. */
 const MAX_SHIFT = 2;
 
 function reach(places: number[], side: number): [number, number] {

@@ -21,8 +21,8 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
   const { axes, fields, problems, total, change } = sweeping;
   const add = () => {
     const free = fields.find(({ path }) => !axes.some((axis) => axis.path === path));
-    const usual = fields.find(({ path }) => path === "world.viscosity") ?? free;
-    const next = axes.some(({ path }) => path === usual?.path) ? free : usual;
+    const preferred = fields.find(({ path }) => path === "world.viscosity") ?? free;
+    const next = axes.some(({ path }) => path === preferred?.path) ? free : preferred;
     if (next) change({ axes: [...axes, { path: next.path, text: textOf(valueAt(spec, next.path)) }] });
   };
   return (

@@ -21,18 +21,18 @@ interface Check<T> {
 }
 
 /** Ask for an estimate after a pause in typing; the last answer stays until the next one. */
-export function useEstimate<Asked, T>(
-  asked: Asked | null,
-  estimateOf: (asked: Asked) => Promise<T>,
+export function useEstimate<Requested, T>(
+  requested: Requested | null,
+  estimateOf: (requested: Requested) => Promise<T>,
 ): Check<T> {
   const unchecked = { estimate: null, errors: [], problem: null };
   const [check, setCheck] = useState<Check<T>>(unchecked);
   useEffect(() => {
-    if (asked === null) return setCheck(unchecked);
+    if (requested === null) return setCheck(unchecked);
     let wanted = true;
     const show = (next: Partial<Check<T>>) => wanted && setCheck({ ...unchecked, ...next });
     const timer = setTimeout(() => {
-      estimateOf(asked).then(
+      estimateOf(requested).then(
         (estimate) => show({ estimate }),
         (error) => show(serverErrors(error)),
       );
@@ -41,7 +41,7 @@ export function useEstimate<Asked, T>(
       wanted = false;
       clearTimeout(timer);
     };
-  }, [asked]);
+  }, [requested]);
   return check;
 }
 

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Creature, Json, Spec } from "../api/types";
-import { ofFound, completeSpec } from "./sources";
+import { baseOfDocument, completeSpec } from "./sources";
 import { EXPERIMENTS, PRESETS, experiment } from "./form/presets.fixture";
 import { completed } from "./form/defaults";
 import { schemaErrors } from "./form/document";
@@ -74,9 +74,9 @@ describe("a creature", () => {
     expect(completeSpec(fold.spec, EXPERIMENTS).control).toEqual({ encoding: "fold", lengths: "raw" });
   });
 
-  it("is refined where that was chosen", () => {
+  it("is refined where that was selected", () => {
     const file = creature({ encoding: "cppn", control: {} }) as unknown as Json;
-    const base = ofFound(readDocument(file, true), "", EXPERIMENTS);
+    const base = baseOfDocument(readDocument(file, true), "", EXPERIMENTS);
     expect(base).toMatchObject({
       kind: "creature",
       foreign: true,

@@ -36,7 +36,7 @@ export function LookChoice({ names, name, view, change }: Props) {
           label={text.field}
           choices={names.map((each) => [each, text.fields[each]] as const)}
           value={name}
-          onChoose={(field) => change({ field })}
+          onSelect={(field) => change({ field })}
         />
       )}
       {names.includes("speed") && (

@@ -125,7 +125,7 @@ function ComparedList({ run, ids, others }: { run: Run; ids: string[]; others: O
           run={run}
           label={text.compareWith}
           fits={(other) => hasArchive(other) && other.generation > 0 && !ids.includes(other.id)}
-          onChoose={(id) => set([...ids, id])}
+          onSelect={(id) => set([...ids, id])}
         />
       )}
     </div>

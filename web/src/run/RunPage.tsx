@@ -143,7 +143,7 @@ function SectionLinks({ run: { experiment, spec } }: { run: Run }) {
   );
 }
 
-/** True for experiments that improve by gradient steps. */
+/** True for experiments that take gradient steps. */
 const learns = (run: Run) => ["folding", "refinement"].includes(run.experiment);
 
 function Banners({ run }: { run: Run }) {

@@ -12,7 +12,7 @@ interface Props {
   run: Run;
   label: string;
   fits: (other: Run) => boolean;
-  onChoose: (id: string) => void;
+  onSelect: (id: string) => void;
 }
 
 export function RunPicker(props: Props) {
@@ -25,7 +25,7 @@ export function RunPicker(props: Props) {
   );
 }
 
-function RunSelect({ run, label, fits, onChoose, onClose }: Props & { onClose: () => void }) {
+function RunSelect({ run, label, fits, onSelect, onClose }: Props & { onClose: () => void }) {
   const { value, error } = useRunChoices(run.id);
   const experiments = useExperiments().value ?? [];
   const select = useRef<HTMLSelectElement>(null);
@@ -37,7 +37,7 @@ function RunSelect({ run, label, fits, onChoose, onClose }: Props & { onClose: (
     const id = select.current?.value;
     if (!id) return select.current?.focus();
     onClose();
-    onChoose(id);
+    onSelect(id);
   };
   return (
     <InlineForm onSubmit={choose} onClose={onClose} closeButton={close}>

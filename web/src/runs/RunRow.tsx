@@ -17,12 +17,12 @@ import { text } from "./text";
 interface Props {
   id: string;
   experiments: Experiment[];
-  chosen: boolean;
+  selected: boolean;
   knownTags: string;
-  onChoose: () => void;
+  onSelect: () => void;
 }
 
-export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) {
+export function RunRow({ id, experiments, selected, knownTags, onSelect }: Props) {
   const run = useStore((state) => state.runs.get(id)!);
   const title = titleOf(run, experiments);
   const name = `${title} ${shortId(run.id)}`;
@@ -30,10 +30,10 @@ export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) 
   const time = timeOf(run);
   const [figureName, figure] = keyFigureOf(run);
   return (
-    <tr class={chosen ? "chosen-row" : ""}>
+    <tr class={selected ? "selected-row" : ""}>
       <td class="row-choice">
         {!run.deleted_at && (
-          <input type="checkbox" aria-label={text.compareRun(name)} checked={chosen} onChange={onChoose} />
+          <input type="checkbox" aria-label={text.compareRun(name)} checked={selected} onChange={onSelect} />
         )}
       </td>
       <th scope="row">

@@ -11,7 +11,7 @@ type Score = (typeof SCORES)[0][0];
 export interface ShownCase {
   summary: CaseSummary;
   /** Index among all cases. */
-  place: number;
+  caseIndex: number;
   name: string;
   colour: string;
   dash: number[] | undefined;

@@ -16,11 +16,11 @@ function summaryOf(generation: number[], median: number[]): CaseSummary {
 }
 
 describe("the bands of a sweep", () => {
-  const shown = (summary: CaseSummary, place: number) => ({
+  const shown = (summary: CaseSummary, caseIndex: number) => ({
     summary,
-    place,
-    name: `case ${place}`,
-    colour: `--series-${place}`,
+    caseIndex,
+    name: `case ${caseIndex}`,
+    colour: `--series-${caseIndex}`,
     dash: undefined,
   });
 

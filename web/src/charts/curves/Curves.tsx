@@ -95,7 +95,7 @@ const colourResolver =
 /** The columns that a table of curves depends on. */
 const columnsOf = ({ x, y }: Series) => [x, y];
 
-/** The newest values; other runs are named elsewhere. */
+/** The newest values of a run; the legend above the plots names other runs. */
 function NewestValues({ series, format }: { series: Series[]; format: Plot["format"] }) {
   if (series.every(({ other }) => other)) return null;
   const several = series.filter(({ other }) => !other).length > 1;

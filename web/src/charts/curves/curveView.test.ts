@@ -15,8 +15,8 @@ describe("the view of curves", () => {
 
   it("is in the address; unknown values are ignored", () => {
     expect(plain).toEqual({ over: "generation", log: false, smooth: 1 });
-    const asked = new URLSearchParams("over=seconds&log=1&smooth=20");
-    expect(curveViewOf(asked)).toEqual({ over: "seconds", log: true, smooth: 20 });
+    const requested = new URLSearchParams("over=seconds&log=1&smooth=20");
+    expect(curveViewOf(requested)).toEqual({ over: "seconds", log: true, smooth: 20 });
     expect(curveViewOf(new URLSearchParams("over=moons&log=yes&smooth=7"))).toEqual(plain);
   });
 

@@ -25,7 +25,7 @@ export function curveViewOf(query: URLSearchParams): CurveView {
 export interface OtherRun {
   name: string;
   colour: string;
-  /** If there are more runs than colours. */
+  /** Distinguishes lines if there are more runs than colours. */
   dash?: number[];
   curves: Curves;
 }
@@ -45,7 +45,7 @@ export function arrangePlots(
   });
 }
 
-/** The plots of several equal runs. */
+/** The plots of several runs, none of which is the main one. */
 export function overlayPlots(
   plotsOf: (curves: Curves) => Plot[],
   runs: readonly OtherRun[],
@@ -80,7 +80,7 @@ function inOneColour(series: Series, k: number): Series {
   return { ...series, colour: "--series-1", ...(k > 0 && { dash: [6, 2 + 2 * k] }) };
 }
 
-/** The smooth line, and the measured one faintly behind it. */
+/** The measured line, faint, and the smoothed one in front of it. */
 function withSmoothLine(series: Series, curves: Curves, { smooth }: CurveView): Series[] {
   if (smooth === 1 || series.dots) return [series];
   const mean = smoothed(series, curves.generation, smooth);

@@ -77,7 +77,7 @@ export function workOf(curves: Curves): Plot[] {
   return plots.filter(({ series }) => series.length > 0);
 }
 
-/** Descriptions of the reasons of the engine for divergence. */
+/** Descriptions of the engine's reasons for divergence. */
 export const REASONS: Record<string, string> = {
   "non-finite": text.nonFinite,
   supersonic: text.supersonic,

@@ -2,7 +2,7 @@
 
 import { Term } from "../../ui/Term";
 import type { Axis } from "./Plot";
-import { place, ticksOf } from "./scale";
+import { positionOf, ticksOf } from "./scale";
 import "./plot.css";
 
 export interface Room {
@@ -31,8 +31,8 @@ const [X_SPACING, Y_SPACING] = [52, 44];
 
 export function Frame({ x, y, room, upper, shaded }: Props) {
   const { left, right, top, bottom } = room;
-  const across = (value: number) => left + place(x.scale, value) * (right - left);
-  const up = (value: number) => bottom - place(y.scale, value) * (bottom - top);
+  const across = (value: number) => left + positionOf(x.scale, value) * (right - left);
+  const up = (value: number) => bottom - positionOf(y.scale, value) * (bottom - top);
   return (
     <g class="xy-frame">
       <rect x={left} y={top} width={right - left} height={bottom - top} class={shaded ? "shaded" : ""} />

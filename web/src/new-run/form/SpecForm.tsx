@@ -68,10 +68,10 @@ function Part({ part, state, kind, open = true, children }: PartProps) {
           <Term name={part.title} />
         </legend>
       )}
-      {switchable && <Switch {...{ part, off, state }} />}
+      {switchable && <PartSwitch {...{ part, off, state }} />}
       {part.help && <p class="help">{part.help}</p>}
       <div hidden={!open} id={kind === "inside" ? `inside-${part.path || "general"}` : undefined}>
-        {part.kind === "union" && <Kinds union={part} state={state} />}
+        {part.kind === "union" && <KindSelect union={part} state={state} />}
         <Messages messages={state.messages.get(part.path)} />
         {section && !off && <Fields section={section} state={state} />}
         {children}
@@ -81,7 +81,7 @@ function Part({ part, state, kind, open = true, children }: PartProps) {
 }
 
 /** A switch for a section; its first values are those of the preset, or defaults. */
-function Switch({ part, off, state }: { part: Section; off: boolean; state: FormState }) {
+function PartSwitch({ part, off, state }: { part: Section; off: boolean; state: FormState }) {
   const fresh = valueAt(state.original, part.path) ?? part.fresh!;
   const id = `field-${part.path}`;
   return (
@@ -98,8 +98,8 @@ function Switch({ part, off, state }: { part: Section; off: boolean; state: Form
   );
 }
 
-/** The choice between several parts; a newly chosen one has its defaults. */
-function Kinds({ union, state }: { union: Union; state: FormState }) {
+/** The choice between several parts; a newly selected one has its defaults. */
+function KindSelect({ union, state }: { union: Union; state: FormState }) {
   const path = `${union.path}.${union.tag}`;
   const value = valueAt(state.document, path);
   const original = valueAt(state.original, union.path);

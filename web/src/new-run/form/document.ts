@@ -50,7 +50,7 @@ export function numberError(field: NumberField, value: Json): string | null {
 }
 
 /**
- * Messages by the path of what shows them: the field that is named, else what is around it.
+ * Messages by the path of the element that shows them: the named field, or else the part around it.
  * `descriptors[0].low` and `descriptors.0.low` are the same place.
  */
 export function messagesByPath(errors: FieldError[], form: Section, document: Json): Map<string, string[]> {
@@ -107,8 +107,8 @@ function listComplaint({ item, least, most }: List, value: Json): string | null 
 }
 
 function severalComplaint({ least }: Several, value: Json): string | null {
-  const chosen = Array.isArray(value) ? value.length : 0;
-  return chosen < least ? text.selectMore(least) : null;
+  const selected = Array.isArray(value) ? value.length : 0;
+  return selected < least ? text.selectMore(least) : null;
 }
 
 export function partOf(union: Union, document: Json): Section | null {

@@ -53,15 +53,15 @@ describe("a choice with plug-ins", () => {
   });
 
   it("brings its settings with it, and takes them away again", () => {
-    const chosen = withChoice(SPEC, task, fitness, "mine.straight");
-    expect(valueAt(chosen, "task.plugin.settings.strictness")).toBe(1);
-    const left = withChoice(chosen, task, fitness, "displacement");
+    const selected = withChoice(SPEC, task, fitness, "mine.straight");
+    expect(valueAt(selected, "task.plugin.settings.strictness")).toBe(1);
+    const left = withChoice(selected, task, fitness, "displacement");
     expect(valueAt(left, "task.plugin")).toBeNull();
-    expect(changedPaths(chosen, SPEC)).toEqual(["task.fitness", "task.plugin"]);
+    expect(changedPaths(selected, SPEC)).toEqual(["task.fitness", "task.plugin"]);
     expect(changedPaths(left, SPEC)).toEqual([]);
   });
 
-  it("has its settings checked where it is chosen, and only there", () => {
+  it("has its settings checked where it is selected, and only there", () => {
     const wrong = { fitness: "mine.straight", plugin: { settings: { strictness: 11 } } };
     expect(schemaErrors(form, { ...SPEC, task: wrong })).toEqual([
       { field: "task.plugin.settings.strictness", message: "Needs at most 10." },

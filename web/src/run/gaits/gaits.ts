@@ -7,7 +7,7 @@ import type { Axis, Line, Point } from "../../charts/plot/Plot";
 import { fromZero, logAround } from "../../charts/plot/scale";
 import { text } from "./text";
 
-/** The order of the paper gives each swimmer the same colour in every run. */
+/** In the order of the paper, so that each swimmer has the same colour in every run. */
 const SWIMMERS = ["worm", "tadpole", "ray", "cilia", "jellyfish"];
 
 type Href = (creature: string) => string;

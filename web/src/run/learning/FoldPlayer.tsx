@@ -8,7 +8,7 @@ import { StepRange } from "../../replay/Transport";
 import { useClock } from "../../replay/clock";
 import { chainsOf, type Point, positionsAt } from "../../replay/motion";
 import { type Size, prepare } from "../../ui/canvas";
-import { prefersStillness, useTheme } from "../../ui/theme";
+import { prefersReducedMotion, useTheme } from "../../ui/theme";
 import { text } from "./text";
 
 /** Seconds of playback, and of rest at the end. */
@@ -25,8 +25,8 @@ export function FoldPlayer({ replay, target }: { replay: Replay; target: Target 
   const { frames, every, steps } = replay.header;
   const last = frames - 1;
   const theme = useTheme();
-  const [playing, setPlaying] = useState(() => !prefersStillness());
-  const [time, setTime] = useState(() => (prefersStillness() ? last : 0));
+  const [playing, setPlaying] = useState(() => !prefersReducedMotion());
+  const [time, setTime] = useState(() => (prefersReducedMotion() ? last : 0));
   const [shown, setShown] = useState(0.6);
   useClock(playing, (seconds) => {
     const whole = last * (1 + PAUSE_SECONDS / PLAY_SECONDS);
@@ -60,18 +60,18 @@ export function FoldPlayer({ replay, target }: { replay: Replay; target: Target 
           />
         </label>
       </div>
-      <Moments fold={fold} onChoose={(share) => scrub(share * last)} />
+      <Moments fold={fold} onSelect={(share) => scrub(share * last)} />
     </div>
   );
 }
 
-function Moments({ fold, onChoose }: { fold: Fold; onChoose: (share: number) => void }) {
+function Moments({ fold, onSelect }: { fold: Fold; onSelect: (share: number) => void }) {
   const { frames, steps } = fold.replay.header;
   return (
     <ol class="fold-moments" aria-label={text.moments}>
       {MOMENTS.map((share) => (
         <li key={share}>
-          <button class="plain" onClick={() => onChoose(share)}>
+          <button class="plain" onClick={() => onSelect(share)}>
             <Still
               fold={fold}
               time={share * (frames - 1)}

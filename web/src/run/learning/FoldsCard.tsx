@@ -23,13 +23,13 @@ interface Props {
 
 export function FoldsCard({ run, query, rows }: Props) {
   const { value: targets, error } = useFetched(() => api.readTargets(run.id), [run.id]);
-  const chosen = targets?.find(({ name }) => name === query.get("picture")) ?? targets?.[0];
-  const row = rows.find(({ picture }) => picture === chosen?.name);
+  const selected = targets?.find(({ name }) => name === query.get("picture")) ?? targets?.[0];
+  const row = rows.find(({ picture }) => picture === selected?.name);
   return (
     <Card id="folds" kind="folds" title={rows.length > 0 ? text.filaments : text.pictures}>
       {error && <p class="wrong-text small">{error}</p>}
-      {targets && <Pictures {...{ run, targets, rows, chosen: chosen!.name }} />}
-      {row?.creature && <Fold key={row.creature} {...{ run, row }} target={chosen!} />}
+      {targets && <Pictures {...{ run, targets, rows, selected: selected!.name }} />}
+      {row?.creature && <Fold key={row.creature} {...{ run, row }} target={selected!} />}
       {targets && rows.length === 0 && <p class="quiet small">{text.noFilaments}</p>}
     </Card>
   );
@@ -39,10 +39,10 @@ interface PicturesProps {
   run: Run;
   targets: Target[];
   rows: ResultRow[];
-  chosen: string;
+  selected: string;
 }
 
-function Pictures({ run, targets, rows, chosen }: PicturesProps) {
+function Pictures({ run, targets, rows, selected }: PicturesProps) {
   const summary = useStore((state) => state.runs.get(run.id))?.summary;
   const lossOf = (name: string) => {
     const loss = rows.find(({ picture }) => picture === name)?.least ?? summary?.[`loss of ${name}`];
@@ -53,7 +53,7 @@ function Pictures({ run, targets, rows, chosen }: PicturesProps) {
       {targets.map((target) => (
         <button
           key={target.name}
-          aria-pressed={rows.length > 0 ? target.name === chosen : undefined}
+          aria-pressed={rows.length > 0 ? target.name === selected : undefined}
           disabled={rows.length === 0}
           onClick={() => setQuery({ picture: target.name })}
         >

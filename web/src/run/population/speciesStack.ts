@@ -16,7 +16,7 @@ export interface Stack {
   size: number;
 }
 
-/** The oldest species lie lowest, so that a species keeps its neighbours while it lives. */
+/** The oldest species are at the bottom, so that a living species keeps its neighbours. */
 export function stackOf({ generation, number, members }: SpeciesHistory): Stack {
   const sizes = number.map((row, i) => new Map(row.map((each, k) => [each, members[i]![k]!])));
   const all = [...new Set(number.flat())].sort((a, b) => a - b);

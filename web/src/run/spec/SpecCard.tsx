@@ -26,7 +26,7 @@ export function SpecCard({ run, query }: { run: Run; query: URLSearchParams }) {
         run={run}
         label={text.compareSpec}
         fits={() => true}
-        onChoose={(id) => setQuery({ against: id })}
+        onSelect={(id) => setQuery({ against: id })}
       />
       <button class="slim" onClick={() => copyText(json, text.copied)}>
         {text.copyJson}
