@@ -14,14 +14,14 @@ import pytest
 from xdist.scheduler import LoadScopeScheduling
 
 SHARING = ("tests/faults", "tests/e2e", "tests/engine/experiments")
-"""Folders, and those in them, whose tests share running products or finished runs."""
+"""Folders whose tests share running products or finished runs."""
 
 WALK = "tests/e2e/test_walk.py"
 """The one test in a browser that is not long."""
 
 
 def is_long(item: pytest.Item) -> bool:
-    """Whether only `make test-all` runs a test."""
+    """Tell whether only `make test-all` runs a test."""
     if item.get_closest_marker("long"):
         return True
     if item.nodeid.startswith("tests/e2e"):
@@ -38,7 +38,7 @@ def pytest_itemcollected(item: pytest.Item) -> None:
 
 
 def share(nodeid: str) -> str:
-    """What goes to one process: the folder where that shares a product, else the file."""
+    """The tests of one process: a folder that shares a product, else a file."""
     file = nodeid.partition("::")[0]
     folder = file.rpartition("/")[0]
     return folder if folder.startswith(SHARING) else file
@@ -46,7 +46,7 @@ def share(nodeid: str) -> str:
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """The longest first, lest one process works alone at the end: folders, then large files."""
+    """Sort folders, then large files, first: no process works alone at the end."""
     tests = Counter(share(item.nodeid) for item in items)
 
     def turn(item: pytest.Item) -> tuple[bool, int, str]:
@@ -63,7 +63,7 @@ def pytest_xdist_make_scheduler(config, log):
 
 
 class Shares(LoadScopeScheduling):
-    """Gives every share of the tests to one process, in the order of collection."""
+    """Give every share of the tests to one process, in the order of collection."""
 
     def _split_scope(self, nodeid: str) -> str:
         return share(nodeid)

@@ -1,4 +1,4 @@
-"""What the README says works as it stands there."""
+"""The README's example runs, and its links exist."""
 
 import os
 import re

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import pytest
 from browser import executable, launched, overhear
 from databases import own_redis
-from drive import QUICK, ROOT, Installation
+from drive import QUICK, ROOT, Installation, running
 from playwright.sync_api import Browser, Page
 from small import submit_small_runs
 
@@ -38,14 +38,14 @@ class Shared(NamedTuple):
 
 
 class Idle(NamedTuple):
-    """A running product without workers: tests write what a worker would, with its services."""
+    """A running product without workers; tests write generations with its services."""
 
     product: Installation
     services: Services
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """What needs no worker first: the runs that all share are computed meanwhile."""
+    """Run tests without workers first, while the shared runs are computed."""
     items.sort(key=turn)
 
 
@@ -75,7 +75,7 @@ def browser(chromium: str) -> Iterator[Browser]:
 
 @pytest.fixture(scope="session")
 def common() -> dict[str, str]:
-    """What every product of the session finds in its environment: programs compiled once."""
+    """The environment of every product of the session."""
     if not (ROOT / "web" / "dist" / "index.html").exists():
         pytest.fail("web/dist is missing: build the page first")
     return QUICK | {"MICROCOSMOS_DEMONSTRATION": "false"}
@@ -84,16 +84,13 @@ def common() -> dict[str, str]:
 @pytest.fixture
 def product(chromium: str, common: dict[str, str], tmp_path: Path) -> Iterator[Installation]:
     """The whole product over an empty data folder."""
-    place = Installation(tmp_path / "data", common)
-    place.start(PATIENCE_S)
-    yield place
-    place.end()
-    place.close()
+    with running(tmp_path / "data", common) as place:
+        yield place
 
 
 @pytest.fixture
 def address(product: Installation) -> str:
-    """Where the product answers; nothing has been run there."""
+    """The address of the empty product."""
     return product.url
 
 
@@ -102,11 +99,8 @@ def shared(
     chromium: str, common: dict[str, str], tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Shared]:
     """One product for most tests, which computes a run of each kind."""
-    place = Installation(tmp_path_factory.mktemp("shared") / "data", common)
-    place.start(PATIENCE_S)
-    yield Shared(place, submit_small_runs(place))
-    place.end()
-    place.close()
+    with running(tmp_path_factory.mktemp("shared") / "data", common) as place:
+        yield Shared(place, submit_small_runs(place))
 
 
 @pytest.fixture(scope="package")
@@ -116,19 +110,16 @@ def idle(
     common: dict[str, str],
     tmp_path_factory: pytest.TempPathFactory,
 ) -> Iterator[Idle]:
-    """One product where nobody computes; its Redis is one that tests know too."""
+    """One product without workers, whose Redis the tests use too."""
     if any(needs(item, "shared") for item in request.session.items):
-        request.getfixturevalue("shared")  # It computes while these tests look.
+        request.getfixturevalue("shared")  # It computes meanwhile.
     folder = tmp_path_factory.mktemp("idle")
     with own_redis(folder) as url:
         environment = {"WORKERS": "0", "MICROCOSMOS_REDIS_URL": url}
-        place = Installation(folder / "data", common | environment)
-        place.start(PATIENCE_S)
-        services = connect(Settings(data=folder / "data", redis_url=url))
-        yield Idle(place, services)
-        services.close()
-        place.end()
-        place.close()
+        with running(folder / "data", common | environment) as place:
+            services = connect(Settings(data=folder / "data", redis_url=url))
+            yield Idle(place, services)
+            services.close()
 
 
 @pytest.fixture
@@ -137,8 +128,18 @@ def shared_address(shared: Shared) -> str:
 
 
 @pytest.fixture
+def stranger(browser: Browser) -> Iterator[Page]:
+    """A page in another browser, without cookies or stored data."""
+    context = browser.new_context(viewport=WINDOW)
+    page = context.new_page()
+    page.set_default_timeout(300_000)
+    yield page
+    context.close()
+
+
+@pytest.fixture
 def complaints() -> list[str]:
-    """What pages complain of; a test that expects some takes them out."""
+    """Errors and warnings of pages; a test removes those that it expects."""
     return []
 
 
@@ -150,13 +151,13 @@ def page(browser: Browser, address: str, complaints: list[str]) -> Iterator[Page
 
 @pytest.fixture
 def shared_page(browser: Browser, shared: Shared, complaints: list[str]) -> Iterator[Page]:
-    """The same, for the product that all share."""
+    """The same, for the shared product."""
     yield from opened(browser, complaints)
 
 
 @pytest.fixture
 def idle_page(browser: Browser, idle: Idle, complaints: list[str]) -> Iterator[Page]:
-    """The same, for the product where nobody computes."""
+    """The same, for the product without workers."""
     yield from opened(browser, complaints)
 
 

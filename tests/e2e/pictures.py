@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 from browser import launched, overhear
-from drive import ROOT, Installation
+from drive import ROOT, Installation, running
 from looks import THEMES, WIDTHS, faults
 from PIL import Image
 from places import GUIDED, NOWHERE, hold_still, places, visit
@@ -44,16 +44,10 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(os.environ.get("DATA") or temporary).resolve()
         new = not folder.exists() or not any(folder.iterdir())
-        place = Installation(folder)
-        place.start()
-        try:
+        with running(folder, {}) as place, launched() as browser:
             if new:
                 carry_out(place)
-            with launched() as browser:
-                wrong = take_all(browser, place.url)
-        finally:
-            place.end()
-            place.close()
+            wrong = take_all(browser, place.url)
     size = sum(file.stat().st_size for file in FOLDER.glob("*.png"))
     print(f"{len(list(FOLDER.glob('*.png')))} pictures, {size / 1e6:.1f} MB, in {FOLDER}")
     sys.exit("\n".join(wrong) if wrong else None)

@@ -1,25 +1,26 @@
-"""Every page there is to see of a product, and when it has come to rest."""
+"""The pages of a product, and waiting until they are loaded."""
 
+import re
 import time
 from collections.abc import Collection, Iterator
 from typing import Any, NamedTuple
 
 import httpx
-from playwright.sync_api import Page
+from playwright.sync_api import Page, expect
 
 NOWHERE = "Page not found"
 UNREST = ".loading, .rendering, [aria-busy=true], .waiting:has-text('…')"
-"""What stands for something that is still on its way."""
+"""Elements that stand for something that is loading."""
 CALM_S = 0.3
 SCRUBBER = "input[aria-label='Time in the replay']"
 
 
 GUIDED = "localStorage.setItem('microcosmos:guided', '1')"
-"""For who has been here before, and needs no guide."""
+"""Keeps the tour from opening by itself."""
 
 
 class Place(NamedTuple):
-    """A page with something on it."""
+    """A page to visit."""
 
     name: str
     path: str
@@ -69,11 +70,11 @@ def compared(known: list[dict[str, Any]]) -> Iterator[Place]:
 
 
 def searched(http: httpx.Client, run: dict[str, Any] | None) -> Iterator[Place]:
-    """What there is to see of an archive beside its map."""
+    """The tour, the gallery and the best creature of an archive."""
     if run:
         archive = http.get(f"/runs/{run['id']}/archive").raise_for_status().json()
         best = max(range(len(archive["cell"])), key=lambda i: archive["fitness"][i])
-        yield Place("guide", f"/runs/{run['id']}", "Explain")
+        yield Place("tour", f"/runs/{run['id']}", "Explain")
         yield Place("gallery", f"/runs/{run['id']}?view=gallery")
         yield Place("creature", f"/creatures/{archive['creature'][best]}?run={run['id']}")
 
@@ -87,7 +88,7 @@ def measured(http: httpx.Client, run: dict[str, Any] | None) -> Iterator[Place]:
 
 
 def visit(page: Page, address: str, place: Place, seconds: float = 120) -> bool:
-    """Open a page and wait until nothing is on its way; false where there is none."""
+    """Open a page and wait until it is loaded; false if it does not exist."""
     page.goto(address + place.path)
     page.get_by_role("main").wait_for()
     if place.name != "not-found" and page.get_by_role("heading", name=NOWHERE).count():
@@ -99,7 +100,7 @@ def visit(page: Page, address: str, place: Place, seconds: float = 120) -> bool:
 
 
 def settle(page: Page, seconds: float) -> None:
-    """Wait until a page has shown nothing that is on its way for a moment."""
+    """Wait until nothing on a page has been loading for a moment."""
     deadline, calm_since = time.monotonic() + seconds, time.monotonic()
     while time.monotonic() - calm_since < CALM_S:
         if time.monotonic() > deadline:
@@ -109,6 +110,21 @@ def settle(page: Page, seconds: float) -> None:
         if page.locator(UNREST).count():
             calm_since = time.monotonic()
     page.evaluate("document.fonts.ready")
+
+
+def pixels(page: Page) -> str:
+    """The picture of a creature's stage."""
+    return page.evaluate("document.querySelector('.stage canvas').toDataURL()")
+
+
+def see_it_swim(page: Page, seconds: float) -> None:
+    """Wait for the creature, and see that its picture changes."""
+    canvas = page.get_by_role("img", name=re.compile("The swimming creature"))
+    expect(canvas).to_be_visible(timeout=1000 * seconds)
+    page.wait_for_timeout(300)
+    before = pixels(page)
+    page.wait_for_timeout(600)
+    assert pixels(page) != before
 
 
 def hold_still(page: Page) -> None:

@@ -1,15 +1,15 @@
-"""The archive of a run as people look at it: map, time, gallery, guide."""
+"""The archive of a run: map, time, gallery, tour."""
 
 import re
 from typing import Any
 
 import pytest
+from places import GUIDED
 from playwright.sync_api import Page, expect
 from small import CENTROIDS
 from written import Written
 
 FAST, SLOW = 10_000, 120_000
-GUIDED = "localStorage.setItem('microcosmos:guided', '1')"
 
 FLASH_MS = 1200
 WHERE_DRAWN_DIFFERENTLY = """before => {
@@ -31,7 +31,7 @@ pytestmark = pytest.mark.e2e
 
 @pytest.fixture
 def searched(shared, shared_page: Page) -> str:
-    """The address of a finished search, for somebody who has been here before."""
+    """The address of a finished search; the tour does not open."""
     shared_page.add_init_script(GUIDED)
     return f"{shared.product.url}/runs/{shared.finished('search')}"
 
@@ -52,7 +52,7 @@ def test_arrow_keys_walk_the_map_and_enter_opens_a_creature(shared_page: Page, s
     page.keyboard.press("ArrowRight")
     archive = archive_of(page, searched)
     best = archive["creature"][archive["fitness"].index(max(archive["fitness"]))]
-    reading = page.locator("#map-reading")
+    reading = page.locator("#elite-measures")
     expect(reading).to_contain_text(best[:8], timeout=FAST)
     page.keyboard.press("ArrowLeft")
     expect(reading).not_to_contain_text(best[:8], timeout=FAST)
@@ -100,7 +100,7 @@ def test_the_history_plays_to_its_end(shared_page: Page, searched: str):
     page.get_by_role("button", name="Play the history").click()
     expect(elites).not_to_have_text(f"{now} elites", timeout=FAST)
     slider = page.get_by_role("slider", name=re.compile("Generation shown"))
-    slider.fill("26")  # So near to its end that nobody waits for long.
+    slider.fill("26")  # Close to the end, so the wait is short.
     page.get_by_role("button", name="Play the history").click()
     expect(page.get_by_role("button", name="Pause the history")).to_be_visible(timeout=FAST)
     expect(page.get_by_role("button", name="Play the history")).to_be_visible(timeout=30_000)
@@ -135,7 +135,7 @@ def test_the_gallery_moves_and_is_walked_by_keys(shared_page: Page, searched: st
     wall = page.get_by_role("application", name=re.compile("Gallery"))
     wall.focus()
     page.keyboard.press("ArrowDown")
-    sha = page.locator("#map-reading code").inner_text()
+    sha = page.locator("#elite-measures code").inner_text()
     page.keyboard.press("Enter")
     page.wait_for_url(re.compile(f"/creatures/{sha}"), timeout=FAST)
 
@@ -177,7 +177,7 @@ def test_a_cell_that_changes_live_flashes_once(idle_page: Page, idle, motion: st
 
 
 def corners_of_the_marked(page: Page) -> list[list[float]]:
-    """Of the cell that is marked, as shares of the map's sides."""
+    """The corners of the marked cell, as shares of the map's sides."""
     points = page.locator(".map-mark polygon").first.get_attribute("points", timeout=FAST)
     assert points
     return [[float(share) for share in corner.split(",")] for corner in points.split()]
@@ -208,23 +208,23 @@ def test_the_tour_scrolls_to_what_it_explains(shared, shared_page: Page):
     page = shared_page
     page.set_viewport_size({"width": 1280, "height": 800})
     page.goto(f"{shared.product.url}/runs/{shared.finished('search')}")
-    guide = page.get_by_role("complementary", name="Tour")
+    tour = page.get_by_role("complementary", name="Tour")
     expect(page.get_by_text(re.compile(r"^\d+ elites$"))).to_be_visible(timeout=FAST)
-    expect(guide).not_to_be_visible()  # It opens by itself over the demonstration only.
+    expect(tour).not_to_be_visible()  # It opens by itself over the demonstration only.
     page.get_by_role("button", name="Explain").click()
-    expect(guide).to_contain_text("of 256 kinds have one", timeout=FAST)
+    expect(tour).to_contain_text("of 256 kinds have one", timeout=FAST)
     for title in ("Cells are kinds", "Colour is fitness", "The history", "Open a creature"):
-        guide.get_by_role("button", name="Next").press("Enter")
-        expect(guide.get_by_role("heading", name=title)).to_be_visible(timeout=FAST)
+        tour.get_by_role("button", name="Next").press("Enter")
+        expect(tour.get_by_role("heading", name=title)).to_be_visible(timeout=FAST)
         if title == "The history":
             expect(page.locator(".time-slider")).to_be_in_viewport(ratio=1, timeout=FAST)
-    expect(page.locator("#map-reading")).to_contain_text("Fitness")
-    guide.get_by_role("button", name="Finish").press("Enter")
-    expect(guide).not_to_be_visible()
+    expect(page.locator("#elite-measures")).to_contain_text("Fitness")
+    tour.get_by_role("button", name="Finish").press("Enter")
+    expect(tour).not_to_be_visible()
     page.reload()
     expect(page.get_by_text(re.compile(r"^\d+ elites$"))).to_be_visible(timeout=FAST)
-    expect(guide).not_to_be_visible()
+    expect(tour).not_to_be_visible()
     page.get_by_role("button", name="Explain").click()
-    expect(guide).to_be_visible(timeout=FAST)
+    expect(tour).to_be_visible(timeout=FAST)
     page.keyboard.press("Escape")
-    expect(guide).not_to_be_visible()
+    expect(tour).not_to_be_visible()

@@ -58,7 +58,7 @@ def told(arguments: tuple[str, ...], folder: Path, environment: dict[str, str]) 
 
 
 def compare_with_the_file(run, pulled: Path) -> None:
-    """What the client tells is what the file and the table hold."""
+    """The client returns the same as the file and the table."""
     tree, _ = load(pulled.read_bytes())
     archive, lineage = run.archive(), run.lineage()
     np.testing.assert_array_equal(archive.fitness, tree["archive"]["fitness"])

@@ -38,7 +38,7 @@ def test_a_run_is_forked_extended_deleted_and_restored(
 
 
 def of_the_bin(said: str, run: str) -> bool:
-    """What the page asked of a run just before it went into the bin is answered by 404."""
+    """Requests for a run just before its deletion are answered by 404."""
     return "status of 404" in said and f"/api/v1/runs/{run}/" in said
 
 
@@ -47,7 +47,7 @@ def map_of(page: Page) -> Locator:
 
 
 def chosen(page: Page) -> Locator:
-    return page.locator(".chosen-bar [role=status]")
+    return page.locator(".selection-bar [role=status]")
 
 
 def choose_by_keyboard(page: Page) -> None:
@@ -90,7 +90,7 @@ def choose_by_mouse(page: Page) -> None:
 def fork_the_chosen(page: Page, address: str, run: str) -> None:
     """The form says whom the run begins from, and leads back to them."""
     text = chosen(page).inner_text().removesuffix(" selected")
-    page.locator(".chosen-bar").get_by_role("link", name="Fork").click()
+    page.locator(".selection-bar").get_by_role("link", name="Fork").click()
     beginning = page.locator(".base-bar")
     expect(beginning).to_contain_text(f"Starts from {text} of run {run[:8]}.", timeout=FAST)
     assert "cells=" in page.url
@@ -101,7 +101,7 @@ def fork_the_chosen(page: Page, address: str, run: str) -> None:
 
 def fork_the_past(page: Page, address: str, run: str) -> None:
     page.goto(f"{address}/runs/{run}?at=1")
-    bar = page.locator(".chosen-bar")
+    bar = page.locator(".selection-bar")
     expect(bar).to_contain_text(re.compile(r"^\d+ creatures? of generation 1"))
     bar.get_by_role("link", name="Fork").click()
     expect(page.locator(".base-bar")).to_contain_text(
@@ -114,7 +114,7 @@ def fork_an_elite_in_another_viscosity(page: Page, address: str, run: str) -> st
     page.goto(f"{address}/runs/{run}")
     map_of(page).focus()
     page.keyboard.press("ArrowRight")
-    page.locator("#map-reading").get_by_role("link", name="Fork").click()
+    page.locator("#elite-measures").get_by_role("link", name="Fork").click()
     expect(page.locator(".base-bar")).to_contain_text("Starts from 1 creature", timeout=FAST)
     world = page.get_by_role("group", name="World", exact=True)
     world.get_by_label("Viscosity", exact=True).fill(str(VISCOSITY))

@@ -27,7 +27,7 @@ def new(idle_page: Page, idle, complaints: list[str]) -> Iterator[Page]:
     idle_page.goto(f"{idle.product.url}/new")
     expect(idle_page.get_by_label("Estimate", exact=True)).to_be_visible(timeout=FAST)
     yield idle_page
-    # What the browser notes of a wrong value, which a person is told about.
+    # The browser logs the refusal of a wrong value, which the page shows.
     complaints[:] = [said for said in complaints if "status of 422" not in said]
 
 
@@ -68,7 +68,7 @@ def field(page: Page, group: str, name: str) -> Locator:
 
 @pytest.mark.e2e
 def test_a_spec_is_begun_changed_refused_kept_and_a_run_started(new: Page, idle):
-    """Where runs are queued, and nobody computes them."""
+    """Runs are queued, and no worker takes them."""
     address = idle.product.url
     every_experiment_shows_its_body_and_cost(new)
     a_wrong_value_is_named(new)

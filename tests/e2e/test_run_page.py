@@ -74,7 +74,7 @@ def follow_the_log(page: Page, run: Written) -> None:
 def see_species_and_the_best_network(page: Page, run: Written) -> None:
     plot = page.get_by_role("application", name=re.compile("^Species over generations"))
     expect(plot).to_have_attribute("aria-label", re.compile("2 in all"), timeout=FAST)
-    reading = page.locator("#species-reading")
+    reading = page.locator("#species-at-cursor")
     plot.focus()
     page.keyboard.press("Home")
     expect(reading).to_have_text("Generation 1: 2 species; largest: species 0 10, species 1 6")
@@ -114,7 +114,7 @@ def choose_how_curves_are_drawn(page: Page) -> None:
 
 
 def pixels(page: Page) -> str:
-    """What the first curve looks like."""
+    """The picture of the first curve."""
     return page.evaluate("document.querySelector('#curves canvas').toDataURL()")
 
 

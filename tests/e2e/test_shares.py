@@ -1,24 +1,14 @@
-"""A creature and an archive are published, seen by strangers, and taken back."""
+"""A creature and an archive are published, viewed by others, and revoked."""
 
 import re
-from collections.abc import Iterator
 from urllib.parse import urlsplit
 
 import pytest
-from playwright.sync_api import Browser, Page, Request, expect
+from places import GUIDED
+from playwright.sync_api import Page, Request, expect
 
 FAST, SLOW = 10_000, 300_000
 FIRST_S = 300
-
-
-@pytest.fixture
-def stranger(browser: Browser) -> Iterator[Page]:
-    """Somebody else's browser: no cookie, nothing stored."""
-    context = browser.new_context(viewport={"width": 1280, "height": 900})
-    page = context.new_page()
-    page.set_default_timeout(SLOW)
-    yield page
-    context.close()
 
 
 @pytest.mark.e2e
@@ -49,8 +39,8 @@ def test_an_archive_is_published_and_its_elites_are_opened(
     shared, shared_page: Page, stranger: Page
 ):
     page, address = shared_page, shared.product.url
-    page.add_init_script("localStorage.setItem('microcosmos:guided', '1')")
-    stranger.add_init_script("localStorage.setItem('microcosmos:guided', '1')")
+    page.add_init_script(GUIDED)
+    stranger.add_init_script(GUIDED)
     page.goto(f"{address}/runs/{shared.finished('voronoi')}")
     link = publish(page, "Eels", listed=False)
     asked = requests_of(stranger)
@@ -113,7 +103,7 @@ def stay_within(link: str, asked: list[tuple[str, str | None]]) -> None:
 
 
 def tell_other_sites(stranger: Page, link: str) -> None:
-    """What a site finds that is given the link: a title, and a picture that is there."""
+    """Other sites find a title, and a picture that exists."""
     text = stranger.request.get(link).text()
     assert 'property="og:title" content="An eel &lt;b&gt;&amp;"' in text
     found = re.search('property="og:image" content="([^"]+)"', text)

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from places import pixels, see_it_swim
 from playwright.sync_api import Page, expect
 
 FAST, SLOW = 10_000, 120_000
@@ -62,19 +63,14 @@ def open_an_elite(page: Page, address: str, run: str) -> str:
     y = box["y"] + (rows - j - 0.5) * box["height"] / rows
     sha = archive["creature"][k]
     page.mouse.move(x, y)
-    expect(page.locator("#map-reading")).to_contain_text(sha[:8], timeout=FAST)
+    expect(page.locator("#elite-measures")).to_contain_text(sha[:8], timeout=FAST)
     page.mouse.click(x, y)
     page.wait_for_url(re.compile(f"/creatures/{sha}"), timeout=FAST)
     return sha
 
 
 def see_it_move(page: Page) -> None:
-    canvas = page.get_by_role("img", name=re.compile("The swimming creature"))
-    expect(canvas).to_be_visible(timeout=SLOW)
-    page.wait_for_timeout(300)
-    before = pixels(page)
-    page.wait_for_timeout(600)
-    assert pixels(page) != before
+    see_it_swim(page, SLOW / 1000)
     page.keyboard.press("Space")
     expect(page.get_by_role("button", name="Play")).to_be_visible(timeout=FAST)
     page.wait_for_timeout(200)  # What was about to be drawn is drawn.
@@ -82,10 +78,6 @@ def see_it_move(page: Page) -> None:
     page.wait_for_timeout(300)
     assert pixels(page) == still
     expect(page.get_by_role("group", name=re.compile("^Network:"))).to_be_visible(timeout=FAST)
-
-
-def pixels(page: Page) -> str:
-    return page.evaluate("document.querySelector('.stage canvas').toDataURL()")
 
 
 def download_it(page: Page, sha: str, folder: Path) -> Path:

@@ -17,11 +17,11 @@ from pathlib import Path
 
 import malformed_hdf5
 from databases import Missing, services
-from drive import Installation, interrupt, kill_job, pause_and_resume, stop_worker
+from drive import Installation, interrupt, kill_job, pause_and_resume, running, stop_worker
 from left_open import leave_open
 from rich.console import Console
 from searches import METHODS, SEEDS, compare, compare_slopes, draw, forage, sinusoidal, spec
-from strangers import all_cases, send, watched
+from uploads import all_cases, send, watched
 
 FAULTS = (kill_job, stop_worker, kill_job, pause_and_resume, kill_job)
 SETTINGS = {"MICROCOSMOS_DEMONSTRATION": "0", "MICROCOSMOS_CHECKPOINT_INTERVAL": "5"}
@@ -33,7 +33,7 @@ console = Console(width=110)
 
 
 def carry_out(place: Installation, document: dict, title: str) -> dict:
-    """The run as the API tells it once it is finished, said in a line."""
+    """Carry out a run, print a line about it and return it from the API."""
     began = time.monotonic()
     run = place.submit(document)
     found = place.wait(run, "finished", seconds=2 * HOURS)
@@ -47,7 +47,7 @@ def carry_out(place: Installation, document: dict, title: str) -> dict:
 
 
 def disturb(place: Installation, undisturbed: bytes) -> bool:
-    """Whether a run disturbed at random moments ends with the same bytes."""
+    """Tell whether a run disturbed at random moments ends with the same bytes."""
     run = place.submit(spec(SEEDS[0], "MAP-Elites, NEAT"))
     moments = sorted(random.choices(range(1, 45), k=len(FAULTS)))
     interrupt(place, run, FAULTS, moments, seconds=2 * HOURS)
@@ -61,8 +61,8 @@ def disturb(place: Installation, undisturbed: bytes) -> bool:
 
 
 def searches(place: Installation) -> bool:
-    """Whether searches are as far ahead of random search as they have to be, and a disturbed
-    run ends as an undisturbed one."""
+    """Tell whether searches beat random search by enough, and a disturbed run ends with the
+    bytes of an undisturbed one."""
     runs = {
         name: [carry_out(place, spec(s, name), f"{name}, seed {s}") for s in SEEDS]
         for name in METHODS
@@ -86,12 +86,12 @@ def slopes(place: Installation) -> bool:
 
 
 def page(place: Installation) -> bool:
-    """Whether a page that is left open holds on to nothing it does not need."""
+    """Tell whether a page that is left open leaks no memory."""
     return leave_open(place, console, MINUTES)
 
 
 def databases(place: Installation) -> bool:
-    """Whether the same run ends with the same bytes on SQLite with the embedded Redis and,
+    """Tell whether the same run ends with the same bytes on SQLite with the embedded Redis and,
     with faults, on PostgreSQL with a Redis server."""
     document = spec(SEEDS[0], "MAP-Elites, NEAT")
     embedded = place.archive(carry_out(place, document, "SQLite, embedded Redis")["id"])
@@ -104,21 +104,16 @@ def databases(place: Installation) -> bool:
 
 
 def elsewhere(folder: Path, settings: dict[str, str], document: dict, embedded: bytes) -> bool:
-    """Whether an installation on other services comes to these bytes, kept from it or not."""
-    other = Installation(folder, SETTINGS | settings)
-    other.start()
-    try:
+    """Tell whether an installation on other services gives these bytes, disturbed or not."""
+    with running(folder, SETTINGS | settings) as other:
         found = carry_out(other, document, "PostgreSQL, Redis server")
         same = other.archive(found["id"]) == embedded
         console.print(f"{len(embedded)} bytes: {'identical' if same else 'DIFFERENT'}")
         return same and disturb(other, embedded)
-    finally:
-        other.end()
-        other.close()
 
 
 def uploads(place: Installation) -> bool:
-    """Whether thousands of malformed files are refused in time, and nothing else is read."""
+    """Tell whether thousands of malformed files are refused in time, and no other is read."""
     canary = place.folder / "canary.h5"
     canary.write_bytes(malformed_hdf5.whole())
     with watched(canary) as told:
@@ -144,17 +139,14 @@ PARTS = {
 
 
 def main(names: list[str]) -> None:
-    """All parts, or those of the names."""
+    """Carry out all parts, or those named."""
     if unknown := set(names) - PARTS.keys():
         sys.exit(f"parts must be of {', '.join(PARTS)}, got {', '.join(sorted(unknown))}")
-    with tempfile.TemporaryDirectory() as folder:
-        place = Installation(Path(folder) / "data", SETTINGS)
-        place.start()
-        try:
-            good = [PARTS[name](place) for name in names or PARTS]
-        finally:
-            place.end()
-            place.close()
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        running(Path(folder) / "data", SETTINGS) as place,
+    ):
+        good = [PARTS[name](place) for name in names or PARTS]
     sys.exit(not all(good))
 
 

@@ -1,4 +1,4 @@
-"""Real servers, workers, databases and queues, and what goes wrong with them."""
+"""Real servers, workers, databases and queues, to be disturbed."""
 
 from types import SimpleNamespace
 
@@ -11,7 +11,7 @@ SHORT = QUICK | {
     "MICROCOSMOS_LEASE": "3",
     "MICROCOSMOS_RECONCILE_INTERVAL": "0.5",
 }
-"""Settings under which what takes a minute takes a second."""
+"""Settings that shorten minutes to seconds."""
 
 SPEC = {
     "experiment": "quality-diversity",
@@ -26,7 +26,7 @@ SPEC = {
 
 
 def installations(tmp_path_factory):
-    """Makes installations, each in a data folder of its own; they are gone afterwards."""
+    """Makes installations, each in its own data folder, and ends them afterwards."""
     made = []
 
     def make(**environment):
@@ -58,7 +58,7 @@ def spec():
 
 @pytest.fixture(scope="package")
 def undisturbed(place, spec):
-    """What a run comes to that nothing disturbs: its archive, and what the API tells of it."""
+    """The archive of an undisturbed run, and the API's account of it."""
     run = place.submit(spec)
     place.wait(run, "finished", seconds=300)  # It has to compile.
-    return SimpleNamespace(archive=place.archive(run), told=place.told(run))
+    return SimpleNamespace(archive=place.archive(run), account=place.account(run))

@@ -1,4 +1,4 @@
-"""A Microcosmos of its own, driven as people drive it: over HTTP, and by signals."""
+"""An installation of Microcosmos, driven over HTTP and by signals."""
 
 import os
 import signal
@@ -26,13 +26,13 @@ QUICK = {
 """Settings under which programs compile in a fifth of the time, and are kept for later runs."""
 TERMINAL = ("finished", "failed", "cancelled")
 SERVICES = ("MICROCOSMOS_REDIS_URL", "MICROCOSMOS_DATABASE_URL", "MICROCOSMOS_ARTIFACTS_URL")
-"""What an installation of its own has of its own, unless it is told otherwise."""
+"""Settings that an installation does not inherit."""
 
 
 def wait_until(
     condition: Callable[[], Any], seconds: float, what: str, every: float = 0.1
 ) -> Any:
-    """What the condition gives as soon as it gives anything, asked `every` so many seconds."""
+    """Return the first true value of the condition, asked `every` so many seconds."""
     deadline = time.monotonic() + seconds
     while not (found := condition()):
         if time.monotonic() > deadline:
@@ -93,12 +93,12 @@ class Installation:
             return False
 
     def end(self, sent: signal.Signals = signal.SIGINT, seconds: float = 60) -> int:
-        """Ask it to end, as Ctrl-C does, and return its exit status when it has."""
+        """Ask it to end, as Ctrl-C does, and return its exit status."""
         self.process.send_signal(sent)
         return self.process.wait(seconds)
 
     def close(self) -> None:
-        """End it for good, whatever state it is in."""
+        """Kill all its processes."""
         for process in self.processes():
             process.kill()
         if hasattr(self, "process"):
@@ -113,7 +113,7 @@ class Installation:
         return answer.json()["id"]
 
     def read(self, run: str) -> dict[str, Any]:
-        """The run as the API tells it; patient while the server is restarted."""
+        """Read a run, retrying while the server is restarted."""
         for _ in range(100):
             try:
                 return self.http.get(f"/api/v1/runs/{run}").raise_for_status().json()
@@ -126,7 +126,7 @@ class Installation:
         self.http.post(f"/api/v1/runs/{run}/{action}").raise_for_status()
 
     def wait(self, run: str, *statuses: str, seconds: float = 120) -> dict[str, Any]:
-        """The run as soon as it has one of the statuses."""
+        """Wait until a run has one of the statuses."""
 
         def there() -> dict[str, Any] | None:
             found = self.read(run)
@@ -137,7 +137,7 @@ class Installation:
         return wait_until(there, seconds, f"run {run} is {' or '.join(statuses)}")
 
     def reach(self, run: str, generation: int, after: int = 0, seconds: float = 120) -> int:
-        """The attempt, beyond `after`, that computes and has recorded a generation."""
+        """Wait for an attempt, beyond `after`, that has recorded a generation."""
 
         def there() -> int:
             found = self.read(run)
@@ -153,8 +153,8 @@ class Installation:
         """The file that people download."""
         return self.http.get(f"/api/v1/runs/{run}/archive.h5").raise_for_status().content
 
-    def told(self, run: str) -> dict[str, Any]:
-        """All that the API tells about a run's course, but for wall times."""
+    def account(self, run: str) -> dict[str, Any]:
+        """Curves and archive of a run in the API, without wall times."""
         curves = self.http.get(f"/api/v1/runs/{run}/generations").raise_for_status().json()
         archive = self.http.get(f"/api/v1/runs/{run}/archive").raise_for_status().json()
         summary = {**(curves.get("summary") or {}), "device_seconds": None}
@@ -187,10 +187,9 @@ class Installation:
 
     @contextmanager
     def frozen(self, processes: Sequence[psutil.Process]) -> Iterator[None]:
-        """Processes that stand still meanwhile, none of them in the midst of writing.
+        """Suspend processes for a while, none of them within a transaction.
 
-        A frozen writer would keep SQLite's lock: nobody could write until it wakes, which
-        no server can help.
+        A suspended writer would keep SQLite's lock, and no other process could write.
         """
 
         def freeze() -> bool:
@@ -210,7 +209,7 @@ class Installation:
                 process.resume()
 
     def writable(self) -> bool:
-        """Whether the embedded database can be written to within a second."""
+        """Tell whether the embedded database can be written to within a second."""
         path = self.folder / "microcosmos.sqlite"
         with closing(sqlite3.connect(path, timeout=1, isolation_level=None)) as database:
             try:
@@ -237,6 +236,20 @@ class Installation:
         wait_until(lambda: self.named(module), 60, f"a process runs {module}")
         for process in self.named(module):
             process.send_signal(sent)
+
+
+@contextmanager
+def running(
+    folder: Path, environment: dict[str, str], seconds: float = 120
+) -> Iterator[Installation]:
+    """An installation that is started, and ended at the end."""
+    place = Installation(folder, environment)
+    try:
+        place.start(seconds)
+        yield place
+        place.end()
+    finally:
+        place.close()
 
 
 JOB, SUPERVISOR = "worker.job_process", "worker.supervisor"

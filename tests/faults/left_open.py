@@ -50,7 +50,7 @@ SPEC = {
 
 @dataclass(frozen=True)
 class Sample:
-    """What a page holds on to."""
+    """The memory of a page at a moment."""
 
     seconds: float
     parts: Sequence[float]
@@ -64,7 +64,7 @@ class Sample:
 
 
 def leave_open(place: Installation, console: Console, minutes: float) -> bool:
-    """Whether the page holds on to no more at the end than it did in the middle."""
+    """Tell whether the page uses no more memory at the end than in the middle."""
     run = place.submit(SPEC)
     place.reach(run, 2, seconds=300)
     with launched() as browser:
@@ -79,7 +79,7 @@ def leave_open(place: Installation, console: Console, minutes: float) -> bool:
 
 
 def watched(page: Page, place: Installation, run: str, seconds: float) -> list[Sample]:
-    """Samples at even distances, between which the page is looked at."""
+    """Take samples at even distances, using the page in between."""
     session = page.context.new_cdp_session(page)
     session.send("HeapProfiler.enable")
     began, found = time.monotonic(), []
@@ -94,7 +94,7 @@ def watched(page: Page, place: Installation, run: str, seconds: float) -> list[S
 
 
 def look_at_gallery(page: Page) -> None:
-    """There and back, within the page."""
+    """Open the gallery and return, within the page."""
     for query in ("?view=gallery", "?"):
         page.evaluate(MOVE, query)
         page.wait_for_timeout(1000 * HOVER_S)

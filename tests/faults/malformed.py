@@ -1,4 +1,4 @@
-"""Creature files that are none: made from good ones, systematically, always the same."""
+"""Malformed creature files, made systematically from valid ones, always the same."""
 
 import base64
 import gzip
@@ -19,14 +19,14 @@ JSON = "application/json"
 
 @dataclass(frozen=True)
 class Case:
-    """A body, and what the answer has to say of it."""
+    """A body, and the words that its refusal must contain."""
 
     name: str
     body: bytes
     says: str = ""
     kind: str = JSON
     harmless: bool = False
-    """Whether it may have come out as sound as it was."""
+    """The change may leave the file valid."""
 
 
 def good() -> dict[str, Any]:
@@ -87,7 +87,7 @@ def broken(whole: bytes) -> Iterator[Case]:
 
 
 def same(body: bytes, told: Any) -> bool:
-    """Whether some bytes say the same in another way, such as 1E-05 for 1e-05."""
+    """Tell whether bytes mean the same, such as 1E-05 for 1e-05."""
     try:
         return json.loads(body) == told
     except ValueError:
@@ -116,7 +116,7 @@ def changed(document: dict[str, Any]) -> Iterator[Case]:
         here = at(document, path)
         for name, value in replacements(here):
             if path == ("licence",) and isinstance(value, str):
-                continue  # People may say there what they like.
+                continue  # Any text is a licence.
             if path == ("credit",) and value == []:
                 continue  # Nobody is to be named.
             # What is left out has its default, and true is 1 to some: that may be as before.
@@ -157,7 +157,7 @@ def replacements(here: Any) -> Iterator[tuple[str, Any]]:
 
 
 def paths(document: Any, before: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
-    """Where values stand; of lists the first one stands for all."""
+    """The paths of all values; the first item of a list stands for all."""
     items = document.items() if isinstance(document, dict) else enumerate(document[:1])
     for key, value in items:
         yield (*before, key)

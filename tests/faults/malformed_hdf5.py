@@ -1,4 +1,4 @@
-"""HDF5 files that are no creature's, or that ask for what is not theirs."""
+"""Malformed HDF5 files of creatures, and some that refer to other files."""
 
 import random
 from collections.abc import Callable, Iterator
@@ -24,7 +24,7 @@ def whole() -> bytes:
 
 
 def cases(canary: Path) -> Iterator[Case]:
-    """`canary` is a file of this machine, which nobody may open."""
+    """`canary` is a file of this machine that the server must not open."""
     file = whole()
     yield from damaged(file)
     for name, edit, says in (*foreign(canary), *bombs(), *others()):
@@ -57,7 +57,7 @@ def edited(file: bytes, edit: Edit) -> bytes:
 
 
 def members(file: bytes) -> list[str]:
-    """Where the datasets of a file are."""
+    """The paths of a file's datasets."""
     found: list[str] = []
     with h5py.File(BytesIO(file), "r") as opened:
         opened.visititems(lambda name, item: found.append(name) if is_data(item) else None)
@@ -120,7 +120,7 @@ def virtual(name: str, path: str) -> Edit:
 
 
 def bombs() -> Edits:
-    """Little that says that it is much."""
+    """Small files that claim to be large."""
     for name in MEMBERS:
         for title, options in (
             ("zeros in gzip", {"chunks": (1 << 20,), "compression": "gzip"}),

@@ -40,7 +40,7 @@ def test_a_run_that_is_killed_stopped_and_paused_ends_with_the_same_archive(
     interrupt(place, run, faults, moments)
     assert place.wait(run, "finished")["attempt"] == 1 + len(faults)
     assert place.archive(run) == undisturbed.archive, f"interrupted at {moments}"
-    assert place.told(run) == undisturbed.told
+    assert place.account(run) == undisturbed.account
 
 
 @pytest.mark.long
@@ -62,7 +62,7 @@ def test_a_frozen_worker_is_replaced_and_writes_nothing_when_it_wakes(place, spe
         successor = place.reach(run, 0, after=attempt)
     assert place.wait(run, "finished")["attempt"] == successor == attempt + 1
     assert place.archive(run) == undisturbed.archive
-    assert place.told(run) == undisturbed.told
+    assert place.account(run) == undisturbed.account
     wait_until(lambda: not owner.children(), 10, "the woken job has ended")
     assert owner.is_running()
 
@@ -76,7 +76,7 @@ def test_ctrl_c_leaves_no_process_and_the_next_start_goes_on(place, spec, undist
     place.start()
     place.wait(run, "finished")
     assert place.archive(run) == undisturbed.archive
-    assert place.told(run) == undisturbed.told
+    assert place.account(run) == undisturbed.account
 
 
 SWEEP = {
@@ -91,7 +91,7 @@ SWEEP = {
 
 @pytest.fixture
 def result(place):
-    """All that people get of a run: its table, as JSON and CSV, and its file."""
+    """The results of a run: its table, as JSON and CSV, and its file."""
 
     def read(run):
         whole = place.http.get(f"/api/v1/runs/{run}/results").raise_for_status().json()
@@ -137,7 +137,7 @@ def test_postgresql_and_a_redis_server_give_the_same_bytes(
     interrupt(place, run, [kill_job, kill_supervisor, stop_worker], [1, 4, 7])
     assert place.wait(run, "finished")["attempt"] == 4
     assert place.archive(run) == undisturbed.archive
-    assert place.told(run) == undisturbed.told
+    assert place.account(run) == undisturbed.account
 
 
 @pytest.mark.long
@@ -198,12 +198,12 @@ def test_a_full_disk_leaves_the_last_checkpoint_and_the_run_says_so(
     place.ask(run, "resume")
     assert place.wait(run, "finished")["warning"] is None
     assert place.archive(run) == undisturbed.archive
-    assert place.told(run) == undisturbed.told
+    assert place.account(run) == undisturbed.account
 
 
 @pytest.mark.long
 def test_a_replay_is_made_though_its_renderer_is_killed(place, undisturbed):
-    creature = undisturbed.told["archive"]["creature"][0]
+    creature = undisturbed.account["archive"]["creature"][0]
     address = f"/api/v1/creatures/{creature}/replay"
     assert place.http.get(address).status_code == 202
     place.signal(RENDERER, signal.SIGKILL)

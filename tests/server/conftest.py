@@ -86,7 +86,7 @@ def installation(installations, database) -> Iterator[Installation]:
 
 @pytest.fixture
 def services(installation) -> Services:
-    """What a worker would have: the same database, Redis and files as the server."""
+    """A worker's services: the same database, Redis and files as the server."""
     return installation.services
 
 
@@ -97,12 +97,12 @@ def flush(services) -> Callable[[], None]:
 
 @pytest.fixture
 def eventually() -> Callable[[Callable[[], Any]], None]:
-    """Waits until something is so, and fails where it does not come."""
+    """Waits until a condition holds, and fails after 20 seconds."""
 
     def wait(condition: Callable[[], Any]) -> None:
         deadline = time.monotonic() + 20
         while not condition():
-            assert time.monotonic() < deadline, "it never came to be"
+            assert time.monotonic() < deadline, "the condition never held"
             time.sleep(0.01)
 
     return wait

@@ -1,4 +1,4 @@
-"""What docker-compose.yml and the Dockerfiles name exists, and fits together.
+"""The names in docker-compose.yml and the Dockerfiles exist and fit together.
 
 Images are not built here: this keeps the words in them from going stale.
 """

@@ -56,7 +56,7 @@ HERE = settings(
 def known(
     services, spec, run_id, sweep_id, report, identity, table, attempt, record
 ) -> dict[str, list[str]]:
-    """What paths may name so that there is something to answer: by the parameter."""
+    """Existing values of path parameters."""
     for generation in (1, 2):
         record(generation, {generation: 1.0})
     attempt.save(2, archive_file(spec))
@@ -88,7 +88,7 @@ def test_no_request_breaks_the_server_or_its_document(serve, services, known):
 def broken(
     operation: Any, address: str, known: dict[str, list[str]], reached: set[str]
 ) -> list[str]:
-    """What the answers of an operation were that they should not have been."""
+    """Send requests to an operation and return wrong answers."""
     wrong: list[str] = []
     modes = [operation.as_strategy(generation_mode=mode) for mode in GenerationMode]
 
@@ -116,7 +116,7 @@ def broken(
 TEXT = (Path(__file__).parents[2] / "docs" / "operation.md").read_text()
 ELSEWHERE = {"database_url", "redis_url", "artifacts_url", "token", "max_bytes", "data"}
 ELSEWHERE |= {"public_url", "modules"}
-"""Whose defaults are said in words."""
+"""Settings whose defaults are described in words."""
 
 
 def rows(heading):

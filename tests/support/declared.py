@@ -1,4 +1,4 @@
-"""What a module `mine` of plug-ins declares."""
+"""Declarations of a module `mine` of plug-ins."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ STRICT = {
 
 
 def declared(source: str = A) -> list[dict[str, Any]]:
-    """What a module `mine` declares."""
+    """The declarations of a version of `mine`."""
     axis = Axis(low=0.001, high=1.0, scale="log10")
     strict = {"settings": STRICT, "defaults": {"strictness": 1.0}}
     found = (

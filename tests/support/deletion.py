@@ -1,4 +1,4 @@
-"""Runs that are finished, deleted and purged, and what is left of them."""
+"""Finishing, deleting and purging runs, and counting rows and files."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ from server.tables import Base, Run
 
 
 def rows(services):
-    """How many rows each table has."""
+    """The number of rows of each table."""
     with services.sessions.read() as session:
         return {
             table.name: session.scalar(select(func.count()).select_from(table))
@@ -40,7 +40,7 @@ def another(services, spec, seed, key=None):
 
 
 def let_time_pass(services, run_id):
-    """As if it had lain in the bin for its day."""
+    """Let a deleted run's day in the bin pass."""
     with services.sessions.write.begin() as session:
         over = update(Run).where(Run.id == run_id)
         session.execute(over.values(purge_at=Run.deleted_at))

@@ -1,4 +1,4 @@
-"""A relay that breaks connections off, and a server that is none of ours."""
+"""A relay that breaks connections off, and a foreign server."""
 
 import socket
 import threading
@@ -9,7 +9,7 @@ from urllib.parse import urlsplit
 
 
 class Relay:
-    """Hands bytes on between a client and a server, and breaks off as it is told."""
+    """Hands bytes on between a client and a server, and breaks connections off."""
 
     def __init__(self, address: str):
         parts = urlsplit(address)
@@ -52,7 +52,7 @@ class Relay:
         hang_up(server)
 
     def cut(self) -> None:
-        """Break off whatever is going on."""
+        """Break all connections off."""
         for each in self.open:
             hang_up(each)
 
@@ -70,7 +70,7 @@ def hang_up(end: socket.socket) -> None:
 
 @contextmanager
 def other(*answers: tuple[int, dict[str, str], bytes]) -> Iterator[tuple[str, list[str]]]:
-    """Something that is no server of ours; its answers in order, the last again and again."""
+    """A foreign server with these answers in order, the last one repeated."""
     left, asked = list(answers), []
 
     class Handler(BaseHTTPRequestHandler):

@@ -97,15 +97,12 @@ def test_the_processor_is_used_without_a_gpu(driver, cards):
     assert found.name.endswith(f"({len(found.threads)} threads)")
 
 
-@pytest.mark.parametrize(("threads", "workers"), [(8, 1), (8, 2), (8, 3), (7, 7)])
-def test_threads_are_given_out_evenly_and_none_twice(threads, workers):
-    given = [10 + i for i in range(threads)]
-    shares = [cpu.share(given, i, workers) for i in range(workers)]
-    assert [thread for share in shares for thread in share] == given
-    assert max(map(len, shares)) - min(map(len, shares)) <= 1
-
-
-def test_more_workers_than_threads_share_them():
+def test_threads_are_given_out_evenly_and_shared_if_there_are_too_few():
+    for threads, workers in ((8, 1), (8, 2), (8, 3), (7, 7)):
+        given = [10 + i for i in range(threads)]
+        shares = [cpu.share(given, i, workers) for i in range(workers)]
+        assert [thread for share in shares for thread in share] == given
+        assert max(map(len, shares)) - min(map(len, shares)) <= 1
     assert [cpu.share([4, 5], i, 5) for i in range(5)] == [[4], [5], [4], [5], [4]]
 
 
@@ -164,18 +161,21 @@ def test_in_a_container_its_own_memory_is_told(tmp_path, monkeypatch, current, e
     assert (found.memory_bytes, found.load is None) == (expected, False)
 
 
+GPU = {"GPU-3": ("a GPU", 80 << 30)}
+
+
 @pytest.mark.parametrize(
-    ("used", "load", "expected"),
-    [(1234, 56, Usage(1234, 0.56)), (1234, None, Usage(1234, None)), (None, None, Usage())],
+    ("cards", "used", "load", "expected"),
+    [
+        (GPU, 1234, 56, Usage(1234, 0.56)),
+        (GPU, 1234, None, Usage(1234, None)),
+        (GPU, None, None, Usage()),
+        (None, 0, None, Usage()),
+    ],
 )
-def test_a_gpu_tells_its_own_and_none_for_what_it_does_not_tell(nvml, used, load, expected):
-    nvml({"GPU-3": ("a GPU", 80 << 30)}, used=used, load=load)
+def test_a_gpu_reports_its_own_usage_and_none_for_the_rest(nvml, cards, used, load, expected):
+    nvml(cards, used=used, load=load)
     assert usage.usage(Device("gpu", 80 << 30, {}, "GPU-3")) == expected
-
-
-def test_without_a_driver_a_gpus_usage_is_unknown(nvml):
-    nvml(None)
-    assert usage.usage(Device("gpu", 80 << 30, {}, "GPU-3")) == Usage()
 
 
 def test_a_heartbeat_reports_the_latest_usage(services):
@@ -189,27 +189,11 @@ def test_a_heartbeat_reports_the_latest_usage(services):
     assert (found.kind, found.memory_used_bytes, found.load) == ("gpu", 5, 0.25)
 
 
-def test_a_gauge_reads_until_it_ends():
-    seen, enough = [], Event()
-
-    def look():
-        seen.append(Usage(load=float(len(seen))))
-        if len(seen) == 3:
-            enough.set()
-        return seen[-1]
-
-    gauge = usage.Gauge(look, 0.001)
-    gauge.start()
-    assert enough.wait(20)
-    gauge.end()
-    gauge.join()
-    assert gauge.last == seen[-1]
-
-
 @pytest.mark.parametrize("error", [OSError("gone"), ValueError("no number")])
-def test_a_failed_reading_of_usage_drops_the_old_one(error):
+def test_a_gauge_reads_until_its_end_and_drops_what_is_old_after_a_failure(error):
     failed, go_on, enough = Event(), Event(), Event()
-    looks = iter([Usage(load=1.0), error])
+    seen = [Usage(load=1.0)]
+    looks = iter([*seen, error])
 
     def look():
         found = next(looks, None)
@@ -218,8 +202,10 @@ def test_a_failed_reading_of_usage_drops_the_old_one(error):
         if found is None:
             failed.set()
             assert go_on.wait(20)
-            enough.set()
-        return found or Usage(load=2.0)
+            seen.append(Usage(load=float(len(seen))))
+            if len(seen) == 3:
+                enough.set()
+        return seen[-1]
 
     gauge = usage.Gauge(look, 0.001)
     gauge.start()
@@ -229,4 +215,4 @@ def test_a_failed_reading_of_usage_drops_the_old_one(error):
     assert enough.wait(20)
     gauge.end()
     gauge.join()
-    assert gauge.last == Usage(load=2.0)
+    assert gauge.last == seen[-1]

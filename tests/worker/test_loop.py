@@ -42,18 +42,12 @@ def ask(services):
     return enqueue
 
 
-def test_a_job_is_taken_and_carried_out(worker, ask):
-    job = ask("abc")
-    loop.take_one(worker)
-    assert job.is_finished
-
-
-def test_a_worker_registers_again_after_redis_was_emptied(services, worker, ask):
-    loop.take_one(worker)
-    services.redis.flushdb()
-    job = ask("abc")
-    loop.take_one(worker)
-    assert job.is_finished
+def test_jobs_are_carried_out_also_after_redis_was_emptied(services, worker, ask):
+    for empty in (lambda: None, services.redis.flushdb):
+        empty()
+        job = ask("abc")
+        loop.take_one(worker)
+        assert job.is_finished
     assert services.redis.exists(worker.key)
 
 
@@ -184,10 +178,20 @@ def change(services, **values):
         session.execute(update(Run).values(**values))
 
 
-def test_a_heartbeat_reports_device_memory_and_run(services, heartbeat, run_id, killed):
+@pytest.fixture
+def watched(services, heartbeat, run_id, killed):
+    """The heartbeats of a worker that computes the run; `killed` lists runs whose job it kills."""
     claim(services, run_id, "worker")
     heartbeat.watch(run_id, lambda: killed.append(run_id))
-    heartbeat.beat()
+    return heartbeat
+
+
+def test_a_heartbeat_renews_the_lease_and_reports_device_memory_and_run(
+    services, watched, run_id, row, killed
+):
+    change(services, heartbeat_at=None)
+    watched.beat()
+    assert row().heartbeat_at is not None
     with services.sessions.read() as session:
         found = registry.live(session, 20)[0]
     assert (found.name, found.device, found.memory_bytes) == ("worker", "some device", 8 << 30)
@@ -195,32 +199,20 @@ def test_a_heartbeat_reports_device_memory_and_run(services, heartbeat, run_id, 
     assert not killed
 
 
-def test_a_beat_renews_the_lease(services, heartbeat, run_id, row, killed):
-    claim(services, run_id, "worker")
-    change(services, heartbeat_at=None)
-    heartbeat.watch(run_id, lambda: killed.append(run_id))
-    heartbeat.beat()
-    assert row().heartbeat_at is not None
-
-
-def test_the_job_of_a_lost_run_is_killed(services, heartbeat, run_id, killed):
-    claim(services, run_id, "worker")
-    heartbeat.watch(run_id, lambda: killed.append(run_id))
-    heartbeat.beat()
+def test_the_job_of_a_lost_run_is_killed(services, watched, run_id, killed):
+    watched.beat()
     change(services, worker="another")
-    heartbeat.beat()
+    watched.beat()
     assert killed == [run_id]
 
 
-def test_a_job_that_outlives_its_run_is_killed(services, heartbeat, run_id, killed):
-    claim(services, run_id, "worker")
-    heartbeat.watch(run_id, lambda: killed.append(run_id))
-    heartbeat.beat()
+def test_a_job_that_outlives_its_run_is_killed(services, watched, run_id, killed):
+    watched.beat()
     change(services, status=CANCELLED, worker=None)
     for _ in range(HEARTBEATS_AFTER_END):
-        heartbeat.beat()
+        watched.beat()
     assert not killed
-    heartbeat.beat()
+    watched.beat()
     assert killed == [run_id]
 
 

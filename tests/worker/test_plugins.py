@@ -45,13 +45,10 @@ def test_a_worker_reports_its_plug_ins_and_failed_modules(settings):
     assert "SystemExit" in reasons["gone"]
 
 
-def test_a_module_that_ends_its_process_does_not_end_the_worker(settings):
+def test_a_module_that_ends_its_process_or_never_ends_is_given_up(settings, monkeypatch):
     found = plugins.list_plugins(settings(mine=GOOD, bad="import os; os._exit(3)"))
     assert found.plugins == ()
     assert all("failed (" in one["reason"] for one in found.unloaded)
-
-
-def test_a_module_that_never_ends_is_given_up(settings, monkeypatch):
     monkeypatch.setattr(plugins, "IMPORT_SECONDS", 0.1)
     (failed,) = plugins.list_plugins(settings(slow="while True: pass")).unloaded
     assert "not imported within 0.1 s" in failed["reason"]

@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from drive import ROOT, Installation, wait_until
-from playwright.sync_api import Browser, expect
+from drive import ROOT, Installation, running, wait_until
+from playwright.sync_api import Page, expect
 from small import TINY
 
 from microcosmos.client import Client, Run
@@ -33,7 +33,7 @@ class Laptop:
         self.environment = {**os.environ, **environment}
 
     def run(self, *arguments: str) -> str:
-        """What the command prints; it has to end well."""
+        """Run a command, which must succeed, and return its output."""
         done = subprocess.run(
             [sys.executable, "-P", "-m", "microcosmos.cli", *arguments],
             cwd=self.folder,
@@ -68,25 +68,22 @@ def laptop(tmp_path: Path, product: Installation) -> Laptop:
 @pytest.fixture
 def elsewhere(common: dict[str, str], tmp_path: Path) -> Iterator[Client]:
     """A colleague's server, where nothing has been run."""
-    place = Installation(tmp_path / "elsewhere", common | {"WORKERS": "0"})
-    place.start(120)
-    with Client(place.url) as client:
+    with (
+        running(tmp_path / "elsewhere", common | {"WORKERS": "0"}) as place,
+        Client(place.url) as client,
+    ):
         yield client
-    place.end()
-    place.close()
 
 
 @pytest.mark.e2e
-def test_a_first_day(
-    laptop: Laptop, product: Installation, elsewhere: Client, browser: Browser
-):
+def test_a_first_day(laptop: Laptop, product: Installation, elsewhere: Client, stranger: Page):
     client = Client(product.url)
     first, *others = sweep(client, laptop)
     extend(laptop, first)
     fork = swim_in_another_viscosity(client, first)
     best = fork.archive().best()
     share = best.share(title="A first swimmer", credit="A. Founder", days=1)
-    open_as_a_stranger(browser, share.url, best.sha)
+    open_as_a_stranger(stranger, share.url, best.sha)
     travel(laptop, elsewhere, client, best.sha)
     draw_the_contact_sheet(laptop, fork)
     kept = {run.id: product.archive(run.id) for run in (fork, *others)}
@@ -131,17 +128,14 @@ def swim_in_another_viscosity(client: Client, run: Run) -> Run:
     return fork
 
 
-def open_as_a_stranger(browser: Browser, link: str, sha: str) -> None:
-    """The link shows the creature to a browser that has never been here."""
-    context = browser.new_context()
-    page = context.new_page()
+def open_as_a_stranger(page: Page, link: str, sha: str) -> None:
+    """The link shows the creature to a browser without any cookie."""
     page.goto(link)
     expect(page.get_by_role("heading", name="A first swimmer")).to_be_visible()
     expect(page.get_by_text("A. Founder").first).to_be_visible()
     expect(page.locator("canvas").first).to_be_visible(timeout=120_000)
     assert page.locator('meta[property="og:image"]').get_attribute("content")
     assert sha[:8] in page.content()
-    context.close()
 
 
 def travel(laptop: Laptop, elsewhere: Client, client: Client, sha: str) -> None:

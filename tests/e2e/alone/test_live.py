@@ -16,7 +16,7 @@ FAST, SLOW = 10_000, 120_000
 MAP = re.compile("^Archive map")
 WINDOW = {"width": 1280, "height": 900}
 SPEC = TINY | {"seed": 7, "search": TINY["search"] | {"generations": 5000}}
-"""Goes on for as long as the test needs: it is paused at the end."""
+"""Longer than the test, which pauses it at the end."""
 
 
 @pytest.mark.e2e
@@ -59,7 +59,7 @@ def connection(page: Page) -> Locator:
 
 
 def told_of(product: Installation, run: str) -> dict[str, float]:
-    """What the API tells of a run that stands still."""
+    """The figures of a paused run in the API."""
     archive = product.http.get(f"/api/v1/runs/{run}/archive").raise_for_status().json()
     curves = product.http.get(f"/api/v1/runs/{run}/generations").raise_for_status().json()
     best = max(range(len(archive["cell"])), key=lambda i: archive["fitness"][i])
@@ -73,7 +73,7 @@ def told_of(product: Installation, run: str) -> dict[str, float]:
 
 
 def shown(page: Page) -> dict[str, Any]:
-    """The same as the page shows it."""
+    """The same figures on the page."""
     return {
         "elites": first_number(page.get_by_text(re.compile(r"^[\d,]+ elites"))),
         "generation": first_number(page.get_by_text(re.compile(r"^[\d,]+ / 5,000$"))),
@@ -94,7 +94,7 @@ def best_creature(page: Page) -> str:
     """The best elite of the archive, to which the first arrow key leads."""
     if "cell=" not in page.url:
         page.get_by_role("application", name=MAP).press("ArrowRight")
-    return page.locator("#map-reading code").inner_text()
+    return page.locator("#elite-measures code").inner_text()
 
 
 def first_number(found: Locator) -> float:
@@ -108,7 +108,7 @@ def number(text: str) -> float:
 
 
 def rounded(value: float) -> float:
-    """As exact as the page tells it."""
+    """Round as the page does."""
     return float(f"{value:.3g}")
 
 

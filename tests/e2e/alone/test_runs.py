@@ -1,10 +1,9 @@
 """Runs are named, found, sorted and compared, and workers say what they are at."""
 
-import json
 import re
-import urllib.request
 
 import pytest
+from drive import Installation
 from playwright.sync_api import Page, expect
 from small import TINY
 
@@ -12,15 +11,15 @@ FAST, SLOW = 10_000, 300_000
 
 
 @pytest.mark.e2e
-def test_runs_are_named_found_sorted_and_compared(page: Page, address: str):
-    page.goto(address)
+def test_runs_are_named_found_sorted_and_compared(page: Page, product: Installation):
+    page.goto(product.url)
     expect(page.get_by_role("link", name="Start the first run")).to_be_visible(timeout=FAST)
-    short, long = (submit(address, seed, generations) for seed, generations in ((1, 3), (2, 9)))
-    page.goto(address)
+    short, long = (submit(product, seed, generations) for seed, generations in ((1, 3), (2, 9)))
+    page.goto(product.url)
     page.evaluate("window.neverReloaded = true")
     rename_by_mouse(page, short)
     tag_and_filter_by_mouse(page, short, long)
-    see_only_what_matches(page, address, short)
+    see_only_what_matches(page, product, short)
     sort_by_keyboard(page)
     finished(page, 2)
     compare_by_keyboard(page)
@@ -29,13 +28,9 @@ def test_runs_are_named_found_sorted_and_compared(page: Page, address: str):
     assert page.evaluate("window.neverReloaded")
 
 
-def submit(address: str, seed: int, generations: int) -> str:
+def submit(product: Installation, seed: int, generations: int) -> str:
     search = {**TINY["search"], "generations": generations}
-    body = json.dumps({**TINY, "search": search, "seed": seed}).encode()
-    headers = {"Content-Type": "application/json"}
-    request = urllib.request.Request(f"{address}/api/v1/runs", body, headers)
-    with urllib.request.urlopen(request) as answer:
-        return json.load(answer)["id"][:8]
+    return product.submit({**TINY, "search": search, "seed": seed})[:8]
 
 
 def row(page: Page, run: str):
@@ -68,14 +63,14 @@ def tag_and_filter_by_mouse(page: Page, tagged: str, other: str) -> None:
     expect(row(page, other)).to_be_visible(timeout=FAST)
 
 
-def see_only_what_matches(page: Page, address: str, named: str) -> None:
-    """What comes to be meanwhile appears only where it is asked for."""
+def see_only_what_matches(page: Page, product: Installation, named: str) -> None:
+    """New runs appear only if they match the search."""
     page.get_by_role("searchbox").fill("short")
     expect(page.locator("table.runs tbody tr")).to_have_count(1, timeout=FAST)
-    third = submit(address, 3, 100_000)
-    rename(address, third, "Another short one")
+    third = submit(product, 3, 100_000)
+    rename(product, third, "Another short one")
     expect(row(page, third)).to_be_visible(timeout=FAST)
-    rename(address, third, "Away")
+    rename(product, third, "Away")
     expect(row(page, third)).to_have_count(0, timeout=FAST)
     expect(row(page, named)).to_be_visible()
     page.get_by_role("searchbox").fill("")
@@ -84,16 +79,9 @@ def see_only_what_matches(page: Page, address: str, named: str) -> None:
     expect(row(page, third).get_by_text("cancelled")).to_be_visible(timeout=FAST)
 
 
-def rename(address: str, run: str, name: str) -> None:
-    with urllib.request.urlopen(f"{address}/api/v1/runs?q={run}") as answer:
-        (found,) = json.load(answer)["items"]
-    request = urllib.request.Request(
-        f"{address}/api/v1/runs/{found['id']}",
-        json.dumps({"name": name}).encode(),
-        {"Content-Type": "application/json"},
-        method="PATCH",
-    )
-    urllib.request.urlopen(request).close()
+def rename(product: Installation, run: str, name: str) -> None:
+    (found,) = product.http.get(f"/api/v1/runs?q={run}").json()["items"]
+    product.http.patch(f"/api/v1/runs/{found['id']}", json={"name": name}).raise_for_status()
 
 
 def sort_by_keyboard(page: Page) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from drive import Installation
+from drive import Installation, running
 from looks import faults, violations
 from playwright.sync_api import Browser, Page, expect
 from small import TINY
@@ -16,28 +16,17 @@ SECRET = re.compile(r"mc_[\w-]{43}")
 
 @pytest.fixture
 def guarded(chromium: str, common: dict[str, str], tmp_path: Path) -> Iterator[Installation]:
-    """A product for which even this machine needs a token; nobody computes there."""
+    """A product without workers that needs a token even from this machine."""
     needed = {"MICROCOSMOS_AUTH": "required", "WORKERS": "0"}
-    place = Installation(tmp_path / "data", common | needed)
-    place.start(120)
-    yield place
-    place.end()
-    place.close()
-
-
-@pytest.fixture
-def alice(browser: Browser) -> Iterator[Page]:
-    """Somebody else, with a browser of her own."""
-    context = browser.new_context()
-    yield context.new_page()
-    context.close()
+    with running(tmp_path / "data", common | needed) as place:
+        yield place
 
 
 @pytest.mark.e2e
 def test_an_admin_signs_in_and_manages_tokens(
-    guarded: Installation, browser: Browser, alice: Page
+    guarded: Installation, browser: Browser, stranger: Page
 ):
-    first = told_at_the_start(guarded)
+    alice, first = stranger, told_at_the_start(guarded)
     context = browser.new_context(viewport={"width": 1280, "height": 900})
     admin = context.new_page()
     try:
@@ -55,7 +44,7 @@ def test_an_admin_signs_in_and_manages_tokens(
 
 
 def told_at_the_start(place: Installation) -> str:
-    """On the terminal once, and in a file that nobody else can read."""
+    """The token, printed once and kept in a private file."""
     (told,) = SECRET.findall(place.output.read_text())
     file = place.folder / "admin-token"
     assert file.read_text().strip() == told
@@ -101,7 +90,7 @@ def make_a_token(page: Page, address: str) -> str:
 
 
 def use_it(page: Page, address: str, secret: str) -> None:
-    """Whoever is no admin sees no tokens but knows who they are."""
+    """Other principals see their name, but no tokens."""
     sign_in(page, address, secret)
     page.goto(f"{address}/settings")
     expect(page.get_by_role("heading", name="alice")).to_be_visible()
@@ -110,7 +99,7 @@ def use_it(page: Page, address: str, secret: str) -> None:
 
 
 def stay_within_what_it_may(page: Page, place: Installation, first: str) -> None:
-    """What is another's has no buttons, and the page says whose it is; one's own has them."""
+    """Another's run names its owner and has no buttons; one's own has them."""
     as_admin = {"Authorization": f"Bearer {first}"}
     asked = place.http.post("/api/v1/runs", json=TINY, headers=as_admin).raise_for_status()
     theirs = asked.json()["id"]

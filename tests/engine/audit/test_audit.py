@@ -10,7 +10,7 @@ from microcosmos.archive import creature
 from microcosmos.audit.derivatives import gradient, gradient_health
 from microcosmos.audit.physics import audit
 from microcosmos.audit.variants import reciprocal, refine
-from microcosmos.build import build_stroke, build_task, frame
+from microcosmos.build import build_encoding, build_stroke, build_task, frame
 from microcosmos.experiments.lineage import identity
 from microcosmos.filaments import Rest
 

@@ -10,7 +10,6 @@ from sqlalchemy.exc import OperationalError
 
 from microcosmos.archive import creature
 from server.attempts.claim import claim
-from server.core.database import Sessions
 from server.tables import Result, Run
 from server.workers import registry
 
@@ -43,13 +42,10 @@ def test_a_table_has_a_run_and_curves(api, services, sweep, sweep_id, table):
     assert [item["id"] for item in api.get("runs").json()["items"]] == [run["id"]]
 
 
-def test_a_table_has_no_archive_and_says_so(api, sweep_id):
+def test_tables_have_no_archive_and_archives_no_table(api, sweep_id, run_id):
     for path in ("archive", "archive.csv"):
         answer = api.get(f"runs/{sweep_id}/{path}")
         assert f"/api/v1/runs/{sweep_id}/results" in detail(answer, 404)
-
-
-def test_an_archive_has_no_table_and_says_so(api, run_id):
     assert api.get(f"runs/{run_id}/results").json()["rows"] == []
     answer = api.get(f"runs/{run_id}/results.csv")
     assert f"/api/v1/runs/{run_id}/archive" in detail(answer, 404)
@@ -105,13 +101,14 @@ def test_a_rewind_drops_rows_and_summary_after_the_checkpoint(api, services, swe
     assert api.get(f"runs/{sweep_id}").json()["summary"] == {"best": 1.0}
 
 
-def test_a_generation_written_twice_after_an_outage_has_its_rows_once(
-    services, sweep_id, table, count
-):
+def test_rows_are_written_once_and_deleted_with_their_run(services, sweep_id, table, count):
     attempt = claim(services, sweep_id, "worker")
-    for _ in range(2):  # Whether the first was committed nobody knew.
+    for _ in range(2):  # The answer to the first commit was lost.
         attempt.record(table(1, WORM, RAY), 1.0)
     assert count(Result) == 2
+    with services.sessions.write.begin() as session:
+        session.delete(session.get_one(Run, sweep_id))
+    assert count(Result) == 0
 
 
 def test_rows_and_run_are_written_in_one_transaction(
@@ -141,11 +138,3 @@ def test_new_rows_are_published(services, sweep_id, table, published):
         "summary": {"best": 1.0},
         "rows": [WORM],
     }
-
-
-def test_deleting_a_run_deletes_its_result_rows(services, sweep_id, table, count):
-    sessions: Sessions = services.sessions
-    claim(services, sweep_id, "worker").record(table(1, WORM), 1.0)
-    with sessions.write.begin() as session:
-        session.delete(session.get_one(Run, sweep_id))
-    assert count(Result) == 0

@@ -1,4 +1,4 @@
-"""What an attempt at a run writes down, and when it stops."""
+"""Attempts: recording, checkpoints, stopping and failing."""
 
 import errno
 from dataclasses import replace

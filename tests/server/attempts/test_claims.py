@@ -23,16 +23,13 @@ def silence(services, run_id):
         session.execute(update(Run).values(heartbeat_at=then).where(Run.id == run_id))
 
 
-def test_only_one_worker_gets_a_run(services, run_id):
-    assert claim(services, run_id, "first").number == 1
-    assert claim(services, run_id, "second") is None
-
-
 def test_one_of_many_concurrent_claims_succeeds(services, run_id):
     with ThreadPoolExecutor(8) as pool:
         names = [f"worker {number}" for number in range(8)]
         claims = list(pool.map(lambda name: claim(services, run_id, name), names))
-    assert len([found for found in claims if found]) == 1
+    (held,) = (found for found in claims if found)
+    assert held.number == 1
+    assert claim(services, run_id, "another") is None
 
 
 def test_a_silent_workers_run_is_claimed_and_its_writes_refused(
@@ -72,17 +69,16 @@ def test_a_generation_is_recorded_once_or_not_at_all(report, attempt, record, co
     record(1, {1: 1.0})
 
 
-def test_numbers_that_are_not_finite_are_recorded_as_none(services, run_id, report, row):
-    nothing = report(1)
-    nothing.best = float("-inf")
-    nothing.mean = float("nan")
-    claim(services, run_id, "worker").record(nothing, 1.0)
-    assert row().best is None
-
-
-def test_a_finished_run_forgets_earlier_errors(services, run_id, row):
+def test_a_finished_run_forgets_errors_and_numbers_that_are_not_finite(
+    services, run_id, report, row
+):
     claim(services, run_id, "worker").fail("error")
-    claim(services, run_id, "worker").finish()
+    attempt = claim(services, run_id, "worker")
+    nothing = report(1)
+    nothing.best, nothing.mean = float("-inf"), float("nan")
+    attempt.record(nothing, 1.0)
+    assert row().best is None
+    attempt.finish()
     assert (row().status, row().error) == ("finished", None)
 
 

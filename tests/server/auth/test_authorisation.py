@@ -1,4 +1,4 @@
-"""Every route of the application × everybody who may come: who is let in."""
+"""Authorisation: every route of the application × every kind of principal."""
 
 import re
 from datetime import UTC, datetime, timedelta
@@ -30,10 +30,10 @@ from server.tables import Token
 
 ROOT = "/api/v1"
 PUBLIC, OWNER = "public", "owner"
-"""Beside the scopes: no token at all, and `write` by whoever it belongs to."""
+"""Beside the scopes: no token at all, and `write` by the owner."""
 OWNERS = (own_run, own_sweep, own_share)
 OWNED = ("run_id", "sweep_id", "slug")
-"""What has an owner, by the parameter of a path that names it."""
+"""Path parameters that name something with an owner."""
 OPEN = {
     "GET /healthz",
     "GET /readyz",
@@ -41,13 +41,13 @@ OPEN = {
     "GET /s/{slug}/{rest:path}",
     "GET /{path:path}",
 }
-"""Outside of the API: for everybody."""
-STRANGERS = {"GET /shares/{slug}", "GET /commons", "POST /session", "DELETE /session"}
-"""In the API, what is for everybody; and all that lies below a share."""
+"""Public paths outside of the API."""
+OPEN_API = {"GET /shares/{slug}", "GET /commons", "POST /session", "DELETE /session"}
+"""Public paths of the API."""
 SHARED = ("/runs/{run_id}", "/creatures/{sha}")
-"""Where that begins which the holder of a share may read, within what it shows."""
+"""Beginnings of the paths that the holder of a share may read."""
 HARMLESS = {"POST /runs/estimate", "POST /sweeps/estimate", "POST /session", "DELETE /session"}
-"""What is no GET and yet changes nothing."""
+"""Requests that are no GET and yet change nothing."""
 
 IN, UNKNOWN, FORBIDDEN = "let in", 401, 403
 WHO = ("none", "expired", "revoked", "reader", "other", "owner", "admin")
@@ -64,7 +64,7 @@ for need in (SHARE, READ, WRITE, OWNER, ADMIN):
 
 
 def needs(dependant) -> set[str]:
-    """What the dependencies of a route ask for."""
+    """The scopes that the dependencies of a route require."""
     if dependant.call in OWNERS:
         return {OWNER}
     if dependant.call is authorize:
@@ -74,7 +74,7 @@ def needs(dependant) -> set[str]:
 
 
 def routes() -> dict[str, set[str]]:
-    """All that the application has, however it came to have it, and what each route needs."""
+    """All routes of the application, with the scopes that each requires."""
     nowhere = Settings(redis_url="redis://127.0.0.1:1/0", database_url="sqlite://")
     found = iter_route_contexts(create_app(connect(nowhere)).routes)
     return {
@@ -91,7 +91,7 @@ API = [
     if (f" {ROOT}/" in route or route.endswith("/metrics")) and NOWHERE not in route
 ]
 SHAPES = {"form": "svg", "kind": "replay"}
-"""What else paths name."""
+"""Other path parameters."""
 
 
 def need_of(route: str) -> str:
@@ -113,7 +113,7 @@ def test_only_harmless_routes_need_no_write_scope(route):
     need = need_of(route)
     shared = path == "/shares/{slug}/preview.png"
     assert need != SHARE or (method == "GET" and path.startswith(SHARED))
-    assert (need == PUBLIC) == (f"{method} {path}" in STRANGERS or shared)
+    assert (need == PUBLIC) == (f"{method} {path}" in OPEN_API or shared)
     if method != "GET" and f"{method} {path}" not in HARMLESS:
         theirs = any(f"{{{name}}}" in path for name in OWNED) and not path.endswith("/fork")
         assert need in ((OWNER,) if theirs else (WRITE, OWNER, ADMIN))
@@ -128,7 +128,7 @@ def database() -> str:
 
 @pytest.fixture
 def secrets(services) -> dict[str, str | None]:
-    """What each of those who come has to show."""
+    """The secret of each principal."""
     made = {
         who: tokens.create(services, who, scope)
         for who, scope in {
@@ -149,7 +149,7 @@ def secrets(services) -> dict[str, str | None]:
 
 @pytest.fixture
 def parameters(services, secrets, spec, identity):
-    """Makes what paths name, anew each time where it belongs to somebody: the `owner`."""
+    """Makes what paths name, each time anew for `owner`."""
     file = creature.document(identity(3), None, None)
     with services.sessions.write.begin() as session:
         creatures.add(session, file)
@@ -206,7 +206,7 @@ def test_each_principal_reaches_exactly_the_permitted_routes(serve, secrets, par
 
 
 def status(http: httpx.Client, method: str, url: str, headers: dict[str, str]) -> int:
-    """The beginning of an answer is enough: some have no end."""
+    """Return the status of an answer, without its body: streams never end."""
     json = None if method in ("GET", "DELETE") else {}
     with http.stream(method, url, headers=headers, json=json) as answer:
         return answer.status_code

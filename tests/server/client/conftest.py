@@ -34,8 +34,8 @@ def relay(address: str) -> Iterator[Relay]:
 
 
 @pytest.fixture
-def hasty(monkeypatch) -> list[float]:
-    """Pauses are noted instead of made."""
+def no_sleep(monkeypatch) -> list[float]:
+    """Notes pauses instead of sleeping."""
     pauses: list[float] = []
     for module in (connection, files, streaming):
         monkeypatch.setattr(module.time, "sleep", pauses.append)

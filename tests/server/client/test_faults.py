@@ -22,18 +22,18 @@ from microcosmos.client import (
 from server.attempts.claim import claim
 
 
-def test_a_request_whose_answer_is_lost_is_repeated_safely(relay, services, spec, hasty):
+def test_a_request_whose_answer_is_lost_is_repeated_safely(relay, services, spec, no_sleep):
     client = Client(relay.url)
     list(client.runs())
     relay.cut()
-    relay.allowance = [1]  # The run is queued, and nobody is told.
+    relay.allowance = [1]  # The run is queued, but the answer is lost.
     run = client.submit(spec)
     assert [one.id for one in client.runs()] == [run.id]
     sent = [ask for ask in relay.asked if ask.startswith(b"POST")]
     assert len(sent) == 2
 
 
-def test_unsafe_requests_are_not_repeated(relay, run, hasty):
+def test_unsafe_requests_are_not_repeated(relay, run, no_sleep):
     client = Client(relay.url)
     mine = client.run(run.id)
     relay.cut()
@@ -60,13 +60,13 @@ def test_events_continue_after_the_last_id(relay, run_id, record, attempt):
     assert any(b"last-event-id" in ask.lower() for ask in relay.asked)
 
 
-def test_an_absent_server_is_answered_with_advice(hasty):
+def test_an_absent_server_is_answered_with_advice(no_sleep):
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
     expected = f"No server answers at http://127.0.0.1:{port}: start one with `make run`"
     with pytest.raises(NoAnswer, match=expected):
         list(Client(f"127.0.0.1:{port}").runs())
-    assert sum(hasty) < 2  # A person waits.
+    assert sum(no_sleep) < 2  # A person waits.
 
 
 HTML = {"Content-Type": "text/html"}
@@ -82,7 +82,7 @@ HTML = {"Content-Type": "text/html"}
         ((200, {"Content-Type": "application/json"}, b"{"), "as no Microcosmos server does"),
     ],
 )
-def test_a_foreign_server_is_recognised(answer, said, hasty):
+def test_a_foreign_server_is_recognised(answer, said, no_sleep):
     with other(answer) as (url, _), pytest.raises(NotMicrocosmos, match=said):
         list(Client(url).runs())
 
@@ -90,15 +90,15 @@ def test_a_foreign_server_is_recognised(answer, said, hasty):
 PROBLEM = {"Content-Type": "application/problem+json"}
 
 
-def test_a_busy_server_is_asked_again_after_its_delay(hasty):
+def test_a_busy_server_is_asked_again_after_its_delay(no_sleep):
     empty = (200, {"Content-Type": "application/json"}, b'{"items": [], "next": null}')
     busy = (503, PROBLEM | {"Retry-After": "2"}, b'{"detail": "The database does not answer."}')
     with other(busy, busy, empty) as (url, asked):
         assert list(Client(url).runs()) == []
-    assert (hasty, asked) == ([2.0, 2.0], ["GET"] * 3)
+    assert (no_sleep, asked) == ([2.0, 2.0], ["GET"] * 3)
 
 
-def test_patience_includes_the_length_of_silences(hasty, monkeypatch):
+def test_patience_includes_the_length_of_silences(no_sleep, monkeypatch):
     clock, asked = [0.0], []
 
     def silent(request: httpx.Request) -> httpx.Response:
@@ -114,7 +114,7 @@ def test_patience_includes_the_length_of_silences(hasty, monkeypatch):
     assert len(asked) == 2
 
 
-def test_patience_ends_with_the_servers_own_words(hasty):
+def test_patience_ends_with_the_servers_own_words(no_sleep):
     body = b'{"detail": "The database does not answer; try again."}'
     with other((503, PROBLEM | {"Retry-After": "4"}, body)) as (url, asked):
         with pytest.raises(ServerError, match="The database does not answer; try again"):
@@ -163,7 +163,7 @@ def test_loopback_requests_bypass_the_proxy(address, monkeypatch):
 
 @pytest.fixture
 def archive(services, run_id, report) -> bytes:
-    """What the run's checkpoint holds, larger than a relay hands on at once."""
+    """The run's checkpoint, larger than one packet of the relay."""
     content = os.urandom(3_000_000)
     attempt = claim(services, run_id, "worker")
     attempt.record(report(1), 1.0)
@@ -171,7 +171,7 @@ def archive(services, run_id, report) -> bytes:
     return content
 
 
-def test_a_download_goes_on_where_it_broke_off(relay, run_id, archive, tmp_path, hasty):
+def test_a_download_goes_on_where_it_broke_off(relay, run_id, archive, tmp_path, no_sleep):
     told: list[tuple[int, int]] = []
     relay.allowance = [1 << 40, 1_000_000, 1_000_000]
     run = Client(relay.url).run(str(run_id))
@@ -192,7 +192,7 @@ def test_a_download_goes_on_where_it_broke_off(relay, run_id, archive, tmp_path,
     assert b"If-None-Match" in relay.asked[-1]  # Nothing is fetched twice.
 
 
-def test_an_abandoned_download_is_continued_later(relay, run_id, archive, tmp_path, hasty):
+def test_an_abandoned_download_is_continued_later(relay, run_id, archive, tmp_path, no_sleep):
     run = Client(relay.url).run(str(run_id))
     relay.cut()
     relay.allowance = [1_000_000] + [50] * 20
@@ -208,30 +208,25 @@ def test_an_abandoned_download_is_continued_later(relay, run_id, archive, tmp_pa
     assert f"bytes={had}-".encode() in b"".join(relay.asked)
 
 
-def test_a_changed_file_is_downloaded_from_the_start(client, run_id, archive, tmp_path):
-    old = hashlib.sha256(b"an older checkpoint").hexdigest()
+def test_partial_files_are_used_only_if_they_are_sound(client, run_id, archive, tmp_path):
+    run, to = client.run(str(run_id)), tmp_path / "run.h5"
+    old, name = (hashlib.sha256(one).hexdigest() for one in (b"an older checkpoint", archive))
     (tmp_path / f".run.h5.{old}.part").write_bytes(b"an older")
-    run = client.run(str(run_id))
-    assert run.pull(tmp_path / "run.h5").read_bytes() == archive
+    assert run.pull(to).read_bytes() == archive, "a changed file is downloaded from the start"
     assert list(tmp_path.glob("*.part")) + list(tmp_path.glob(".*.part")) == []
-
-
-def test_a_complete_partial_file_is_moved_into_place(client, run_id, archive, tmp_path):
-    name = hashlib.sha256(archive).hexdigest()
-    (tmp_path / f".run.h5.{name}.part").write_bytes(archive)
-    assert client.run(str(run_id)).pull(tmp_path / "run.h5").read_bytes() == archive
-
-
-def test_a_damaged_part_is_not_kept(client, run_id, archive, tmp_path):
-    name = hashlib.sha256(archive).hexdigest()
-    (tmp_path / f".run.h5.{name}.part").write_bytes(b"x" * 100)
+    to.unlink()
+    part = tmp_path / f".run.h5.{name}.part"
+    part.write_bytes(b"x" * 100)
     with pytest.raises(ServerError, match="damaged on its way"):
-        client.run(str(run_id)).pull(tmp_path / "run.h5")
-    assert not (tmp_path / "run.h5").exists()
-    assert client.run(str(run_id)).pull(tmp_path / "run.h5").read_bytes() == archive
+        run.pull(to)
+    assert not to.exists()
+    assert run.pull(to).read_bytes() == archive
+    to.unlink()
+    part.write_bytes(archive)
+    assert run.pull(to).read_bytes() == archive, "a complete part is moved into place"
 
 
-def test_a_download_without_a_length_succeeds(hasty, tmp_path):
+def test_a_download_without_a_length_succeeds(no_sleep, tmp_path):
     name = hashlib.sha256(b"whole").hexdigest()
 
     def chunked(request: httpx.Request) -> httpx.Response:
@@ -243,7 +238,7 @@ def test_a_download_without_a_length_succeeds(hasty, tmp_path):
     assert told == [(0, 0), (5, 5)]
 
 
-def test_a_full_disk_is_reported_with_the_file(hasty, tmp_path, monkeypatch):
+def test_a_full_disk_is_reported_with_the_file(no_sleep, tmp_path, monkeypatch):
     def full(descriptor: int) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 

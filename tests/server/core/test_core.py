@@ -14,7 +14,7 @@ from server.settings import Settings
 
 @pytest.fixture(autouse=True)
 def usual():
-    """What most machines take away from the modes of new files: nothing of reading."""
+    """The usual umask, which lets others read."""
     before = os.umask(0o022)
     yield
     os.umask(before)

@@ -1,4 +1,4 @@
-"""Who came from whom, and creatures as HDF5."""
+"""Ancestors and children of creatures, and creatures as HDF5."""
 
 from io import BytesIO
 from typing import Any

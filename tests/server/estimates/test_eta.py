@@ -1,4 +1,4 @@
-"""How long a run will take, judged by those before it."""
+"""Estimates of time, from the runs before."""
 
 import pytest
 

@@ -92,7 +92,7 @@ def test_requested_actions_are_published(address, api, run_id):
 
 
 def test_the_last_event_of_a_run_is_its_current_state(services, run_id, monkeypatch):
-    """Whoever read it first is slow to tell, and is overtaken by whoever changed it next."""
+    """A slow reader publishes a stale state after a newer one."""
     told, publish = [], services.events.publish
 
     def be_overtaken(kind, run, data):

@@ -55,7 +55,7 @@ def wait_until(condition, seconds=5):
 
 @pytest.fixture
 def sleeper(tmp_path):
-    """What starts a process that sleeps, and counts how often it was asked to."""
+    """Starts processes that sleep, and lists them."""
     started = []
 
     def start():

@@ -1,4 +1,4 @@
-"""What Prometheus is told is what there is."""
+"""Metrics for Prometheus."""
 
 import re
 

@@ -158,7 +158,7 @@ def measured(api, report) -> str:
     return api.post("creatures", json=file).json()["creature"]
 
 
-def test_a_creature_is_measured_again_on_request(api, services, measured):
+def test_a_creature_is_measured_again_on_request_and_repeatedly(api, services, measured):
     path = f"creatures/{measured}/measurement"
     assert api.get(path).status_code == 204
     assert services.jobs.audits.count == 0, "looking orders nothing"
@@ -170,12 +170,8 @@ def test_a_creature_is_measured_again_on_request(api, services, measured):
     services.jobs.forget(job.id)
     renderings.save(services, measured, MEASUREMENT, b'{"exact": true}')
     assert api.get(path).json() == {"exact": True}
-
-
-def test_a_creature_can_be_measured_repeatedly(api, services, measured):
-    renderings.save(services, measured, MEASUREMENT, b'{"exact": true}')
     api.post(f"creatures/{measured}/measure")
-    assert api.get(f"creatures/{measured}/measurement").status_code == 202
+    assert api.get(path).status_code == 202
 
 
 def test_an_unmeasured_creature_is_not_measured_again(api, identity):

@@ -101,7 +101,7 @@ def test_concurrent_actions_do_not_block_each_other(api, run_id):
 
 
 @pytest.fixture
-def told(record):
+def summaries(record):
     """Twelve generations, of which every fifth tells a score."""
     for generation in range(1, 13):
         summary = {"inserted": generation, "ended": "never", "fine": True}
@@ -110,7 +110,7 @@ def told(record):
         record(generation, summary=summary)
 
 
-def test_curves_and_events_contain_the_numbers_of_summaries(api, run_id, told, published):
+def test_curves_and_events_contain_the_numbers_of_summaries(api, run_id, summaries, published):
     curves = api.get(f"runs/{run_id}/generations").json()
     assert curves["generation"] == list(range(1, 13))
     assert list(curves["summary"]) == ["inserted", "corrected"]
@@ -156,9 +156,9 @@ def test_a_run_without_species_has_none(api, run_id, record):
 
 def test_thinned_curves_sum_reasons_of_divergence(api, run_id, record):
     for generation in range(1, 11):
-        told = {"diverged: non-finite": 2, "inserted": generation}
-        told |= {"diverged: supersonic": 1} if generation == 4 else {}
-        record(generation, summary=told)
+        summary = {"diverged: non-finite": 2, "inserted": generation}
+        summary |= {"diverged: supersonic": 1} if generation == 4 else {}
+        record(generation, summary=summary)
     columns = api.get(f"runs/{run_id}/generations", params={"points": 3}).json()["summary"]
     assert sum(filter(None, columns["diverged: non-finite"])) == 20
     assert sum(filter(None, columns["diverged: supersonic"])) == 1

@@ -62,7 +62,7 @@ def test_the_page_of_a_revoked_share_shows_nothing(api, address, built, known):
 
 @pytest.mark.parametrize("name", ["%00", "a" * 10_000, "%ED%A0%80", "%0A"])
 def test_impossible_slugs_are_not_found(api, address, built, name):
-    """Databases do not take every text; whoever sends it anyway is told no more than others."""
+    """Databases do not take every text; the answer is that of an unknown slug."""
     for path in (f"{address}/s/{name}", f"{address}/s/{name}/creatures/x", f"shares/{name}"):
         assert api.get(path).status_code in (404, 422), path
     assert api.delete(f"shares/{name}").status_code in (404, 422)

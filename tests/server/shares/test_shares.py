@@ -1,4 +1,4 @@
-"""Publishing creatures and archives, and what strangers come to see of them."""
+"""Publishing creatures and archives, and reading them through a share."""
 
 import re
 from datetime import UTC, datetime, timedelta

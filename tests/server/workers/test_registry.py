@@ -1,4 +1,4 @@
-"""What workers are at, the queue, and why runs wait, over HTTP."""
+"""Workers, the queue, and why runs wait, over HTTP."""
 
 from uuid import UUID
 

@@ -30,7 +30,7 @@ export const EVENTS_URL = `${ROOT}/events`;
 
 export type RunCommand = "pause" | "resume" | "cancel";
 
-/** The answer with a type that is narrower than in OpenAPI. */
+/** Give an answer a narrower type than OpenAPI has. */
 const typed = <T>(request: Promise<Answer<unknown>>) => success(request) as Promise<T>;
 
 const at = <Path, Query>(path: Path, query: Query) => ({ params: { path, query } });
@@ -50,7 +50,7 @@ export const revokeToken = (id: string) =>
 export const signIn = (token: string) => success(client.POST(`${ROOT}/session`, { body: { token } }));
 export const signOut = () => success(client.DELETE(`${ROOT}/session`));
 
-/** Empty for visitors of a share, who start no runs. */
+/** All experiments; none for visitors of a share, because they cannot start runs. */
 export const readExperiments = async (): Promise<Experiment[]> =>
   sharedSlug ? [] : typed(client.GET(`${ROOT}/experiments`));
 export const readTags = () => success(client.GET(`${ROOT}/tags`));
@@ -130,7 +130,7 @@ export const readCreature = (sha: string) =>
 
 const CHILDLESS: Children = { total: 0, items: [] };
 
-/** Ancestors over some generations, and children, which shares do not contain. */
+/** Ancestors of `depth` generations, and children; a share contains no children. */
 export function readFamily(sha: string, depth: number): Promise<[Ancestors, Children]> {
   const up = success(client.GET(`${ROOT}/creatures/{sha}/ancestors`, creature(sha, { depth })));
   if (sharedSlug) return Promise.all([up, CHILDLESS]);
@@ -144,7 +144,7 @@ export function importCreature(file: Blob) {
   return success(client.POST(`${ROOT}/creatures`, { ...body, headers }));
 }
 
-/** These are null while the renderer works on them. */
+/** The replay; null while the renderer prepares it. */
 export const readReplay = (sha: string) =>
   whenReady<ArrayBuffer>(
     client.GET(`${ROOT}/creatures/{sha}/replay`, { ...creature(sha), parseAs: "arrayBuffer" }),

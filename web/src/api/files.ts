@@ -24,7 +24,7 @@ async function request(url: string, signal?: AbortSignal): Promise<Response> {
   return response;
 }
 
-/** Download a file under the name that the server gives it. In a share it is fetched, because links carry no header. */
+/** Download a file under the server's name for it. In a share, fetch it: a link cannot send the header. */
 export async function save(url: string): Promise<void> {
   const link = document.createElement("a");
   if (sharedSlug) {

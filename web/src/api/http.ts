@@ -1,4 +1,4 @@
-/** The HTTP client, which names the share of the page and throws problems. */
+/** The HTTP client: it sends the share of the page and throws problems. */
 
 import createClient from "openapi-fetch";
 import { shareHeaders } from "./address";
@@ -16,15 +16,15 @@ export interface Answer<T> {
   response: Response;
 }
 
-export async function success<T>(asked: Promise<Answer<T>>): Promise<T> {
-  const { data, error, response } = await asked;
+export async function success<T>(request: Promise<Answer<T>>): Promise<T> {
+  const { data, error, response } = await request;
   noteStatus(response.status);
   if (!response.ok) throw problemOf(response.status, error);
   return data as T;
 }
 
 /** The answer, or null while the server still prepares it. */
-export async function whenReady<T>(asked: Promise<Answer<unknown>>): Promise<T | null> {
-  const value = await success(asked);
-  return (await asked).response.status === 202 ? null : (value as T);
+export async function whenReady<T>(request: Promise<Answer<unknown>>): Promise<T | null> {
+  const value = await success(request);
+  return (await request).response.status === 202 ? null : (value as T);
 }

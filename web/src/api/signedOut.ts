@@ -1,6 +1,6 @@
 /** The event that a request was refused because nobody is signed in. */
 
-export const SIGNED_OUT = "microcosmos:unknown";
+export const SIGNED_OUT = "microcosmos:signed-out";
 
 let signedOut = false;
 

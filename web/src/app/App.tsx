@@ -26,8 +26,8 @@ const SweepPage = lazy(async () => (await import("../sweeps/SweepPage")).SweepPa
 const WorkersPage = lazy(async () => (await import("../workers/WorkersPage")).WorkersPage);
 
 export function App() {
-  const place = useLocation();
-  const { page } = place.route;
+  const location = useLocation();
+  const { page } = location.route;
   const signedOut = useSignedOut();
   useEffect(() => void loadPrincipal(), []);
   useTitle(signedOut ? text.signIn : ((text.titles as Record<string, string>)[page] ?? null));
@@ -37,7 +37,7 @@ export function App() {
         <Brand />
         {!signedOut && <Navigation page={page} />}
       </header>
-      {signedOut ? <SignInPage /> : <RoutedPage {...place} />}
+      {signedOut ? <SignInPage /> : <RoutedPage {...location} />}
       {!signedOut && <DropTarget />}
       <Toasts />
     </>

@@ -6,15 +6,15 @@ import type { Archive, Run } from "../api/types";
 import { type Elite, type Elites, fittest } from "../store/elites";
 import { navigate, setQuery } from "../store/router";
 import { ArchiveMap } from "./ArchiveMap";
-import { Choices } from "./Choices";
+import { MapOptions } from "./MapOptions";
 import { Slices } from "./Slices";
 import { TimeSlider } from "./TimeSlider";
 import { count } from "../ui/format";
 import { Segments } from "../ui/Select";
-import { Guide } from "../ui/Guide";
+import { Tour } from "../ui/Tour";
 import { ForkLink } from "../ui/ForkLink";
 import { SelectToggle, SelectionBar, useSelection } from "./SelectionBar";
-import { stepsOf, useGuide } from "./guide";
+import { stepsOf, useTour } from "./tour";
 import { ElitePreview } from "./ElitePreview";
 import { type ArchiveView, setSlice, useArchiveView } from "./archiveView";
 import type { ArchiveViewProps } from "./binFocus";
@@ -33,19 +33,19 @@ interface Props {
 }
 
 export function ArchiveCard({ run, archive, elites, query }: Props) {
-  const [at, setAt] = useMoment(query, run.generation);
+  const [at, setAt] = useShownGeneration(query, run.generation);
   const view = useArchiveView(run, archive, elites, query, at);
   const [focused, setFocused] = useState<Elite | null>(null);
-  const guide = useGuide(run);
+  const tour = useTour(run);
   const [about, setAbout] = useState<string | null>(null);
   const gallery = query.get("view") === "gallery";
   const selection = useSelection(query, view.elites);
   const props = useViewProps(run, view, gallery ? view.grid : view.map, selection, query);
   const names = `${view.axes[0].name} ${view.axes[1].name}`;
   return (
-    <div data-guide={about}>
-      <Head count={view.elites.size} gallery={gallery} onGuide={guide.begin} />
-      <Choices archive={archive} view={view} />
+    <div data-tour={about}>
+      <Head count={view.elites.size} gallery={gallery} onTour={tour.begin} />
+      <MapOptions archive={archive} view={view} />
       <Slices slices={view.slices} onChange={setSlice} />
       {gallery ? (
         <ArchiveGallery key={names} {...props} query={query} />
@@ -61,10 +61,10 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
       {view.error && <p class="banner wrong">{view.error}</p>}
       <TimeSlider last={run.generation} at={at} ready={view.ready} onMove={setAt} />
       <SelectionBar {...{ run, at }} elites={view.elites} {...selection} />
-      {guide.open && (
-        <Guide
+      {tour.open && (
+        <Tour
           steps={stepsOf(run, archive, view)}
-          asked={guide.asked}
+          requested={tour.requested}
           onStep={({ about }) => {
             setAbout(about);
             const best = fittest(view.elites);
@@ -72,7 +72,7 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
           }}
           onEnd={() => {
             setAbout(null);
-            guide.end();
+            tour.end();
           }}
         />
       )}
@@ -103,27 +103,27 @@ function useViewProps(
         <SelectToggle {...{ cell, projection }} {...selection} />
       </>
     ),
-    onOpen: (chosen) => {
-      setQuery({ cell: String(chosen) });
-      navigate(pageUrl(`/creatures/${view.elites.get(chosen)!.creature}?run=${run.id}`));
+    onOpen: (selected) => {
+      setQuery({ cell: String(selected) });
+      navigate(pageUrl(`/creatures/${view.elites.get(selected)!.creature}?run=${run.id}`));
     },
   };
 }
 
-function Head({ count: elites, gallery, onGuide }: { count: number; gallery: boolean; onGuide: () => void }) {
+function Head({ count: elites, gallery, onTour }: { count: number; gallery: boolean; onTour: () => void }) {
   return (
     <div class="card-head archive-head">
       <h2 id="archive-title">{text.archive}</h2>
       <span class="quiet">{text.elites(count(elites))}</span>
       <span class="spring" />
-      <button class="plain small-button" onClick={onGuide}>
+      <button class="plain small-button" onClick={onTour}>
         {text.explain}
       </button>
       <Segments
         label={text.view}
         choices={VIEWS}
         value={gallery ? "gallery" : "map"}
-        onChoose={(view) => setQuery({ view: view === "map" ? null : view })}
+        onSelect={(view) => setQuery({ view: view === "map" ? null : view })}
       />
     </div>
   );
@@ -137,18 +137,18 @@ const VIEWS = [
 const DELAY_MS = 300;
 
 /** The generation shown, null for the newest; the address follows with a delay. */
-function useMoment(query: URLSearchParams, last: number) {
+function useShownGeneration(query: URLSearchParams, last: number) {
   const given = query.get("at");
-  const asked = given !== null && /^\d+$/.test(given) ? Number(given) : null;
-  const [at, setAt] = useState(asked);
-  const written = useRef(asked);
+  const requested = given !== null && /^\d+$/.test(given) ? Number(given) : null;
+  const [at, setAt] = useState(requested);
+  const written = useRef(requested);
   useEffect(() => {
     // Back and forward change the address too.
-    if (asked !== written.current) setAt(asked);
-    written.current = asked;
-  }, [asked]);
+    if (requested !== written.current) setAt(requested);
+    written.current = requested;
+  }, [requested]);
   useEffect(() => {
-    if (at === asked) return;
+    if (at === requested) return;
     const timer = setTimeout(() => {
       written.current = at;
       setQuery({ at: at === null ? null : String(at) });

@@ -7,7 +7,7 @@ import { AxisLabels } from "./AxisLabels";
 import { type ArchiveViewProps, useBinFocus } from "./binFocus";
 import { useBoxSelect } from "./boxSelect";
 import { ColourLegend } from "./ColourLegend";
-import { EliteReading } from "./EliteReading";
+import { EliteMeasures } from "./EliteMeasures";
 import type { Layout } from "./layout";
 import { useMapCanvas } from "./mapCanvas";
 import type { Tiles } from "./projection";
@@ -24,7 +24,7 @@ interface Props extends ArchiveViewProps {
 
 /** Cells belong to the archive, bins to the map; a bin shows its best elite. */
 export function ArchiveMap(props: Props) {
-  const { axes, colouring, onOpen, onChoose, onFocus } = props;
+  const { axes, colouring, onOpen, onSelect, onFocus } = props;
   const focus = useBinFocus(props);
   const { tile } = focus;
   useLayoutEffect(() => onFocus(tile?.elite ?? null), [tile?.elite]);
@@ -34,10 +34,10 @@ export function ArchiveMap(props: Props) {
       <MapPlot {...props} focus={focus} />
       <AxisLabels axis={axes[0]} side="x" />
       <ColourLegend colouring={colouring} />
-      <EliteReading
+      <EliteMeasures
         {...{ tile, axes, onOpen }}
         colour={colouring.measure}
-        hint={text.mapHint(onChoose !== null)}
+        hint={text.mapHint(onSelect !== null)}
         actions={props.actions}
       />
     </div>
@@ -46,23 +46,23 @@ export function ArchiveMap(props: Props) {
 
 /** The canvas, with the outline, the selection box and the inset above it. */
 function MapPlot({ focus, ...props }: Props & { focus: ReturnType<typeof useBinFocus> }) {
-  const { projection, elites, colouring, onMark, onOpen, onChoose } = props;
+  const { projection, elites, colouring, onMark, onOpen, onSelect } = props;
   const { layout, tiles } = projection;
   const { hovered, setHovered, from, focused } = focus;
   const plot = useRef<HTMLDivElement>(null);
-  const drag = useBoxSelect(onChoose !== null, (box, event) => {
+  const drag = useBoxSelect(onSelect !== null, (box, event) => {
     const inside = cellsIn(binsWithin(box, layout, tiles), projection);
-    onChoose!(isAdditive(event) ? union(props.chosen, inside) : inside);
+    onSelect!(isAdditive(event) ? union(props.selected, inside) : inside);
   });
-  const chosen = useMemo(
-    () => (drag.box ? new Set(binsWithin(drag.box, layout, tiles)) : binsOf(props.chosen, projection)),
-    [drag.box, props.chosen, projection],
+  const selected = useMemo(
+    () => (drag.box ? new Set(binsWithin(drag.box, layout, tiles)) : binsOf(props.selected, projection)),
+    [drag.box, props.selected, projection],
   );
-  const canvas = useMapCanvas(plot, { layout, tiles, colouring, chosen }, elites);
+  const canvas = useMapCanvas(plot, { layout, tiles, colouring, selected }, elites);
   const click = (event: MouseEvent) => {
     const bin = tileUnder(event, layout, tiles);
     if (bin === null || drag.wasDrag()) return;
-    if (onChoose && isAdditive(event)) return onChoose(toggle(props.chosen, cellsIn([bin], projection)));
+    if (onSelect && isAdditive(event)) return onSelect(toggle(props.selected, cellsIn([bin], projection)));
     const { cell } = tiles.get(bin)!;
     // Fingers cannot hover: the first tap marks, the second opens.
     if ((event as PointerEvent).pointerType === "touch" && bin !== from) onMark(cell);
@@ -75,7 +75,7 @@ function MapPlot({ focus, ...props }: Props & { focus: ReturnType<typeof useBinF
       tabIndex={0}
       role="application"
       aria-label={text.mapLabel(keyHelp(props))}
-      aria-describedby="map-reading"
+      aria-describedby="elite-measures"
       {...drag.handlers}
       onPointerMove={(event) => {
         if (drag.onMove(event)) setHovered(null);
@@ -127,7 +127,7 @@ function SelectionBox({ from, to }: Box) {
   );
 }
 
-/** Placed so that it hides neither the bin nor much of the map. */
+/** Content beside a bin, placed so that it hides neither the bin nor much of the map. */
 function PlacedBeside({
   layout,
   bin,

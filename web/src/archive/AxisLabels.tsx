@@ -1,6 +1,6 @@
 /** The axes of the map, labelled with raw values. */
 
-import { place, ticksOf } from "../charts/plot/scale";
+import { positionOf, ticksOf } from "../charts/plot/scale";
 import { number, scientific } from "../ui/format";
 import { type MapAxis, scaleOf } from "./axes";
 
@@ -12,7 +12,7 @@ export function AxisLabels({ axis, side }: { axis: MapAxis; side: "x" | "y" }) {
   return (
     <div class={`axis axis-${side}`} aria-hidden="true">
       {ticksOf(scale, MAX_TICKS).map((value) => (
-        <span key={value} class="tick" style={{ [start]: `${100 * place(scale, value)}%` }}>
+        <span key={value} class="tick" style={{ [start]: `${100 * positionOf(scale, value)}%` }}>
           {!scale.log || (value >= 1e-2 && value < 1e4) ? number(value) : scientific(value, 0)}
         </span>
       ))}

@@ -2,10 +2,10 @@
 
 import { useLayoutEffect, useState } from "preact/hooks";
 import { ReplayLoop } from "../replay/Loop";
-import { useReplays } from "../replay/recordings";
+import { useReplays } from "../replay/replays";
 import { text } from "./text";
 
-/** A moving pointer requests no replays. */
+/** Delay of a request, so that a moving pointer requests no replays. */
 const HOVER_MS = 12;
 
 export function ElitePreview({ sha }: { sha: string }) {

@@ -5,12 +5,12 @@ import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Motion } from "../decode/motion";
 import { useClock } from "../replay/clock";
 import { type Size, useSize } from "../ui/canvas";
-import { prefersStillness, useTheme } from "../ui/theme";
+import { prefersReducedMotion, useTheme } from "../ui/theme";
 import { AxisLabels } from "./AxisLabels";
 import { type ArchiveViewProps, useBinFocus } from "./binFocus";
 import { ColourLegend } from "./ColourLegend";
 import { type GalleryPicture, drawGallery } from "./drawGallery";
-import { EliteReading } from "./EliteReading";
+import { EliteMeasures } from "./EliteMeasures";
 import { type Shape, cornerOf, visibleBins } from "./geometry";
 import type { Projection } from "./projection";
 import { binsOf, cellsIn, isAdditive, keyHelp, toggle } from "./selection";
@@ -23,13 +23,13 @@ interface Props extends ArchiveViewProps {
   /** Called with the visible creatures, sorted from the middle. */
   onSee: (creatures: string[]) => void;
   onSide: (side: number) => void;
-  /** Called with the chosen size when the slider is released. */
+  /** Called with the selected size when the slider is released. */
   onSettle: (side: number) => void;
 }
 
 const [SMALLEST, LARGEST] = [36, 180];
 /** Smaller tiles are hard to read: the gallery scrolls instead. */
-const READABLE = 52;
+const MIN_READABLE = 52;
 /** Duration of a loop. */
 const SECONDS = 5;
 
@@ -41,10 +41,10 @@ export function Gallery(props: Props) {
   const port = useRef<HTMLDivElement>(null);
   const size = useSize(port);
   const [scroll, setScroll] = useState<Offset>([0, 0]);
-  const side = bounded(props.side ?? Math.max(READABLE, Math.floor(size.width / shape[0])));
+  const side = bounded(props.side ?? Math.max(MIN_READABLE, Math.floor(size.width / shape[0])));
   const wall = [side * shape[0], side * shape[1]] as const;
   const shown = { width: Math.min(size.width, wall[0]), height: Math.min(size.height, wall[1]) };
-  const focus = useBinFocus(props, (bin) => reveal(port.current!, cornerOf(bin, shape, side), side));
+  const focus = useBinFocus(props, (bin) => scrollToTile(port.current!, cornerOf(bin, shape, side), side));
   const seen = useSeen({ projection, shape, side, scroll, size }, props.onSee);
   const picture = { shape, side, seen, focused: focus.focused, size: shown, scroll };
   const binUnder = (event: MouseEvent): number | null => {
@@ -70,7 +70,7 @@ export function Gallery(props: Props) {
         </AxisRail>
       </div>
       <ColourLegend colouring={colouring} />
-      <EliteReading
+      <EliteMeasures
         {...{ axes, onOpen }}
         tile={focus.tile}
         colour={colouring.measure}
@@ -131,7 +131,7 @@ interface PortProps extends Props {
 
 /** The scrolling window, with pointer and keys. */
 function Port({ port, focus, binUnder, onScroll, children, ...props }: PortProps) {
-  const { projection, chosen, onChoose, onOpen } = props;
+  const { projection, selected, onSelect, onOpen } = props;
   return (
     <div
       ref={port}
@@ -139,14 +139,14 @@ function Port({ port, focus, binUnder, onScroll, children, ...props }: PortProps
       tabIndex={0}
       role="application"
       aria-label={text.galleryLabel(keyHelp(props))}
-      aria-describedby="map-reading"
+      aria-describedby="elite-measures"
       onScroll={({ currentTarget: { scrollLeft, scrollTop } }) => onScroll([scrollLeft, scrollTop])}
       onPointerMove={(event) => focus.setHovered(binUnder(event))}
       onPointerLeave={() => focus.setHovered(null)}
       onClick={(event) => {
         const bin = binUnder(event);
         if (bin === null) return;
-        if (onChoose && isAdditive(event)) onChoose(toggle(chosen, cellsIn([bin], projection)));
+        if (onSelect && isAdditive(event)) onSelect(toggle(selected, cellsIn([bin], projection)));
         else onOpen(projection.tiles.get(bin)!.cell);
       }}
       onKeyDown={focus.press}
@@ -169,9 +169,9 @@ interface TilesProps extends Props {
 function Tiles({ projection, colouring, motions, shape, side, seen, focused, size, ...props }: TilesProps) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const theme = useTheme();
-  const chosen = useMemo(() => binsOf(props.chosen, projection), [props.chosen, projection]);
+  const selected = useMemo(() => binsOf(props.selected, projection), [props.selected, projection]);
   const { tiles } = projection;
-  const content = { shape, side, tiles, colouring, motions, theme, chosen };
+  const content = { shape, side, tiles, colouring, motions, theme, selected };
   useAnimation(canvas, size, { ...content, bins: seen, marked: focused }, props.scroll);
   return <canvas ref={canvas} style={{ width: `${size.width}px`, height: `${size.height}px` }} />;
 }
@@ -201,7 +201,7 @@ function AxisRail({ class: name, by, length, shown, upright = false, children }:
 }
 
 /** Scroll just enough to show the whole tile. */
-function reveal(port: HTMLElement, [left, top]: [number, number], side: number): void {
+function scrollToTile(port: HTMLElement, [left, top]: [number, number], side: number): void {
   const { scrollLeft, scrollTop, clientWidth, clientHeight } = port;
   port.scrollTo({
     left: Math.min(left, Math.max(scrollLeft, left + side - clientWidth)),
@@ -222,7 +222,7 @@ function useAnimation(
     const element = canvas.current; // Null in the frame after the page was left.
     if (element && size.width > 0) drawGallery(element, size, picture, scroll, share.current);
   };
-  useClock(onScreen && !prefersStillness(), (seconds) => {
+  useClock(onScreen && !prefersReducedMotion(), (seconds) => {
     share.current = (share.current + seconds / SECONDS) % 1;
     draw();
   });

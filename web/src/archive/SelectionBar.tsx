@@ -13,17 +13,18 @@ import { count } from "../ui/format";
 import { ForkLink } from "../ui/ForkLink";
 import { text } from "./text";
 
-const setSelection = (chosen: CellSet) => setQuery({ cells: chosen.size > 0 ? formatCells(chosen) : null });
+const setSelection = (selected: CellSet) =>
+  setQuery({ cells: selected.size > 0 ? formatCells(selected) : null });
 
 /** The cells in the address that have an elite. */
 export function useSelection(query: URLSearchParams, elites: Elites): Selection {
   const cells = query.get("cells") ?? "";
   const refusal = useRefusal();
-  const chosen = useMemo(() => {
+  const selected = useMemo(() => {
     const named = parseCells(cells);
     return new Set(cells ? [...elites.keys()].filter(named) : []);
   }, [cells, elites]);
-  return { chosen, onChoose: sharedSlug || refusal ? null : setSelection };
+  return { selected, onSelect: sharedSlug || refusal ? null : setSelection };
 }
 
 interface OneProps extends Selection {
@@ -32,14 +33,14 @@ interface OneProps extends Selection {
 }
 
 /** Select or deselect the focused elite, for touch screens. */
-export function SelectToggle({ cell, projection, chosen, onChoose }: OneProps) {
+export function SelectToggle({ cell, projection, selected, onSelect }: OneProps) {
   const bin = projection.bins.get(cell);
-  if (!onChoose || bin === undefined) return null;
+  if (!onSelect || bin === undefined) return null;
   return (
     <button
       class="link"
-      aria-pressed={chosen.has(cell)}
-      onClick={() => onChoose(toggle(chosen, cellsIn([bin], projection)))}
+      aria-pressed={selected.has(cell)}
+      onClick={() => onSelect(toggle(selected, cellsIn([bin], projection)))}
     >
       {text.select}
     </button>
@@ -53,25 +54,25 @@ interface Props extends Selection {
   at: number | null;
 }
 
-export function SelectionBar({ run, elites, at, chosen, onChoose }: Props) {
-  if (!onChoose) return null;
-  const cells = chosen.size > 0 ? [...chosen] : at === null ? [] : [...elites.keys()];
+export function SelectionBar({ run, elites, at, selected, onSelect }: Props) {
+  if (!onSelect) return null;
+  const cells = selected.size > 0 ? [...selected] : at === null ? [] : [...elites.keys()];
   const creatures = new Set(cells.map((cell) => elites.get(cell)!.creature)).size;
   const which = text.creatures(count(creatures), at === null ? null : count(at));
   return (
-    <div class="row chosen-bar">
-      <span role="status">{chosen.size > 0 && text.selected(which)}</span>
+    <div class="row selection-bar">
+      <span role="status">{selected.size > 0 && text.selected(which)}</span>
       {/* Outside the live region: it would be read at every step of the slider. */}
-      {chosen.size === 0 && creatures > 0 && <span>{which}</span>}
+      {selected.size === 0 && creatures > 0 && <span>{which}</span>}
       {creatures > 0 && (
         <ForkLink
           run={run.id}
-          cells={chosen.size > 0 ? formatCells(chosen) : null}
+          cells={selected.size > 0 ? formatCells(selected) : null}
           at={at}
           title={text.fork(creatures)}
         />
       )}
-      {chosen.size > 0 && <button onClick={() => setSelection(new Set())}>{text.clearSelection}</button>}
+      {selected.size > 0 && <button onClick={() => setSelection(new Set())}>{text.clearSelection}</button>}
     </div>
   );
 }

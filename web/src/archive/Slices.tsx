@@ -16,13 +16,13 @@ export function Slices({ slices, onChange }: Props) {
   return (
     <div class="row slices">
       {slices.map((slice) => (
-        <One key={slice.axis.name} slice={slice} onChange={onChange} />
+        <SliceControl key={slice.axis.name} slice={slice} onChange={onChange} />
       ))}
     </div>
   );
 }
 
-function One({ slice, onChange }: { slice: Slice; onChange: Props["onChange"] }) {
+function SliceControl({ slice, onChange }: { slice: Slice; onChange: Props["onChange"] }) {
   const { axis, from, to } = slice;
   const all = from === 0 && to === axis.bins - 1;
   const [low, high] = [number(edgeOf(axis, from)), number(edgeOf(axis, to + 1))];

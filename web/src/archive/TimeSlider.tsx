@@ -21,22 +21,22 @@ const PLAY_SECONDS = 10;
 
 export function TimeSlider({ last, at, ready, onMove }: Props) {
   const [playing, setPlaying] = useState(false);
-  const [place, setPlace] = useState(0);
+  const [position, setPosition] = useState(0);
   const shown = at ?? last;
   useClock(playing && ready, (seconds) => {
-    setPlace((now) => Math.min(last, now + (seconds * last) / PLAY_SECONDS));
+    setPosition((now) => Math.min(last, now + (seconds * last) / PLAY_SECONDS));
   });
   useEffect(() => {
     if (!playing || !ready) return;
-    const generation = Math.floor(place);
-    if (place >= last) {
+    const generation = Math.floor(position);
+    if (position >= last) {
       setPlaying(false);
       onMove(null);
     } else if (generation !== at) onMove(generation);
-  }, [place, playing, ready]);
+  }, [position, playing, ready]);
   const play = () => {
     const begin = at === null ? 0 : at;
-    setPlace(begin);
+    setPosition(begin);
     onMove(begin);
     setPlaying(true);
   };

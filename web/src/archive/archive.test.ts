@@ -54,8 +54,8 @@ describe("an archive on a map", () => {
     const elites = elitesOf({ ...together, 20: elite(3, 1, 9, 1) });
     const { tiles, bins } = over(archiveOf(3), elites, ["a", "b"]);
     expect([...tiles.keys()]).toEqual([1, 6]);
-    expect(tiles.get(1)).toMatchObject({ cell: 4, behind: 2 });
-    expect(tiles.get(6)).toMatchObject({ cell: 20, behind: 0 });
+    expect(tiles.get(1)).toMatchObject({ cell: 4, hidden: 2 });
+    expect(tiles.get(6)).toMatchObject({ cell: 20, hidden: 0 });
     expect([3, 4, 5, 20].map((cell) => bins.get(cell))).toEqual([1, 1, 1, 6]);
     const turned = over(archiveOf(3), elites, ["c", "a"]);
     expect([turned.layout.count, turned.bins.get(20)]).toEqual([6, 5]);
@@ -84,9 +84,9 @@ describe("an archive on a map", () => {
     const axis = (name: string) => axisOf(name, archiveOf(3), elites, NONE);
     const through = (from: number, to: number) =>
       project(elites, [axis("a"), axis("b")], [{ axis: axis("c"), from, to }]).tiles.get(1);
-    expect(through(0, 2)).toMatchObject({ cell: 4, behind: 2 });
-    expect(through(2, 2)).toMatchObject({ cell: 5, behind: 0 });
-    expect(through(0, 0)).toMatchObject({ cell: 3, behind: 0 });
+    expect(through(0, 2)).toMatchObject({ cell: 4, hidden: 2 });
+    expect(through(2, 2)).toMatchObject({ cell: 5, hidden: 0 });
+    expect(through(0, 0)).toMatchObject({ cell: 3, hidden: 0 });
   });
 
   it("along a measure omits elites without a value", () => {

@@ -24,7 +24,7 @@ export interface ArchiveView {
   /** The error if the history could not be loaded. */
   error: string | null;
   map: Projection;
-  /** The same on even bins, if the map shows Voronoi cells. */
+  /** The projection onto even bins, also if the map shows Voronoi cells. */
   grid: Projection;
   colouring: Colouring;
 }
@@ -48,12 +48,12 @@ export function useArchiveView(
   const elites = useMemo(() => (at !== null && walk ? walk(at) : live), [at, walk, live]);
   // Axes follow the newest elites, so that they stay while the history is played.
   const axes = useMemo(() => axesOf([x, y], archive, live, measures), [x, y, archive, live, measures]);
-  const asked = hiddenAxes(archive, x, y)
+  const requested = hiddenAxes(archive, x, y)
     .map(({ name }) => query.get(`only.${name}`))
     .join();
   const slices = useMemo(
     () => hiddenAxes(archive, x, y).map(({ name }) => sliceOf(axisOf(name, archive, live, measures), query)),
-    [x, y, archive, live, measures, asked],
+    [x, y, archive, live, measures, requested],
   );
   const cells = useCells(run.id, archive, [x, y]);
   const map = useMemo(() => project(elites, axes, slices, cells), [elites, axes, slices, cells]);
@@ -68,8 +68,8 @@ export function useArchiveView(
   return { axes, slices, colour, palette, elites, generation, ready, error, map, grid, colouring };
 }
 
-function colourOf(archive: Archive, asked: string | null): string {
-  return coloursOf(archive).some(([name]) => name === asked) ? asked! : FITNESS;
+function colourOf(archive: Archive, requested: string | null): string {
+  return coloursOf(archive).some(([name]) => name === requested) ? requested! : FITNESS;
 }
 
 function axesOf([x, y]: [string, string], archive: Archive, elites: Elites, measures: Measures) {
@@ -103,9 +103,9 @@ function useCells(id: string, archive: Archive, names: [string, string]): Layout
   useEffect(() => {
     setLayout(null);
     if (!wanted || !centroids) return;
-    const points = centroids.map((place) => [place[x!]!, 1 - place[y!]!] as const);
+    const points = centroids.map((centroid) => [centroid[x!]!, 1 - centroid[y!]!] as const);
     let current = true;
-    // Few archives have such cells.
+    // Load the library on demand, because few archives have Voronoi cells.
     void import("d3-delaunay").then(({ Delaunay }) => {
       if (current) setLayout(voronoiLayout(points, Delaunay));
     });

@@ -29,8 +29,8 @@ export function namesOf(archive: Archive, x: string | null, y: string | null): [
 
 /** The names of measures that elites do not contain, which are fetched. */
 export function missingOf(archive: Archive, names: string[]): string[] {
-  const there = [...archive.axes.map(({ name }) => name), FITNESS];
-  return names.filter((name) => !there.includes(name));
+  const contained = [...archive.axes.map(({ name }) => name), FITNESS];
+  return names.filter((name) => !contained.includes(name));
 }
 
 export const scaleOf = ({ scale, low, high }: Axis): Scale => ({ log: scale === "log10", low, high });
@@ -40,7 +40,7 @@ export interface MapAxis extends Axis, Measure {
   binOf: ((cell: number) => number) | null;
 }
 
-/** A number of each elite, with its title. */
+/** A measure of elites, with its title and unit. */
 export interface Measure {
   name: string;
   title: string;

@@ -35,7 +35,7 @@ interface BinFocus {
 
 /** `onMove` gets the bin after an arrow key. */
 export function useBinFocus(
-  { projection, marked, chosen, onChoose, onMark, onOpen }: ArchiveViewProps,
+  { projection, marked, selected, onSelect, onMark, onOpen }: ArchiveViewProps,
   onMove?: (bin: number) => void,
 ): BinFocus {
   const { layout, tiles, bins } = projection;
@@ -46,8 +46,8 @@ export function useBinFocus(
   const press = (event: KeyboardEvent) => {
     if (event.key === "Enter" && from !== null) return onOpen(tiles.get(from)!.cell);
     const next = isDirection(event.key) ? binByKey(event.key, from, tiles, layout) : null;
-    const changed = onChoose && selectByKey(event, chosen, projection, from, next);
-    if (changed) onChoose(changed);
+    const changed = onSelect && selectByKey(event, selected, projection, from, next);
+    if (changed) onSelect(changed);
     if (!changed && !isDirection(event.key)) return;
     event.preventDefault();
     setHovered(null);

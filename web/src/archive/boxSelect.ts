@@ -4,7 +4,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import type { Box } from "./selection";
 import type { Spot } from "./layout";
 
-/** Shorter movements, in pixels, are clicks. */
+/** The shortest drag, in pixels; shorter movements are clicks. */
 const MIN_DISTANCE = 5;
 
 interface Started {

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { colourMeasure, colouringOf, binColours, placeOf } from "./colouring";
+import { colourMeasure, colouringOf, binColours, colourPosition } from "./colouring";
 import { valueAt } from "../charts/plot/scale";
 import { rasterOf, gridLayout } from "./layout";
 import { archiveOf, elite, elitesOf, measuresOf, NONE, over } from "./archive.fixture";
@@ -13,7 +13,7 @@ describe("the colours of a map", () => {
     const colouring = colouringOf(measure, "viridis", tiles);
     expect(colouring.scale).toEqual({ log: true, low: 1, high: 100 });
     expect(valueAt(colouring.scale, 0.5)).toBeCloseTo(10);
-    expect([...tiles.values()].map((tile) => placeOf(colouring, tile))).toEqual([0, 0.5, 1]);
+    expect([...tiles.values()].map((tile) => colourPosition(colouring, tile))).toEqual([0, 0.5, 1]);
   });
 
   it("clip the values of past elites", () => {

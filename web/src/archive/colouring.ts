@@ -1,7 +1,7 @@
 /** The colours of a map: a measure of the elites, a scale and a palette. */
 
 import type { Archive } from "../api/types";
-import { type Scale, place } from "../charts/plot/scale";
+import { type Scale, positionOf } from "../charts/plot/scale";
 import { type Palette, sequential, table } from "../ui/colours";
 import { FITNESS, type Measures, type Measure, choicesOf, measureOf } from "./axes";
 import type { Tile, Tiles } from "./projection";
@@ -49,11 +49,11 @@ export function colouringOf(measure: Measure, palette: Palette, tiles: Tiles): C
 }
 
 /** The position of a tile along the colours, from 0 to 1; null if the value is unknown. */
-export function placeOf({ measure, scale }: Colouring, tile: Tile): number | null {
+export function colourPosition({ measure, scale }: Colouring, tile: Tile): number | null {
   const value = measure.valueOf(tile.elite);
   if (value === null || (scale.log && value <= 0)) return null;
   if (scale.low === scale.high) return 0;
-  return Math.min(1, Math.max(0, place(scale, value)));
+  return Math.min(1, Math.max(0, positionOf(scale, value)));
 }
 
 const SHADES = 256;
@@ -76,8 +76,8 @@ export function binColours(
   const shades = shadesOf(colouring.palette);
   const colours = new Uint32Array(count).fill(empty);
   for (const [bin, tile] of tiles) {
-    const place = placeOf(colouring, tile);
-    colours[bin] = place === null ? unknown : shades[Math.round(place * (SHADES - 1))]!;
+    const position = colourPosition(colouring, tile);
+    colours[bin] = position === null ? unknown : shades[Math.round(position * (SHADES - 1))]!;
   }
   return colours;
 }

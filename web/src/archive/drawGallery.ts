@@ -4,7 +4,7 @@ import type { Motion } from "../decode/motion";
 import { type Size, prepare } from "../ui/canvas";
 import { css, sequential } from "../ui/colours";
 import type { Theme } from "../ui/theme";
-import { type Colouring, placeOf } from "./colouring";
+import { type Colouring, colourPosition } from "./colouring";
 import { FADED } from "./drawMap";
 import { type Shape, cornerOf } from "./geometry";
 import type { Tiles } from "./projection";
@@ -21,7 +21,7 @@ export interface GalleryPicture {
   theme: Theme;
   marked: number | null;
   /** The selected bins; null without a selection. */
-  chosen: ReadonlySet<number> | null;
+  selected: ReadonlySet<number> | null;
 }
 
 const INKS = {
@@ -54,16 +54,16 @@ export function drawGallery(
 
 function drawTile(
   context: CanvasRenderingContext2D,
-  { tiles, colouring, motions, theme, chosen }: GalleryPicture,
+  { tiles, colouring, motions, theme, selected }: GalleryPicture,
   bin: number,
   [left, top, side]: readonly [number, number, number],
   share: number,
 ): void {
   const { body, quiet, tint } = INKS[theme];
   const tile = tiles.get(bin)!;
-  const place = placeOf(colouring, tile);
-  context.fillStyle = place === null ? quiet : css(sequential(place, colouring.palette));
-  const strength = !chosen || chosen.has(bin) ? 1 : FADED;
+  const position = colourPosition(colouring, tile);
+  context.fillStyle = position === null ? quiet : css(sequential(position, colouring.palette));
+  const strength = !selected || selected.has(bin) ? 1 : FADED;
   context.globalAlpha = tint * strength;
   context.fillRect(left + 1, top + 1, side - 2, side - 2);
   context.globalAlpha = strength;

@@ -18,7 +18,7 @@ export interface Picture {
   /** Times of the last changes by cell, in milliseconds. */
   changed: ReadonlyMap<number, number>;
   /** The selected bins; null without a selection. */
-  chosen: ReadonlySet<number> | null;
+  selected: ReadonlySet<number> | null;
   theme: Theme;
 }
 
@@ -43,7 +43,7 @@ export class MapPainter {
     const { layout, tiles, colouring } = picture;
     const { empty, unknown, flash } = INKS[picture.theme];
     const colours = binColours(tiles, layout.count, colouring, empty, unknown);
-    if (picture.chosen) fade(colours, tiles, picture.chosen);
+    if (picture.selected) fade(colours, tiles, picture.selected);
     paint(image, this.raster, colours);
     context.putImageData(image, 0, 0);
     drawFlashes(context, size, picture, flash, now);
@@ -60,9 +60,9 @@ export class MapPainter {
 }
 
 /** Fade all bins that are not selected. */
-function fade(colours: Uint32Array, tiles: Tiles, chosen: ReadonlySet<number>): void {
+function fade(colours: Uint32Array, tiles: Tiles, selected: ReadonlySet<number>): void {
   for (const bin of tiles.keys()) {
-    if (chosen.has(bin)) continue;
+    if (selected.has(bin)) continue;
     const bytes = new Uint8Array(colours.buffer, 4 * bin, 4);
     bytes[3] = bytes[3]! * FADED;
   }

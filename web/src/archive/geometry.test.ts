@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { cellAt, cellOf, cornerOf, placeOf, rectangle, visibleBins } from "./geometry";
+import { cellAt, cellOf, cornerOf, columnAndRow, rectangle, visibleBins } from "./geometry";
 import { type Direction, gridLayout, nextBin } from "./layout";
 
 const SHAPE = [4, 3] as const;
@@ -7,7 +7,7 @@ const SHAPE = [4, 3] as const;
 describe("a cell", () => {
   it("counts in C order, the second axis fastest", () => {
     expect(cellOf({ i: 2, j: 1 }, SHAPE)).toBe(7);
-    for (let cell = 0; cell < 12; cell++) expect(cellOf(placeOf(cell, SHAPE), SHAPE)).toBe(cell);
+    for (let cell = 0; cell < 12; cell++) expect(cellOf(columnAndRow(cell, SHAPE), SHAPE)).toBe(cell);
   });
 
   it("is further right along the first axis and higher along the second", () => {

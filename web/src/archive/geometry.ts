@@ -3,7 +3,7 @@
 export type Shape = readonly [number, number];
 
 /** The column (first axis, to the right) and the row (second axis, upwards) of a cell. */
-export function placeOf(cell: number, shape: Shape) {
+export function columnAndRow(cell: number, shape: Shape) {
   return { i: Math.floor(cell / shape[1]), j: cell % shape[1] };
 }
 
@@ -20,7 +20,7 @@ export function cellAt(x: number, y: number, shape: Shape): number | null {
 
 /** Left, top, width and height of a cell, in the units of `width` and `height`. */
 export function rectangle(cell: number, shape: Shape, width: number, height: number) {
-  const { i, j } = placeOf(cell, shape);
+  const { i, j } = columnAndRow(cell, shape);
   const [w, h] = [width / shape[0], height / shape[1]];
   return { x: i * w, y: (shape[1] - 1 - j) * h, w, h };
 }

@@ -102,7 +102,7 @@ export function rasterOf(layout: Layout, width: number, height: number, density:
   return raster;
 }
 
-/** From the end, so that neighbours are still unchanged. */
+/** Go backwards, so that the compared neighbours are still unchanged. */
 function cutGaps(raster: Int32Array, width: number, gap: number): void {
   for (let k = raster.length - 1; k >= 0; k--) {
     const column = k % width;

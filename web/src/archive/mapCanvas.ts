@@ -4,10 +4,10 @@ import type { RefObject } from "preact";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import type { Elites } from "../store/elites";
 import { useSize } from "../ui/canvas";
-import { prefersStillness, useTheme } from "../ui/theme";
+import { prefersReducedMotion, useTheme } from "../ui/theme";
 import { FLASH_MS, MapPainter, type Picture } from "./drawMap";
 
-type MapContent = Pick<Picture, "layout" | "tiles" | "colouring" | "chosen">;
+type MapContent = Pick<Picture, "layout" | "tiles" | "colouring" | "selected">;
 
 /** Draw the map when it changes, and flash changed cells. */
 export function useMapCanvas(plot: RefObject<HTMLElement | null>, drawn: MapContent, elites: Elites) {
@@ -39,7 +39,7 @@ function useChanges(elites: Elites): ReadonlyMap<number, number> {
     const before = seen.current;
     const now = performance.now();
     const next = new Map([...times.current].filter(([, time]) => now - time < FLASH_MS));
-    for (const [cell, elite] of before && !prefersStillness() ? elites : []) {
+    for (const [cell, elite] of before && !prefersReducedMotion() ? elites : []) {
       if (before!.get(cell)?.creature !== elite.creature) next.set(cell, now);
     }
     seen.current = elites;

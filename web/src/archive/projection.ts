@@ -2,7 +2,7 @@
 
 import type { Axis } from "../api/types";
 import type { Elite, Elites } from "../store/elites";
-import { place } from "../charts/plot/scale";
+import { positionOf } from "../charts/plot/scale";
 import { type MapAxis, scaleOf } from "./axes";
 import { type Shape, cellOf } from "./geometry";
 import { type Layout, gridLayout } from "./layout";
@@ -10,8 +10,8 @@ import { type Layout, gridLayout } from "./layout";
 export interface Tile {
   cell: number;
   elite: Elite;
-  /** Hidden elites in the same bin. */
-  behind: number;
+  /** The number of hidden elites in the same bin. */
+  hidden: number;
 }
 
 export type Tiles = ReadonlyMap<number, Tile>;
@@ -45,11 +45,11 @@ export function project(
     const bin = cells ? cell : binOfBoth(x, y, cell, elite, shape);
     if (bin === null) continue;
     bins.set(cell, bin);
-    const there = tiles.get(bin);
-    if (!there) tiles.set(bin, { cell, elite, behind: 0 });
-    else if (elite.fitness > there.elite.fitness) {
-      tiles.set(bin, { cell, elite, behind: there.behind + 1 });
-    } else there.behind += 1;
+    const shown = tiles.get(bin);
+    if (!shown) tiles.set(bin, { cell, elite, hidden: 0 });
+    else if (elite.fitness > shown.elite.fitness) {
+      tiles.set(bin, { cell, elite, hidden: shown.hidden + 1 });
+    } else shown.hidden += 1;
   }
   return { layout: cells ?? gridLayout(shape), tiles, bins };
 }
@@ -72,6 +72,6 @@ function binOn(axis: MapAxis, cell: number, elite: Elite): number | null {
 
 /** The bin of a value; values beyond an end count in the last bin. */
 export function binOf(axis: Axis, value: number): number {
-  const share = place(scaleOf(axis), Math.max(value, axis.low));
+  const share = positionOf(scaleOf(axis), Math.max(value, axis.low));
   return Math.min(axis.bins - 1, Math.floor(axis.bins * share + 1e-9));
 }

@@ -30,7 +30,7 @@ const mapOf = <T>(entries: Record<number, T>) =>
 /** A map of 4 × 4 bins with two elites in bin 5. */
 const layout = gridLayout([4, 4]);
 const elite = { fitness: 1, descriptors: [], generation: 1, creature: "c", seenAt: 1 };
-const tile = (cell: number, behind = 0) => ({ cell, elite, behind });
+const tile = (cell: number, hidden = 0) => ({ cell, elite, hidden });
 const projection: Projection = {
   layout,
   tiles: mapOf({ 0: tile(100), 5: tile(101, 1), 15: tile(103) }),
@@ -59,8 +59,8 @@ describe("a box on the map", () => {
 });
 
 describe("a key on the map", () => {
-  const press = (key: string, chosen: Set<number>, next: number | null = null, shiftKey = false) =>
-    selectByKey({ key, shiftKey } as KeyboardEvent, chosen, projection, 5, next);
+  const press = (key: string, selected: Set<number>, next: number | null = null, shiftKey = false) =>
+    selectByKey({ key, shiftKey } as KeyboardEvent, selected, projection, 5, next);
 
   it("toggles a bin with Space", () => {
     expect(press(" ", set(100))).toEqual(set(100, 101, 102));

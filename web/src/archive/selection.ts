@@ -8,9 +8,9 @@ import { text } from "./text";
 export type CellSet = ReadonlySet<number>;
 
 export interface Selection {
-  chosen: CellSet;
+  selected: CellSet;
   /** Null if selecting is not allowed. */
-  onChoose: ((chosen: CellSet) => void) | null;
+  onSelect: ((selected: CellSet) => void) | null;
 }
 
 const NONE: CellSet = new Set();
@@ -22,35 +22,35 @@ export function cellsIn(bins: Iterable<number>, projection: Pick<Projection, "bi
 }
 
 /** The bins with selected elites; null without a selection. */
-export function binsOf(chosen: CellSet, projection: Pick<Projection, "bins">): CellSet | null {
-  if (chosen.size === 0) return null;
-  return new Set([...chosen].flatMap((cell) => projection.bins.get(cell) ?? []));
+export function binsOf(selected: CellSet, projection: Pick<Projection, "bins">): CellSet | null {
+  if (selected.size === 0) return null;
+  return new Set([...selected].flatMap((cell) => projection.bins.get(cell) ?? []));
 }
 
 export const union = (some: CellSet, others: CellSet): CellSet => new Set([...some, ...others]);
 
 /** Add these cells, or remove them if all of them are selected. */
-export function toggle(chosen: CellSet, cells: CellSet): CellSet {
-  const all = [...cells].every((cell) => chosen.has(cell));
-  return all ? new Set([...chosen].filter((cell) => !cells.has(cell))) : union(chosen, cells);
+export function toggle(selected: CellSet, cells: CellSet): CellSet {
+  const all = [...cells].every((cell) => selected.has(cell));
+  return all ? new Set([...selected].filter((cell) => !cells.has(cell))) : union(selected, cells);
 }
 
 /** A description of the keys for screen readers. */
-export const keyHelp = ({ onChoose }: Pick<Selection, "onChoose">): string => text.keyHelp(onChoose !== null);
+export const keyHelp = ({ onSelect }: Pick<Selection, "onSelect">): string => text.keyHelp(onSelect !== null);
 
 /** The selection after a key; null if the key does not change it. */
 export function selectByKey(
   { key, shiftKey }: KeyboardEvent,
-  chosen: CellSet,
+  selected: CellSet,
   projection: Projection,
   from: number | null,
   next: number | null,
 ): CellSet | null {
-  if (key === "Escape") return chosen.size > 0 ? NONE : null;
+  if (key === "Escape") return selected.size > 0 ? NONE : null;
   if (from === null) return null;
-  if (key === " ") return toggle(chosen, cellsIn([from], projection));
+  if (key === " ") return toggle(selected, cellsIn([from], projection));
   if (!shiftKey || next === null) return null;
-  return union(chosen, cellsIn([from, next], projection));
+  return union(selected, cellsIn([from, next], projection));
 }
 
 export interface Box {

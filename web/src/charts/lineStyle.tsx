@@ -2,7 +2,7 @@
 
 import "./lineStyle.css";
 
-/** More lines cannot be told apart. */
+/** More lines cannot be distinguished. */
 export const MAX_LINES = 8;
 
 const SOLID_LINES = 4;
@@ -11,7 +11,7 @@ export const colourOf = (index: number) => `--series-${1 + (index % MAX_LINES)}`
 export const dashOf = (index: number) => (index >= SOLID_LINES ? [7, 4] : undefined);
 
 /** A sample of a line, for legends and tables. */
-export function LineKey({ index }: { index: number }) {
+export function LineSample({ index }: { index: number }) {
   const strokeDasharray = dashOf(index)?.join(" ");
   return (
     <svg class="compare-key" viewBox="0 0 26 10" aria-hidden="true">

@@ -4,12 +4,12 @@ import { useMemo } from "preact/hooks";
 import type { Experiment, Run } from "../api/types";
 import { CurveOptions } from "../charts/curves/CurveOptions";
 import { Curves } from "../charts/curves/Curves";
-import { type OtherRun, curveViewOf, overlayPlots } from "../charts/curves/look";
+import { type OtherRun, curveViewOf, overlayPlots } from "../charts/curves/curveView";
 import { type Plot, scoresOf } from "../charts/curves/plots";
-import { LineKey, MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
+import { LineSample, MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
 import { StatusBadge, timeOf } from "../run/RunStatus";
 import { SCORES } from "../run/figures";
-import { differences, written } from "../run/spec/difference";
+import { differences, valueText } from "../run/spec/difference";
 import type { Curves as Columns } from "../store/curves";
 import { useCurvesOf, useExperiments } from "../store/fetch";
 import { setQuery } from "../store/router";
@@ -17,17 +17,17 @@ import { useRuns } from "../store/store";
 import { Card, Empty, Page } from "../ui/Page";
 import { Table } from "../ui/Table";
 import { Term } from "../ui/Term";
-import { short, titleOf, DASH, count, duration, number } from "../ui/format";
+import { shortId, titleOf, DASH, count, duration, number } from "../ui/format";
 import { text } from "./text";
 
 export function ComparePage({ query }: { query: URLSearchParams }) {
-  const asked = [...new Set((query.get("runs") ?? "").split(",").filter(Boolean))];
-  const ids = asked.slice(0, MAX_LINES);
+  const requested = [...new Set((query.get("runs") ?? "").split(",").filter(Boolean))];
+  const ids = requested.slice(0, MAX_LINES);
   const { value: curves, error } = useCurvesOf(ids);
   const known = useRuns(ids);
   const experiments = useExperiments().value ?? [];
-  const runs = known.flatMap((run, place): Compared[] =>
-    run ? [{ run, place, name: nameOf(run, experiments) }] : [],
+  const runs = known.flatMap((run, lineIndex): Compared[] =>
+    run ? [{ run, lineIndex, name: nameOf(run, experiments) }] : [],
   );
   return (
     <Page
@@ -36,9 +36,11 @@ export function ComparePage({ query }: { query: URLSearchParams }) {
       error={error}
       loading={ids.length > 0 && runs.length === 0}
     >
-      {asked.length > MAX_LINES && <p class="banner warning">{text.tooMany(MAX_LINES, asked.length)}</p>}
+      {requested.length > MAX_LINES && (
+        <p class="banner warning">{text.tooMany(MAX_LINES, requested.length)}</p>
+      )}
       {ids.length === 0 && (
-        <Empty title={text.nothingChosen} hint={text.nothingChosenHint}>
+        <Empty title={text.nothingSelected} hint={text.nothingSelectedHint}>
           <a class="button primary" href="/">
             {text.showRuns}
           </a>
@@ -57,15 +59,15 @@ export function ComparePage({ query }: { query: URLSearchParams }) {
 }
 
 const nameOf = (run: Run, experiments: Experiment[]) =>
-  run.name ?? `${titleOf(run, experiments)} ${short(run.id)}`;
+  run.name ?? `${titleOf(run, experiments)} ${shortId(run.id)}`;
 
 function Legend({ runs, ids }: { runs: Compared[]; ids: string[] }) {
   const without = (id: string) => ids.filter((each) => each !== id).join() || null;
   return (
     <ul class="compare-legend" aria-label={text.runs}>
-      {runs.map(({ run, name, place }) => (
+      {runs.map(({ run, name, lineIndex }) => (
         <li key={run.id}>
-          <LineKey index={place} />
+          <LineSample index={lineIndex} />
           <a href={`/runs/${run.id}`}>{name}</a>
           <StatusBadge run={run} />
           <button
@@ -88,15 +90,15 @@ interface PlotsProps {
 }
 
 function Plots({ runs, curves, query }: PlotsProps) {
-  const look = curveViewOf(query);
-  const drawn = runs.flatMap(({ run, name, place }): OtherRun[] => {
+  const view = curveViewOf(query);
+  const drawn = runs.flatMap(({ run, name, lineIndex }): OtherRun[] => {
     const own = curves.get(run.id);
-    return own ? [{ name, colour: colourOf(place), dash: dashOf(place), curves: own }] : [];
+    return own ? [{ name, colour: colourOf(lineIndex), dash: dashOf(lineIndex), curves: own }] : [];
   });
   return (
     <Card id="curves" kind="wide-curves" title={text.curves}>
-      <CurveOptions look={look} />
-      <Curves plots={overlayPlots(oneLinePerRun, drawn, look)} x={NO_X} look={look} />
+      <CurveOptions view={view} />
+      <Curves plots={overlayPlots(oneLinePerRun, drawn, view)} x={NO_X} view={view} />
     </Card>
   );
 }
@@ -111,7 +113,7 @@ interface Compared {
   run: Run;
   name: string;
   /** Index of the line's colour and dash. */
-  place: number;
+  lineIndex: number;
 }
 
 type Written = [title: string, write: (run: Run) => string];
@@ -138,7 +140,7 @@ function Figures({ runs }: { runs: Compared[] }) {
 function Specs({ runs }: { runs: Compared[] }) {
   const specs = runs.map(({ run }) => run.spec);
   const differing = useMemo(() => differences(specs), specs);
-  const rows = differing.map(({ path, values }) => ({ title: path, values: values.map(written) }));
+  const rows = differing.map(({ path, values }) => ({ title: path, values: values.map(valueText) }));
   return (
     <Card id="specs" title={text.differences}>
       {rows.length === 0 && <p class="quiet">{text.noDifferences}</p>}
@@ -156,10 +158,10 @@ interface RunTableProps {
 }
 
 function RunTable({ runs, corner, rows, code = false }: RunTableProps) {
-  const columns = runs.map(({ name, place }, i) => ({
+  const columns = runs.map(({ name, lineIndex }, i) => ({
     title: (
       <>
-        <LineKey index={place} /> {name}
+        <LineSample index={lineIndex} /> {name}
       </>
     ),
     cell: ({ values }: (typeof rows)[0]) => values[i]!,

@@ -3,10 +3,10 @@
 export const text = {
   runs: "Runs",
   compare: "Compare",
-  tooMany: (limit: number, asked: number) =>
-    `At most ${limit} runs can be compared. The first ${limit} of ${asked} are shown.`,
-  nothingChosen: "No runs selected",
-  nothingChosenHint: "Select two or more runs in the list of runs, then press Compare.",
+  tooMany: (limit: number, requested: number) =>
+    `At most ${limit} runs can be compared. The first ${limit} of ${requested} are shown.`,
+  nothingSelected: "No runs selected",
+  nothingSelectedHint: "Select two or more runs in the list of runs, then press Compare.",
   showRuns: "Show all runs",
   curves: "Curves",
   remove: (name: string) => `Remove ${name}`,

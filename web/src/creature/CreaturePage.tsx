@@ -7,13 +7,13 @@ import type { Creature, Spec } from "../api/types";
 import type { Replay } from "../decode/replay";
 import { useFetched } from "../store/fetch";
 import { setQuery } from "../store/router";
-import { number, short, words } from "../ui/format";
+import { number, shortId, words } from "../ui/format";
 import { isForceFree } from "../ui/coupling";
 import { Page, useTitle } from "../ui/Page";
 import { reasonOf } from "../ui/NotFound";
 import { NotForceFree } from "../ui/NotForceFree";
 import { ReplayPlayer } from "../replay/ReplayPlayer";
-import { replayViewOf, queryOf } from "../replay/look";
+import { replayViewOf, queryOf } from "../replay/replayView";
 import { newMoment } from "../replay/moment";
 import { AuditCard } from "./AuditCard";
 import { FactsCard } from "./FactsCard";
@@ -24,7 +24,7 @@ import { Downloads } from "./Downloads";
 import { RemeasureCard } from "./RemeasureCard";
 import { PublishButton } from "../publish/PublishButton";
 import { RefineButton } from "./RefineButton";
-import { RecordingStatus, useReplays } from "../replay/recordings";
+import { ReplayStatus, useReplays } from "../replay/replays";
 import { SpaceTimeCard } from "./SpaceTimeCard";
 import { text } from "./text";
 import "./creature.css";
@@ -37,16 +37,16 @@ interface Props {
 
 export function CreaturePage({ sha, query }: Props) {
   const { value: creature, error } = useFetched(() => api.readCreature(sha), [sha]);
-  useTitle(text.title(short(sha)));
+  useTitle(text.title(shortId(sha)));
   const run = query.get("run");
   return (
-    <Page crumbs={[["/", text.runs], ...(run ? [[`/runs/${run}`, short(run)] as const] : [])]}>
+    <Page crumbs={[["/", text.runs], ...(run ? [[`/runs/${run}`, shortId(run)] as const] : [])]}>
       <header class="page-head">
         <h1>
           {creature?.identity.genome.encoding === "gait"
             ? words(creature.identity.genome.swimmer)
             : text.creature}{" "}
-          <code>{short(sha)}</code>
+          <code>{shortId(sha)}</code>
         </h1>
         {creature && !isForceFree(creature.identity.world.coupling) && <NotForceFree />}
         <span class="spring" />
@@ -73,11 +73,11 @@ export function CreatureView({ creature, query }: { creature: Creature; query: U
       <div class="creature-columns">
         <div class="motion stack">
           <section class="card" aria-label={text.replay}>
-            <RecordingStatus {...rendering} what={text.recording} />
+            <ReplayStatus {...rendering} what={text.recording} />
             {replay && (
               <ReplayPlayer
                 {...{ films, moment }}
-                look={replayViewOf(query)}
+                view={replayViewOf(query)}
                 onLook={(change) => setQuery(queryOf(change))}
               />
             )}

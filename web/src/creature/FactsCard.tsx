@@ -3,13 +3,13 @@
 import type { Creature } from "../api/types";
 import { Card } from "../ui/Page";
 import { Term } from "../ui/Term";
-import { type Group, formOf, groupsOf, originOf } from "./facts";
+import { type Group, couplingRows, groupsOf, originOf } from "./facts";
 import { text } from "./text";
 
 export function FactsCard({ creature }: { creature: Creature }) {
   const groups: Group[] = [
     ...groupsOf(creature),
-    { title: text.coupling, rows: formOf(creature) },
+    { title: text.coupling, rows: couplingRows(creature) },
     { title: text.origin, rows: originOf(creature) },
   ];
   return (

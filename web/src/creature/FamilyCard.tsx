@@ -13,7 +13,7 @@ import { count } from "../ui/format";
 import { text } from "./text";
 
 /** Generations of ancestors: shown at first, added by each click, and at most. */
-const [NEAR, FURTHER, FARTHEST] = [2, 2, 12];
+const [FIRST_DEPTH, DEPTH_STEP, MAX_DEPTH] = [2, 2, 12];
 
 interface Props {
   creature: Creature;
@@ -22,7 +22,7 @@ interface Props {
 
 export function FamilyCard({ creature, query }: Props) {
   const sha = creature.sha256;
-  const back = Math.min(FARTHEST, Math.max(1, Math.round(Number(query.get("back")) || NEAR)));
+  const back = Math.min(MAX_DEPTH, Math.max(1, Math.round(Number(query.get("back")) || FIRST_DEPTH)));
   const { value, error } = useFetched(() => api.readFamily(sha, back), [sha, back]);
   const tree = useMemo(() => value && familyLayoutOf(selfOf(creature), ...value), [creature, value]);
   const run = query.get("run");
@@ -31,8 +31,8 @@ export function FamilyCard({ creature, query }: Props) {
     sharedSlug && !run ? null : pageUrl(`/creatures/${name}${run ? `?run=${run}` : ""}`);
   const credited = value ? creditOf(value[0].items, creature) : [];
   const lost = value?.[0].items.some(({ kept }) => !kept);
-  const more = value?.[0].more && back < FARTHEST && (
-    <button onClick={() => setQuery({ back: String(back + FURTHER) })}>{text.moreAncestors}</button>
+  const more = value?.[0].more && back < MAX_DEPTH && (
+    <button onClick={() => setQuery({ back: String(back + DEPTH_STEP) })}>{text.moreAncestors}</button>
   );
   return (
     <Card id="family" title={sharedSlug ? text.ancestors : text.family} actions={more}>

@@ -1,8 +1,8 @@
 /** A family tree: parents at the left, children at the right, bars for fitness. */
 
 import type { Relative } from "../api/types";
-import { number, short } from "../ui/format";
-import { HIGH, type PlacedRelative, type FamilyLayout, WIDE } from "./relatives";
+import { number, shortId } from "../ui/format";
+import { ROW_HEIGHT, type PlacedRelative, type FamilyLayout, COLUMN_WIDTH } from "./relatives";
 import { text } from "./text";
 
 interface Props {
@@ -13,7 +13,7 @@ interface Props {
 }
 
 const TITLE_HEIGHT = 36;
-const NAME_HEIGHT = HIGH - 8;
+const NAME_HEIGHT = ROW_HEIGHT - 8;
 
 export function FamilyTree({ tree, self, hrefOf }: Props) {
   const known = tree.relatives.map(({ relative }) => relative.fitness ?? 0);
@@ -33,7 +33,7 @@ export function FamilyTree({ tree, self, hrefOf }: Props) {
           ))}
         </svg>
         {tree.columns.map(({ x, title }) => (
-          <span key={title} class="family-title" style={px({ left: x, width: WIDE })}>
+          <span key={title} class="family-title" style={px({ left: x, width: COLUMN_WIDTH })}>
             {title}
           </span>
         ))}
@@ -44,7 +44,7 @@ export function FamilyTree({ tree, self, hrefOf }: Props) {
               style={px({
                 left: x,
                 top: TITLE_HEIGHT + y - NAME_HEIGHT / 2,
-                width: WIDE,
+                width: COLUMN_WIDTH,
                 height: NAME_HEIGHT,
               })}
             >
@@ -65,7 +65,7 @@ const px = (sizes: Record<string, number>) =>
   Object.fromEntries(Object.entries(sizes).map(([name, value]) => [name, `${value}px`]));
 
 function pathOf(parent: PlacedRelative, child: PlacedRelative): string {
-  const [x, end] = [parent.x + WIDE, child.x];
+  const [x, end] = [parent.x + COLUMN_WIDTH, child.x];
   const middle = (x + end) / 2;
   const [from, to] = [TITLE_HEIGHT + parent.y, TITLE_HEIGHT + child.y];
   return `M${x},${from}C${middle},${from} ${middle},${to} ${end},${to}`;
@@ -86,7 +86,7 @@ function Name({ relative, most, own, href }: NameProps) {
     title,
     children: (
       <>
-        <code>{short(creature)}</code>
+        <code>{shortId(creature)}</code>
         {fitness !== null && (
           <span class="family-fitness" style={{ width: `${(100 * Math.abs(fitness)) / most}%` }} />
         )}
@@ -99,11 +99,11 @@ function Name({ relative, most, own, href }: NameProps) {
 
 /** Describe a relative. */
 function aboutOf({ creature, kept, fitness, operator, generation }: Relative): string {
-  if (!kept) return text.neverElite(short(creature));
+  if (!kept) return text.neverElite(shortId(creature));
   const parts = [
     fitness === null ? null : text.fitnessOf(number(fitness)),
     generation === null ? null : text.generationOf(generation),
     operator && text.madeBy(operator),
   ];
-  return [short(creature), ...parts.filter(Boolean)].join(", ");
+  return [shortId(creature), ...parts.filter(Boolean)].join(", ");
 }

@@ -49,11 +49,11 @@ interface NetworkProps extends Omit<Props, "creature"> {
 }
 
 function Network({ network, files, ...rest }: NetworkProps) {
-  const [chosen, choose] = useState<number | null>(null);
+  const [selected, choose] = useState<number | null>(null);
   return (
     <Card id="network" title={text.network}>
-      <NetworkGraph network={network} chosen={chosen} onChoose={choose} />
-      <NetworkOutputs {...rest} {...{ network, chosen }} />
+      <NetworkGraph network={network} selected={selected} onSelect={choose} />
+      <NetworkOutputs {...rest} {...{ network, selected }} />
       {files && (
         <p class="links network-files">
           <span class="quiet small">{text.download}</span>

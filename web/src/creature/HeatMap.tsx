@@ -25,8 +25,8 @@ interface Props {
   read: (column: number, row: number) => string;
   moment: Moment;
   /** The horizontal position of a moment, from 0 to 1; and the inverse, if a click can choose one. */
-  place: (time: number) => number;
-  timeAt?: (place: number) => number;
+  positionOf: (time: number) => number;
+  timeAt?: (position: number) => number;
 }
 
 export interface Spot {
@@ -34,7 +34,7 @@ export interface Spot {
   row: number;
 }
 
-export function HeatMap({ cells, most, label, about, read, moment, place, timeAt }: Props) {
+export function HeatMap({ cells, most, label, about, read, moment, positionOf, timeAt }: Props) {
   const { columns, rows } = cells;
   const box = useRef<HTMLDivElement>(null);
   const [spot, setSpot] = useState<Spot | null>(null);
@@ -45,7 +45,7 @@ export function HeatMap({ cells, most, label, about, read, moment, place, timeAt
     setSpot({ column: cellOf(across, columns), row: cellOf(up, rows) });
     if (timeAt && event.buttons === 1) moment.scrub(timeAt(across));
   };
-  const now = () => cellOf(place(moment.time), columns);
+  const now = () => cellOf(positionOf(moment.time), columns);
   const walk = (event: KeyboardEvent) => {
     const next = moveSpot(event.key, spot, now(), cells);
     if (!next) return;
@@ -69,7 +69,7 @@ export function HeatMap({ cells, most, label, about, read, moment, place, timeAt
       >
         <Picture {...{ cells, most }} />
         {spot && <span class="heat-spot" style={spotStyle(spot, cells)} />}
-        <Cursor {...{ moment, place }} />
+        <Cursor {...{ moment, positionOf }} />
       </div>
       <p class="heat-reading small" aria-live="polite">
         {spot ? read(spot.column, spot.row) : about}
@@ -122,16 +122,16 @@ function Picture({ cells: { columns, rows, values }, most }: Pick<Props, "cells"
 }
 
 /** A cursor that moves without rendering anything else. */
-function Cursor({ moment, place }: Pick<Props, "moment" | "place">) {
+function Cursor({ moment, positionOf }: Pick<Props, "moment" | "positionOf">) {
   const line = useRef<HTMLSpanElement>(null);
   useEffect(() => {
     const move = () => {
       // The clock may tick once more after the page was left.
-      line.current?.style.setProperty("left", `${100 * place(moment.time)}%`);
+      line.current?.style.setProperty("left", `${100 * positionOf(moment.time)}%`);
     };
     move();
     return moment.listen(move);
-  }, [moment, place]);
+  }, [moment, positionOf]);
   return <span ref={line} class="heat-cursor" />;
 }
 

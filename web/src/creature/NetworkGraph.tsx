@@ -15,11 +15,11 @@ const [MAX_SCALE, MIN_SCALE] = [1.2, 0.5];
 interface Props {
   network: Network;
   /** The node whose links stand out. */
-  chosen?: number | null;
-  onChoose?: (id: number) => void;
+  selected?: number | null;
+  onSelect?: (id: number) => void;
 }
 
-export function NetworkGraph({ network, chosen = null, onChoose }: Props) {
+export function NetworkGraph({ network, selected = null, onSelect }: Props) {
   const { width, height, spots } = useMemo(() => layoutOf(network), [network]);
   const strongest = Math.max(1e-9, ...network.links.map(({ weight }) => Math.abs(weight)));
   const enabled = network.links.filter((link) => link.enabled).length;
@@ -30,15 +30,20 @@ export function NetworkGraph({ network, chosen = null, onChoose }: Props) {
         <svg
           viewBox={`0 0 ${width} ${height}`}
           style={{ maxWidth: `${MAX_SCALE * width}px`, minWidth: `${MIN_SCALE * width}px` }}
-          role={onChoose ? "group" : "img"}
-          class={chosen === null ? "" : "choosing"}
+          role={onSelect ? "group" : "img"}
+          class={selected === null ? "" : "choosing"}
           aria-label={text.networkLabel(summary)}
         >
           {network.links.map((link, i) => (
-            <Wire key={i} link={link} spots={spots} strongest={strongest} into={link.target === chosen} />
+            <Wire key={i} link={link} spots={spots} strongest={strongest} into={link.target === selected} />
           ))}
           {[...spots.values()].map((spot) => (
-            <Node key={spot.neuron.id} spot={spot} chosen={spot.neuron.id === chosen} onChoose={onChoose} />
+            <Node
+              key={spot.neuron.id}
+              spot={spot}
+              selected={spot.neuron.id === selected}
+              onSelect={onSelect}
+            />
           ))}
         </svg>
       </div>
@@ -89,18 +94,18 @@ function pathOf(from: Spot, to: Spot): string {
 
 interface NodeProps {
   spot: Spot;
-  chosen: boolean;
-  onChoose?: (id: number) => void;
+  selected: boolean;
+  onSelect?: (id: number) => void;
 }
 
-function Node({ spot, chosen, onChoose }: NodeProps) {
+function Node({ spot, selected, onSelect }: NodeProps) {
   const { neuron, x, y } = spot;
-  const choose = () => onChoose?.(neuron.id);
+  const choose = () => onSelect?.(neuron.id);
   const named = `${neuron.label || text.node(neuron.id)} ${neuron.activation}`;
-  const widget = onChoose && {
+  const widget = onSelect && {
     tabIndex: 0,
     role: "button" as const,
-    "aria-pressed": chosen,
+    "aria-pressed": selected,
     "aria-label": text.showOutput(named),
     onFocus: choose,
     onClick: choose,
@@ -109,7 +114,7 @@ function Node({ spot, chosen, onChoose }: NodeProps) {
   const beside = neuron.role === "input" ? -1 : 1;
   return (
     <g
-      class={`neuron ${neuron.role} ${chosen ? "chosen" : ""}`}
+      class={`neuron ${neuron.role} ${selected ? "selected" : ""}`}
       transform={`translate(${x},${y})`}
       {...widget}
     >

@@ -1,4 +1,4 @@
-/** Outputs of a network, and of a chosen node, along the body and over time. */
+/** Outputs of a network, and of a selected node, along the body and over time. */
 
 import { useCallback, useMemo, useState } from "preact/hooks";
 import type { Spec } from "../api/types";
@@ -11,14 +11,14 @@ import { text } from "./text";
 
 interface Props {
   network: Network;
-  chosen: number | null;
+  selected: number | null;
   control: Spec;
   steps: number;
   moment: Moment;
   every: number | null;
 }
 
-export function NetworkOutputs({ network, chosen, control, steps, moment, every }: Props) {
+export function NetworkOutputs({ network, selected, control, steps, moment, every }: Props) {
   const [energy, setEnergy] = useState(0);
   const inputs = useMemo(() => inputsOf(control), [control]);
   const pictures = useMemo(
@@ -26,7 +26,7 @@ export function NetworkOutputs({ network, chosen, control, steps, moment, every 
     [network, control, steps, energy],
   );
   const outputs = network.neurons.filter(({ role }) => role === "output");
-  const other = network.neurons.find(({ id, role }) => id === chosen && role !== "output");
+  const other = network.neurons.find(({ id, role }) => id === selected && role !== "output");
   const shared = { pictures, inputs, moment, every };
   return (
     <div class="outputs">
@@ -56,9 +56,9 @@ export function NetworkOutputs({ network, chosen, control, steps, moment, every 
       )}
       <div class="output-pictures">
         {outputs.map((neuron) => (
-          <Picture key={neuron.id} {...{ neuron, ...shared }} chosen={neuron.id === chosen} />
+          <Picture key={neuron.id} {...{ neuron, ...shared }} selected={neuron.id === selected} />
         ))}
-        {other && <Picture key="other" {...{ neuron: other, ...shared }} chosen />}
+        {other && <Picture key="other" {...{ neuron: other, ...shared }} selected />}
       </div>
       <DivergingLegend title={text.tanhOutputs} end="1" />
     </div>
@@ -69,19 +69,19 @@ interface PictureProps extends Pick<Props, "moment" | "every"> {
   neuron: Neuron;
   pictures: Activations;
   inputs: ReturnType<typeof inputsOf>;
-  chosen: boolean;
+  selected: boolean;
 }
 
 /** Outputs act through tanh, except growth, of which only the sign counts. */
 const squashed = ({ role, label }: Neuron) => role === "output" && label !== "growth";
 
-function Picture({ neuron, pictures, inputs, moment, every, chosen }: PictureProps) {
+function Picture({ neuron, pictures, inputs, moment, every, selected }: PictureProps) {
   const raw = pictures.values.get(neuron.id)!;
   const values = useMemo(() => (squashed(neuron) ? raw.map(Math.tanh) : raw), [neuron, raw]);
   const most = squashed(neuron) ? 1 : values.reduce((top, value) => Math.max(top, Math.abs(value)), 0);
   const name = neuron.label || text.node(neuron.id);
   const { from, to } = pictures;
-  const place = useCallback(
+  const positionOf = useCallback(
     (time: number) => phaseOf(time * (every ?? 0), { from, to }, inputs),
     [every, inputs, from, to],
   );
@@ -92,13 +92,13 @@ function Picture({ neuron, pictures, inputs, moment, every, chosen }: PicturePro
   };
   const range = squashed(neuron) ? "" : text.upTo(number(most, 2));
   return (
-    <figure class={chosen ? "chosen" : ""}>
+    <figure class={selected ? "selected" : ""}>
       <figcaption>{name.charAt(0).toUpperCase() + name.slice(1)}</figcaption>
       <HeatMap
         cells={{ columns: COLUMNS, rows: ROWS, values }}
         label={text.outputOf(name)}
         about={`${neuron.activation}${range}`}
-        {...{ most, read, moment, place }}
+        {...{ most, read, moment, positionOf }}
       />
     </figure>
   );

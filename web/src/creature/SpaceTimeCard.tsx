@@ -2,7 +2,7 @@
 
 import { useCallback, useMemo } from "preact/hooks";
 import type { Replay } from "../decode/replay";
-import { anglesOf, lengthsOf, sizeOf } from "../decode/shape";
+import { anglesOf, lengthsOf, colourLimit } from "../decode/shape";
 import type { Moment } from "../replay/moment";
 import { setQuery } from "../store/router";
 import { number, percent } from "../ui/format";
@@ -44,7 +44,7 @@ export function SpaceTimeCard({ replay, query, moment }: Props) {
       label={text.shapeView}
       choices={TITLES}
       value={quantity}
-      onChoose={(name) => setQuery({ shape: name === "angles" ? null : name })}
+      onSelect={(name) => setQuery({ shape: name === "angles" ? null : name })}
     />
   );
   return (
@@ -57,9 +57,9 @@ export function SpaceTimeCard({ replay, query, moment }: Props) {
 function SpaceTime({ replay, quantity, moment }: Omit<Props, "query"> & { quantity: Quantity }) {
   const { of, item, unit, write, ...titles } = QUANTITIES[quantity];
   const shape = useMemo(() => of(replay), [replay, of]);
-  const most = useMemo(() => sizeOf(shape.rest, shape.actual), [shape]);
+  const most = useMemo(() => colourLimit(shape.rest, shape.actual), [shape]);
   const { frames, every, steps } = replay.header;
-  const place = useCallback((time: number) => (time + 0.5) / frames, [frames]);
+  const positionOf = useCallback((time: number) => (time + 0.5) / frames, [frames]);
   const timeAt = (share: number) => Math.min(frames - 1, Math.max(0, share * frames - 0.5));
   const { items } = shape.rest;
   const read = (column: number, row: number) => {
@@ -83,7 +83,7 @@ function SpaceTime({ replay, quantity, moment }: Omit<Props, "query"> & { quanti
             <HeatMap
               cells={{ columns: frames, rows: items, values: shape[part].values }}
               label={text.shapeMap(titles[part], steps, items, item)}
-              {...{ most, read, moment, place, timeAt }}
+              {...{ most, read, moment, positionOf, timeAt }}
             />
           </div>
         </figure>

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { Ancestors, Creature, Relative } from "../api/types";
 import { familyLayoutOf } from "./relatives";
-import { formOf, groupsOf } from "./facts";
+import { couplingRows, groupsOf } from "./facts";
 import { moveSpot } from "./HeatMap";
 
 describe("a heat map", () => {
@@ -76,6 +76,6 @@ describe("facts", () => {
   });
 
   it("do not mention the coupling without a fluid", () => {
-    expect(formOf(creature)).toEqual([]);
+    expect(couplingRows(creature)).toEqual([]);
   });
 });

@@ -90,7 +90,7 @@ export function originOf(creature: Creature): Row[] {
 }
 
 /** The coupling of body and fluid; empty without a fluid. */
-export const formOf = ({ identity }: Creature): Row[] =>
+export const couplingRows = ({ identity }: Creature): Row[] =>
   identity.world.fluid === false ? [] : couplingFacts(identity.world.coupling);
 
 function genomeRows(genome: Genome): Row[] {

@@ -20,7 +20,7 @@ export interface FamilyLayout {
 }
 
 /** Size of a name, in pixels: parents, creature and children fit on a phone. */
-export const [WIDE, HIGH] = [92, 34];
+export const [COLUMN_WIDTH, ROW_HEIGHT] = [92, 34];
 const GAP = 20;
 /** Relatives drawn per generation. */
 const MAX_PER_COLUMN = 8;
@@ -33,20 +33,20 @@ export function familyLayoutOf(self: Relative, ancestors: Ancestors, children: C
   );
   const below = children.items.length > 0 ? [children.items] : [];
   const columns = [...levels, [self], ...below].map((level) => level.slice(0, MAX_PER_COLUMN));
-  const height = HIGH * Math.max(...columns.map((column) => column.length));
+  const height = ROW_HEIGHT * Math.max(...columns.map((column) => column.length));
   const relatives = columns.flatMap((column, i) =>
     column.map((relative, k) => ({
       relative,
-      x: i * (WIDE + GAP),
+      x: i * (COLUMN_WIDTH + GAP),
       y: (height * (k + 0.5)) / column.length,
     })),
   );
   return {
-    width: columns.length * (WIDE + GAP) - GAP,
+    width: columns.length * (COLUMN_WIDTH + GAP) - GAP,
     height,
     relatives,
     lines: linesOf(relatives, self, ancestors),
-    columns: columns.map((_, i) => ({ x: i * (WIDE + GAP), title: titleOf(deepest - i) })),
+    columns: columns.map((_, i) => ({ x: i * (COLUMN_WIDTH + GAP), title: titleOf(deepest - i) })),
     hidden: children.total - Math.min(MAX_PER_COLUMN, children.items.length),
   };
 }

@@ -55,7 +55,7 @@ export function phaseOf(
 
 function feedForwardValues(network: Network, inputs: Inputs, steps: number, energy: number): Activations {
   const to = inputs.timer === "linear" ? steps : inputs.period;
-  const places = placesOf(inputs);
+  const places = positionsAlongBody(inputs);
   const points = COLUMNS * ROWS;
   const position = Float64Array.from({ length: points }, (_, i) => places[i % ROWS]!);
   const clock = Array.from({ length: COLUMNS }, (_, i) => clockAt(inputs, (to * i) / COLUMNS, steps));
@@ -70,7 +70,7 @@ function feedForwardValues(network: Network, inputs: Inputs, steps: number, ener
 function recurrentValues(network: Network, inputs: Inputs, steps: number, energy: number): Activations {
   const to = Math.min(steps, MAX_STEPS);
   const from = inputs.timer === "linear" ? 0 : Math.max(0, to - Math.round(inputs.period));
-  const places = placesOf(inputs);
+  const places = positionsAlongBody(inputs);
   const sensed = inputs.senses ? [new Float64Array(ROWS).fill(energy)] : [];
   const values: Values = new Map(network.neurons.map(({ id }) => [id, new Float64Array(COLUMNS * ROWS)]));
   const stepOf = (column: number) => from + Math.floor(((to - from) * column) / COLUMNS);
@@ -86,7 +86,7 @@ function recurrentValues(network: Network, inputs: Inputs, steps: number, energy
   return { values, from, to };
 }
 
-function placesOf({ position }: Inputs): Float64Array {
+function positionsAlongBody({ position }: Inputs): Float64Array {
   return Float64Array.from({ length: ROWS }, (_, i) => {
     const share = i / (ROWS - 1);
     return position === "unit" ? share : 2 * share - 1;

@@ -4,7 +4,7 @@ import type { Spec, Vector } from "../api/types";
 import { decodeFloats } from "./floats";
 import type { Link, Network, Neuron } from "./network";
 
-/** More links cannot be told apart. */
+/** More links cannot be distinguished. */
 const MAX_LINKS = 600;
 
 /** Null without layers, or with too many links to draw. */

@@ -3,22 +3,22 @@
 import type { Replay } from "./replay";
 
 /** (frame, item) values. */
-export interface Course {
+export interface Series {
   items: number;
   values: Float32Array;
 }
 
 export interface Shape {
   /** The rest shape, as change from the initial shape. */
-  rest: Course;
+  rest: Series;
   /** The actual shape, as change from the initial shape. */
-  actual: Course;
+  actual: Series;
 }
 
 /** Signed angle of each joint, in rad, from its first edge to its second. */
 export function anglesOf(replay: Replay): Shape {
   const { edges, joints } = replay.header;
-  const actual = courseOf(replay, joints.length, (frame) => {
+  const actual = seriesOf(replay, joints.length, (frame) => {
     const along = edges.map((edge) => edgeAt(replay, frame, edge));
     return joints.map(([first, second]) => {
       const [a, b] = [along[first]!, along[second]!];
@@ -31,7 +31,7 @@ export function anglesOf(replay: Replay): Shape {
 /** Length of each edge, relative to its initial length. */
 export function lengthsOf(replay: Replay): Shape {
   const { edges } = replay.header;
-  const actual = courseOf(replay, edges.length, (frame) =>
+  const actual = seriesOf(replay, edges.length, (frame) =>
     edges.map((edge) => Math.hypot(...edgeAt(replay, frame, edge))),
   );
   return fromStart({ items: edges.length, values: replay.lengths }, actual, (x, start) => x / start - 1);
@@ -43,14 +43,14 @@ function edgeAt({ header, positions }: Replay, frame: number, [a, b]: [number, n
   return [part(0), part(1)] as const;
 }
 
-function courseOf({ header }: Replay, items: number, at: (frame: number) => number[]): Course {
+function seriesOf({ header }: Replay, items: number, at: (frame: number) => number[]): Series {
   const values = new Float32Array(header.frames * items);
   for (let frame = 0; frame < header.frames; frame++) values.set(at(frame), frame * items);
   return { items, values };
 }
 
-function fromStart(rest: Course, actual: Course, change: (value: number, start: number) => number): Shape {
-  const changed = ({ items, values }: Course): Course => ({
+function fromStart(rest: Series, actual: Series, change: (value: number, start: number) => number): Shape {
+  const changed = ({ items, values }: Series): Series => ({
     items,
     values: values.map((value, i) => change(value, actual.values[i % items]!)),
   });
@@ -58,7 +58,7 @@ function fromStart(rest: Course, actual: Course, change: (value: number, start: 
 }
 
 /** The 99.5th percentile of absolute values: the end of a colour scale. */
-export function sizeOf(...courses: Course[]): number {
-  const sizes = Float32Array.from(courses.flatMap(({ values }) => [...values.map(Math.abs)])).sort();
+export function colourLimit(...series: Series[]): number {
+  const sizes = Float32Array.from(series.flatMap(({ values }) => [...values.map(Math.abs)])).sort();
   return sizes[Math.floor(0.995 * (sizes.length - 1))] || sizes.at(-1) || 0;
 }

@@ -5,7 +5,7 @@ import { formatCells } from "../store/cellRanges";
 import type { Base, ForkSource, Draft } from "../store/draft";
 import { equalPreset } from "./form/document";
 import { openCreature } from "../ui/DropTarget";
-import { count, short } from "../ui/format";
+import { count, shortId } from "../ui/format";
 import { titleOfBase } from "./sources";
 import type { DraftState } from "./draftState";
 import { text } from "./text";
@@ -63,7 +63,7 @@ function ForkSourceText({ fork: { run, creature, cells, at, creatures } }: { for
     ...(at !== null && { at: String(at) }),
   });
   const place = creature ? `/creatures/${creature}${run ? `?run=${run}` : ""}` : `/runs/${run}?${then}`;
-  const which = creature ? ` ${short(creature)}` : "";
+  const which = creature ? ` ${shortId(creature)}` : "";
   return (
     <span>
       {text.startsFrom}{" "}
@@ -74,7 +74,7 @@ function ForkSourceText({ fork: { run, creature, cells, at, creatures } }: { for
       {run && (
         <>
           {" "}
-          {text.of} <a href={`/runs/${run}`}>{text.runOf(short(run))}</a>
+          {text.of} <a href={`/runs/${run}`}>{text.runOf(shortId(run))}</a>
         </>
       )}
       {at !== null && text.afterGeneration(count(at))}.

@@ -143,10 +143,10 @@ export function tilesOf({ positions }: DrawnBody, width: number, height: number)
   return tiles;
 }
 
-/** The largest shift; a tangle far outside would need ever more. */
-const FAR = 2;
+/** The largest shift, which bounds the number of copies of a body far outside the world. */
+const MAX_SHIFT = 2;
 
 function reach(places: number[], side: number): [number, number] {
   const [least, most] = [places.reduce((a, b) => Math.min(a, b)), places.reduce((a, b) => Math.max(a, b))];
-  return [Math.max(-FAR, -Math.floor(most / side)), Math.min(FAR, -Math.floor(least / side))];
+  return [Math.max(-MAX_SHIFT, -Math.floor(most / side)), Math.min(MAX_SHIFT, -Math.floor(least / side))];
 }

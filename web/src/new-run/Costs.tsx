@@ -94,12 +94,12 @@ export function about({ seconds }: Pick<Estimate, "seconds">): string | null {
 }
 
 /** The range is shown if the slowest and the fastest earlier run differ by this factor. */
-const WIDE = 1.5;
+const MIN_RATIO = 1.5;
 
 export function basis({ speed }: Estimate): string {
   if (!speed) return text.noPace;
   const [low, high] = [rough(speed.low), rough(speed.high)];
-  const wide = speed.high > WIDE * speed.low && low !== high;
+  const wide = speed.high > MIN_RATIO * speed.low && low !== high;
   const range = wide ? text.paceRange(low, high) : "";
   return text.basis(speed.device, text.basedOn(speed.runs), range);
 }

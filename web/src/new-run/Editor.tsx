@@ -85,7 +85,7 @@ function SpecView({ editor, illegible, onProblem, draft, current, view, show, ta
   return (
     <>
       <div class="spec-bar">
-        <Segments label={text.specView} choices={VIEWS} value={view} onChoose={show} />
+        <Segments label={text.specView} choices={VIEWS} value={view} onSelect={show} />
         {view === "form" && <Outline parts={parts} state={state} />}
         {!forking && (
           <button type="button" class="plain wide-only" onClick={goToSweep}>

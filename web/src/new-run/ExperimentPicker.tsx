@@ -7,14 +7,21 @@ import { text } from "./text";
 
 interface Props {
   experiments: Experiment[];
-  chosen: Experiment;
+  selected: Experiment;
   preset: Preset | null;
   estimates: ReadonlyMap<Preset, Estimate>;
   onExperiment: (experiment: Experiment) => void;
   onPreset: (preset: Preset, experiment: Experiment) => void;
 }
 
-export function ExperimentPicker({ experiments, chosen, preset, estimates, onExperiment, onPreset }: Props) {
+export function ExperimentPicker({
+  experiments,
+  selected,
+  preset,
+  estimates,
+  onExperiment,
+  onPreset,
+}: Props) {
   return (
     <>
       <fieldset class="experiments">
@@ -26,7 +33,7 @@ export function ExperimentPicker({ experiments, chosen, preset, estimates, onExp
               <input
                 type="radio"
                 name="experiment"
-                checked={one === chosen}
+                checked={one === selected}
                 onChange={() => onExperiment(one)}
               />
               <b>{name}</b>
@@ -36,21 +43,21 @@ export function ExperimentPicker({ experiments, chosen, preset, estimates, onExp
         })}
       </fieldset>
       <fieldset class="presets">
-        <legend class="unseen">{chosen.title}</legend>
-        {chosen.presets.map((each) => (
+        <legend class="unseen">{selected.title}</legend>
+        {selected.presets.map((each) => (
           <button
             type="button"
             key={each.name}
             class="preset"
             aria-pressed={each === preset}
-            onClick={() => onPreset(each, chosen)}
+            onClick={() => onPreset(each, selected)}
           >
             <b>{words(each.name)}</b>
             <span>{each.title}</span>
             <span class="preset-cost">{costOf(estimates.get(each))}</span>
           </button>
         ))}
-        {chosen.presets.length === 0 && <p class="quiet needs-creature">{text.needsCreature}</p>}
+        {selected.presets.length === 0 && <p class="quiet needs-creature">{text.needsCreature}</p>}
       </fieldset>
     </>
   );

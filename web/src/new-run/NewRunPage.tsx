@@ -30,10 +30,10 @@ function NewRunForm({ experiments, query }: { experiments: Experiment[]; query: 
   const [picked, setPicked] = useState<Experiment | null>(null);
   const [replacing, setReplacing] = useState(false);
   const own = experiments.find(({ experiment }) => experiment === current?.spec.experiment);
-  const chosen = picked ?? own ?? experiments[0]!;
+  const selected = picked ?? own ?? experiments[0]!;
   useEffect(() => setPicked(null), [draft.revision]);
-  const { take, file } = useDocument(draft, experiments, chosen, own);
-  const costs = usePresetCosts(chosen);
+  const { take, file } = useDocument(draft, experiments, selected, own);
+  const costs = usePresetCosts(selected);
   const view = query.get("view") === "json" ? "json" : "form";
   const show = (next: "form" | "json", replace = false) => {
     setReplacing(replace);
@@ -50,8 +50,8 @@ function NewRunForm({ experiments, query }: { experiments: Experiment[]; query: 
       )}
       <ExperimentPicker
         experiments={experiments}
-        chosen={chosen}
-        preset={chosen.presets.find(({ name }) => preset === `${chosen.experiment}/${name}`) ?? null}
+        selected={selected}
+        preset={selected.presets.find(({ name }) => preset === `${selected.experiment}/${name}`) ?? null}
         estimates={costs}
         onPreset={(one, of) => draft.startFrom(ofPreset(one, of))}
         onExperiment={(one) =>

@@ -8,7 +8,7 @@ import { FileButton, useFileDrop } from "../ui/DropTarget";
 import type { CreatureFile } from "./BaseBar";
 import type { DraftState } from "./draftState";
 import { readText } from "./readDocument";
-import { completeSpec, ofFound } from "./sources";
+import { completeSpec, baseOfDocument } from "./sources";
 import { text } from "./text";
 
 /** Take a document; return what is wrong with it, or null. */
@@ -18,19 +18,19 @@ export type Take = (text: string, name: string, typed?: boolean) => string | nul
 export function useDocument(
   draft: DraftState,
   experiments: Experiment[],
-  chosen: Experiment,
+  selected: Experiment,
   own: Experiment | undefined,
 ): { take: Take; file: CreatureFile | null } {
   const [file, setFile] = useState<CreatureFile | null>(null);
   const take: Take = (text, name, typed = false) => {
     try {
-      const found = readText(text, chosen.experiment === "refinement");
+      const found = readText(text, selected.experiment === "refinement");
       const same = typed && found.kind === "spec" && found.spec.experiment === own?.experiment;
       if (same) {
         const spec = completeSpec(found.spec, experiments);
         draft.change(() => spec);
       } else {
-        draft.startFrom(ofFound(found, name, experiments));
+        draft.startFrom(baseOfDocument(found, name, experiments));
         setFile(found.kind === "creature" ? { sha: found.creature.sha256, text } : null);
       }
       return null;

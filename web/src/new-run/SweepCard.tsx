@@ -8,7 +8,7 @@ import { Card } from "../ui/Page";
 import { Options } from "../ui/Select";
 import { NameEntry } from "./ForkCard";
 import { Messages } from "./form/Entry";
-import { type Axis, nameOf, type SweepForm, isSweep, complaintsOf } from "./sweep";
+import { type Axis, nameOf, type SweepForm, isSweep, sweepErrors } from "./sweep";
 import { text } from "./text";
 
 interface Props {
@@ -21,27 +21,27 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
   const { axes, fields, problems, total, change } = sweeping;
   const add = () => {
     const free = fields.find(({ path }) => !axes.some((axis) => axis.path === path));
-    const usual = fields.find(({ path }) => path === "world.viscosity") ?? free;
-    const next = axes.some(({ path }) => path === usual?.path) ? free : usual;
+    const preferred = fields.find(({ path }) => path === "world.viscosity") ?? free;
+    const next = axes.some(({ path }) => path === preferred?.path) ? free : preferred;
     if (next) change({ axes: [...axes, { path: next.path, text: textOf(valueAt(spec, next.path)) }] });
   };
   return (
     <Card id="sweep" kind="sweep-card" title={text.sweep}>
       <p class="help">{text.sweepAbout}</p>
       <Entries sweeping={sweeping} />
-      <Messages messages={[problems.seeds, ...complaintsOf(errors, "seeds")]} />
+      <Messages messages={[problems.seeds, ...sweepErrors(errors, "seeds")]} />
       {axes.map((axis, i) => (
         <Row
           key={i}
           fields={fields}
           axis={axis}
-          messages={[problems.axes[i] ?? null, ...complaintsOf(errors, `grid.${axis.path}`)]}
+          messages={[problems.axes[i] ?? null, ...sweepErrors(errors, `grid.${axis.path}`)]}
           taken={axes.map(({ path }) => path)}
           onChange={(next) => change({ axes: axes.with(i, next) })}
           onRemove={() => change({ axes: axes.toSpliced(i, 1) })}
         />
       ))}
-      <Messages messages={[problems.total, ...complaintsOf(errors, "grid")]} />
+      <Messages messages={[problems.total, ...sweepErrors(errors, "grid")]} />
       <p class="sweep-foot row">
         <button type="button" onClick={add} disabled={axes.length >= fields.length}>
           {text.addAxis(axes.length === 0)}

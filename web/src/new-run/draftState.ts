@@ -20,8 +20,8 @@ import { withInitial } from "./initialCreatures";
 import { addressed, load, ofPreset } from "./sources";
 import { text } from "./text";
 
-const WORDS = ["preset", "from", "fork", "begin", ...FORK_PARAMETERS];
-const UNNAMED = Object.fromEntries(WORDS.map((word) => [word, null]));
+const SOURCE_PARAMETERS = ["preset", "from", "fork", "begin", ...FORK_PARAMETERS];
+const UNNAMED = Object.fromEntries(SOURCE_PARAMETERS.map((word) => [word, null]));
 
 const NONE: ReadonlySet<string> = new Set();
 
@@ -51,7 +51,7 @@ export function useDraft(query: URLSearchParams, experiments: Experiment[]) {
   };
   const startFrom = (base: Base) => replace({ base, spec: base.spec }, text.replaced);
   useBase(wanted, shown, current !== null, experiments, startFrom, setProblem);
-  useKept(current, changed);
+  useStoredDraft(current, changed);
   return {
     current,
     changed,
@@ -77,22 +77,22 @@ function withoutFork({ base: { fork: _, ...base }, spec }: Draft): Draft {
 function useBase(
   wanted: Address | null,
   shown: { current: string | null },
-  begun: boolean,
+  hasDraft: boolean,
   experiments: Experiment[],
   startFrom: (base: Base) => void,
   onProblem: (problem: string) => void,
 ): void {
   useEffect(() => {
     // An address without a source keeps the current draft.
-    if (shown.current === String(wanted) || (begun && !wanted)) return;
+    if (shown.current === String(wanted) || (hasDraft && !wanted)) return;
     let wanting = true;
-    const usual = ofPreset(experiments[0]!.presets[0]!, experiments[0]!);
-    const asked = wanted ? load(wanted, experiments) : Promise.resolve(usual);
+    const firstPreset = ofPreset(experiments[0]!.presets[0]!, experiments[0]!);
+    const requested = wanted ? load(wanted, experiments) : Promise.resolve(firstPreset);
     const fail = (error: unknown) => {
-      if (!begun) startFrom(usual);
+      if (!hasDraft) startFrom(firstPreset);
       onProblem(messageOf(error));
     };
-    asked.then(
+    requested.then(
       (base) => wanting && startFrom(base),
       (error) => wanting && fail(error),
     );
@@ -103,7 +103,7 @@ function useBase(
 }
 
 /** Keep changes in this tab; remove the undo note when the page is left. */
-function useKept(current: Draft | null, changed: ReadonlySet<string>): void {
+function useStoredDraft(current: Draft | null, changed: ReadonlySet<string>): void {
   useEffect(() => () => dismissToast(undoToast), []);
   useEffect(() => {
     if (!current) return;

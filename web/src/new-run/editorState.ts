@@ -7,7 +7,7 @@ import type { Draft } from "../store/draft";
 import type { DraftState } from "./draftState";
 import { useEstimate } from "./estimate";
 import { isForkField, useFork } from "./ForkCard";
-import { complaints, messagesByPath, withValue } from "./form/document";
+import { schemaErrors, messagesByPath, withValue } from "./form/document";
 import type { FormState } from "./form/Entry";
 import { type Section, formOf } from "./form/fields";
 import { withoutInitial } from "./initialCreatures";
@@ -22,18 +22,18 @@ export function useEditor(draft: DraftState, current: Draft, experiment: Experim
     const whole = formOf(experiment.schema);
     return forking ? withoutInitial(whole) : whole;
   }, [experiment, forking]);
-  const slips = useMemo(() => complaints(form, spec), [form, spec]);
-  const check = useEstimate(slips.length === 0 ? spec : null, api.estimateRun);
+  const localErrors = useMemo(() => schemaErrors(form, spec), [form, spec]);
+  const check = useEstimate(localErrors.length === 0 ? spec : null, api.estimateRun);
   const drawing = useRef<Drawing | null>(null);
   if (check.estimate) drawing.current = check.estimate.drawing;
   const sweep = useSweepForm(form, spec, experiment);
   const fork = useFork(current);
   const many = forking ? null : sweep.sent;
-  const all = useEstimate(slips.length === 0 ? many : null, api.estimateSweep);
+  const all = useEstimate(localErrors.length === 0 ? many : null, api.estimateSweep);
   const sent = useMemo(() => many && { sweep: many }, [many]);
   const submission = useSubmission(spec, fork.sent ?? sent);
   const refused = (submission.refusal?.errors ?? []).map(fieldError);
-  const errors = [...slips, ...(many ? specErrors(refused) : refused), ...check.errors].filter(
+  const errors = [...localErrors, ...(many ? specErrors(refused) : refused), ...check.errors].filter(
     ({ field }) => !forking || !isForkField(field),
   );
   const [closed, close] = useClosed(form);
@@ -47,7 +47,7 @@ export function useEditor(draft: DraftState, current: Draft, experiment: Experim
     close,
   };
   const slipped = !forking && isSweep(sweep) && !many && hasProblems(sweep);
-  const unsent = slips.length > 0 || slipped ? text.hasErrors : null;
+  const unsent = localErrors.length > 0 || slipped ? text.hasErrors : null;
   const problem = submission.refusal?.problem ?? unsent ?? check.problem ?? all.problem;
   return {
     ...{ form, state, errors, refused, forking, fork, sweep, check, submission, slipped, problem },

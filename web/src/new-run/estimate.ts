@@ -9,7 +9,7 @@ import { text } from "./text";
 const SETTLED_MS = 350;
 
 /** An error of the server: its fields, and a sentence. */
-export function refusalOf(error: unknown): { errors: FieldError[]; problem: string } {
+export function serverErrors(error: unknown): { errors: FieldError[]; problem: string } {
   const errors = error instanceof Problem ? error.errors : [];
   return { errors, problem: errors.length > 0 ? text.hasErrors : messageOf(error) };
 }
@@ -21,27 +21,27 @@ interface Check<T> {
 }
 
 /** Ask for an estimate after a pause in typing; the last answer stays until the next one. */
-export function useEstimate<Asked, T>(
-  asked: Asked | null,
-  estimateOf: (asked: Asked) => Promise<T>,
+export function useEstimate<Requested, T>(
+  requested: Requested | null,
+  estimateOf: (requested: Requested) => Promise<T>,
 ): Check<T> {
   const unchecked = { estimate: null, errors: [], problem: null };
   const [check, setCheck] = useState<Check<T>>(unchecked);
   useEffect(() => {
-    if (asked === null) return setCheck(unchecked);
+    if (requested === null) return setCheck(unchecked);
     let wanted = true;
     const show = (next: Partial<Check<T>>) => wanted && setCheck({ ...unchecked, ...next });
     const timer = setTimeout(() => {
-      estimateOf(asked).then(
+      estimateOf(requested).then(
         (estimate) => show({ estimate }),
-        (error) => show(refusalOf(error)),
+        (error) => show(serverErrors(error)),
       );
     }, SETTLED_MS);
     return () => {
       wanted = false;
       clearTimeout(timer);
     };
-  }, [asked]);
+  }, [requested]);
   return check;
 }
 

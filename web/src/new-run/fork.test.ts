@@ -7,7 +7,7 @@ import { forkOf, isForkField } from "./ForkCard";
 import { MAX_CREATURES, addressed, load } from "./sources";
 import { EXPERIMENTS, experiment } from "./form/presets.fixture";
 import { type Section, formOf } from "./form/fields";
-import { placesOf } from "./form/document";
+import { messagePaths } from "./form/document";
 import { mergePatch, withInitial, withoutInitial } from "./initialCreatures";
 
 const SEARCH = experiment("quality-diversity");
@@ -107,9 +107,9 @@ describe("a fork", () => {
     const sent = forkOf({ base: { ...base, fork: ALL }, spec: withInitial(spec, [SHA]) }, "");
     expect(sent).toMatchObject({ fork: { spec: { world: { viscosity: 0.3 } } } });
     const form = formOf(SEARCH.schema);
-    const places = placesOf(form, spec).filter((path) => path !== "search.initial");
-    expect(placesOf(form, spec)).toContain("search.initial");
-    expect(placesOf(withoutInitial(form), spec)).toEqual(places);
+    const places = messagePaths(form, spec).filter((path) => path !== "search.initial");
+    expect(messagePaths(form, spec)).toContain("search.initial");
+    expect(messagePaths(withoutInitial(form), spec)).toEqual(places);
   });
 
   it("is a run as any other where no run is known, or nobody to begin from", () => {

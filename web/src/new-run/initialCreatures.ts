@@ -13,7 +13,7 @@ export const withInitial = (spec: Spec, names: string[]): Spec => ({
   search: { ...(spec.search as Spec), initial: names },
 });
 
-/** The form without initial creatures, which are chosen elsewhere. */
+/** The form without initial creatures, which are selected elsewhere. */
 export const withoutInitial = (form: Section): Section => ({
   ...form,
   fields: form.fields

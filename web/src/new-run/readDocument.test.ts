@@ -1,9 +1,9 @@
 import { describe, expect, it } from "vitest";
 import type { Creature, Json, Spec } from "../api/types";
-import { ofFound, completeSpec } from "./sources";
+import { baseOfDocument, completeSpec } from "./sources";
 import { EXPERIMENTS, PRESETS, experiment } from "./form/presets.fixture";
 import { completed } from "./form/defaults";
-import { complaints } from "./form/document";
+import { schemaErrors } from "./form/document";
 import { formOf } from "./form/fields";
 import { readDocument, readText } from "./readDocument";
 
@@ -55,7 +55,7 @@ describe("a creature", () => {
     expect(spec.control).toMatchObject({ encoding: "cppn", period: 50, angle_scale: 0.1 });
     expect(spec.genome).toMatchObject({ max_nodes: 30, max_connections: 80, weight_rate: 0.6 });
     expect(spec.task).toMatchObject({ steps: 70 });
-    expect(complaints(formOf(experiment("quality-diversity").schema), spec)).toEqual([]);
+    expect(schemaErrors(formOf(experiment("quality-diversity").schema), spec)).toEqual([]);
   });
 
   it("whose genes are numbers is searched by what varies numbers", () => {
@@ -74,9 +74,9 @@ describe("a creature", () => {
     expect(completeSpec(fold.spec, EXPERIMENTS).control).toEqual({ encoding: "fold", lengths: "raw" });
   });
 
-  it("is refined where that was chosen", () => {
+  it("is refined where that was selected", () => {
     const file = creature({ encoding: "cppn", control: {} }) as unknown as Json;
-    const base = ofFound(readDocument(file, true), "", EXPERIMENTS);
+    const base = baseOfDocument(readDocument(file, true), "", EXPERIMENTS);
     expect(base).toMatchObject({
       kind: "creature",
       foreign: true,
@@ -90,7 +90,7 @@ describe("a spec", () => {
   it.each(PRESETS)("of %s needs nothing, and from its name alone gets defaults", (_, one, preset) => {
     expect(completed(one.schema, preset.spec)).toEqual(preset.spec);
     const bare = completed(one.schema, { experiment: one.experiment });
-    expect(complaints(formOf(one.schema), bare)).toEqual([]);
+    expect(schemaErrors(formOf(one.schema), bare)).toEqual([]);
   });
 
   it("keeps what it says in parts of which it says not all", () => {

@@ -4,13 +4,13 @@ import type { Creature, Json, Spec, Gait } from "../api/types";
 import { isObject } from "../run/spec/difference";
 import { text } from "./text";
 
-export type Found =
+export type ReadDocument =
   | { kind: "spec"; spec: Spec }
   | { kind: "run"; spec: Spec; id: string }
   | { kind: "creature"; spec: Spec; creature: Creature };
 
 /** Read a text; throw an `Error` that names the accepted documents. */
-export function readText(document: string, refine = false): Found {
+export function readText(document: string, refine = false): ReadDocument {
   if (/^[\u0089\ufffd]HDF/.test(document)) throw new Error(text.noHdf5);
   return readDocument(parsed(document), refine);
 }
@@ -24,7 +24,7 @@ function parsed(document: string): Json {
 }
 
 /** The kind and the spec of a document; a creature becomes a search or a refinement. */
-export function readDocument(document: Json, refine = false): Found {
+export function readDocument(document: Json, refine = false): ReadDocument {
   if (!isObject(document)) throw new Error(text.notADocument(named(document)));
   const { identity, spec, id } = document;
   if (isObject(identity)) {
@@ -74,7 +74,7 @@ export function specOf(creature: Creature): Spec {
 /** Names of plug-ins contain a dot. */
 const isPlugin = (name: string) => name.includes(".");
 
-/** The network sizes for which the creature was evaluated. */
+/** The room for nodes and connections with which the creature was evaluated. */
 function roomOf({ measured }: Creature): Spec | null {
   const room = (measured as { room?: [number, number] | null } | null)?.room;
   return room ? { max_nodes: room[0], max_connections: room[1] } : null;

@@ -7,8 +7,8 @@ import { parseCells } from "../store/cellRanges";
 import { type Address, type Base, type ForkSource, FORK_PARAMETERS, forkAddress } from "../store/draft";
 import { completed } from "./form/defaults";
 import { isSearch, withInitial } from "./initialCreatures";
-import { type Found, specOf } from "./readDocument";
-import { count, short } from "../ui/format";
+import { type ReadDocument, specOf } from "./readDocument";
+import { count, shortId } from "../ui/format";
 import { text } from "./text";
 
 /** The largest number of initial creatures, as in the schema of `search.initial`. */
@@ -72,8 +72,8 @@ async function forkOf(
 /** The elites of some or all cells, now or after a generation. */
 async function elitesOf(run: string, cells: string | null, at: number | null): Promise<ForkSource> {
   const { cell, creature, generation } = await api.readArchive(run, [], { generation: at ?? undefined });
-  const chosen = cells === null ? () => true : parseCells(cells);
-  const places = [...cell.keys()].filter((i) => chosen(cell[i]!));
+  const selected = cells === null ? () => true : parseCells(cells);
+  const places = [...cell.keys()].filter((i) => selected(cell[i]!));
   if (places.length === 0) throw new Error(text.noElites);
   const creatures = new Set(places.map((i) => creature[i]!)).size;
   if (creatures > MAX_CREATURES) {
@@ -104,7 +104,7 @@ export function completeSpec(spec: Spec, experiments: Experiment[]): Spec {
   throw new Error(text.badExperiment(known, String(spec.experiment)));
 }
 
-export function ofFound(found: Found, file: string, experiments: Experiment[]): Base {
+export function baseOfDocument(found: ReadDocument, file: string, experiments: Experiment[]): Base {
   const given = { spec: completeSpec(found.spec, experiments), foreign: true };
   if (found.kind === "creature") return { ...given, kind: "creature", name: found.creature.sha256 };
   if (found.kind === "run" && found.id) return { ...given, kind: "run", name: found.id };
@@ -113,7 +113,7 @@ export function ofFound(found: Found, file: string, experiments: Experiment[]): 
 
 export function titleOfBase({ kind, name }: Base): string {
   if (kind === "preset") return text.preset(name.split("/")[1]);
-  if (kind === "run") return text.runOf(short(name));
-  if (kind === "creature") return text.creature(short(name));
+  if (kind === "run") return text.runOf(shortId(name));
+  if (kind === "creature") return text.creature(shortId(name));
   return name || text.pastedSpec;
 }

@@ -7,33 +7,33 @@ import { discardDraft } from "../store/draft";
 import { applyResponse } from "../store/store";
 import { navigate } from "../store/router";
 import { newIdempotencyKey } from "../ui/idempotencyKey";
-import { refusalOf } from "./estimate";
+import { serverErrors } from "./estimate";
 
 export type Alternative = { sweep: SweepRequest } | { fork: ForkRequest };
 
-type Refusal = ReturnType<typeof refusalOf> & { asked: Spec | Alternative };
+type Refusal = ReturnType<typeof serverErrors> & { requested: Spec | Alternative };
 
 /** Send the spec, or another request; the same request sent again after a lost answer has the same key. */
 export function useSubmission(spec: Spec, instead: Alternative | null) {
-  const asked = instead ?? spec;
+  const requested = instead ?? spec;
   const [busy, setBusy] = useState(false);
   const [refusal, setRefusal] = useState<Refusal | null>(null);
-  const sent = useRef<{ asked: Spec | Alternative; key: string } | null>(null);
+  const sent = useRef<{ requested: Spec | Alternative; key: string } | null>(null);
   const start = async () => {
     if (busy) return;
-    if (sent.current?.asked !== asked) sent.current = { asked, key: newIdempotencyKey() };
+    if (sent.current?.requested !== requested) sent.current = { requested, key: newIdempotencyKey() };
     setBusy(true);
     try {
       const page = await submit(spec, instead, sent.current.key);
       discardDraft();
       navigate(page);
     } catch (error) {
-      setRefusal({ asked, ...refusalOf(error) });
+      setRefusal({ requested, ...serverErrors(error) });
       setBusy(false);
       requestAnimationFrame(showFirstError);
     }
   };
-  return { start, busy, refusal: refusal?.asked === asked ? refusal : null };
+  return { start, busy, refusal: refusal?.requested === requested ? refusal : null };
 }
 
 async function submit(spec: Spec, instead: Alternative | null, key: string): Promise<string> {

@@ -3,7 +3,7 @@
 import { useEffect, useMemo, useState } from "preact/hooks";
 import type { Experiment, FieldError, Spec, SweepRequest, Json } from "../api/types";
 import { words } from "../ui/format";
-import { complaint, leavesOf, typed } from "./form/document";
+import { numberError, leavesOf, typed } from "./form/document";
 import type { Leaf, Section } from "./form/fields";
 import { text } from "./text";
 
@@ -34,7 +34,7 @@ function readAll(form: Section, spec: Spec, seeded: boolean, typed: Typed) {
     return field ? readValues(field, typed) : { values: [], problem: text.fieldGone };
   });
   const total = readings.reduce((product, { values }) => product * values.length, seeds);
-  const many = total > MOST ? text.tooManyRuns(MOST.toLocaleString("en"), total) : null;
+  const many = total > MAX_RUNS ? text.tooManyRuns(MAX_RUNS.toLocaleString("en"), total) : null;
   const problems = { seeds: problem, axes: readings.map((one) => one.problem), total: many };
   const right = !problem && !many && readings.every((one) => one.problem === null);
   const grid = Object.fromEntries(typed.axes.map(({ path }, i) => [path, readings[i]!.values]));
@@ -48,7 +48,7 @@ function readAll(form: Section, spec: Spec, seeded: boolean, typed: Typed) {
 export const isSweep = ({ seeds, axes }: SweepForm) => axes.length > 0 || seeds.trim() !== "1";
 
 /** Errors of the server for one field of the grid, or for the seeds. */
-export function complaintsOf(errors: readonly FieldError[], path: string): string[] {
+export function sweepErrors(errors: readonly FieldError[], path: string): string[] {
   const mine = errors.filter(({ field }) => field === path || field.startsWith(`${path}[`));
   return mine.map(({ message }) => message);
 }
@@ -127,7 +127,7 @@ function valueOf(field: Leaf, word: string): Json {
 }
 
 function wrongWith(field: Leaf, value: Json): string | null {
-  if (field.kind === "number") return complaint(field, value);
+  if (field.kind === "number") return numberError(field, value);
   if (field.kind === "flag" && typeof value !== "boolean") return text.needsFlag(value);
   if (field.kind !== "choice" || value === null) return null;
   const known = field.options.includes(value);
@@ -140,12 +140,12 @@ const same = (one: Json, other: Json) => JSON.stringify(one) === JSON.stringify(
 export function readSeeds(input: string): { seeds: number; problem: string | null } {
   const seeds = typed(input);
   const whole = typeof seeds === "number" && Number.isInteger(seeds);
-  if (whole && seeds >= 1 && seeds <= MOST) return { seeds, problem: null };
-  return { seeds: 1, problem: text.needsSeeds(MOST.toLocaleString("en")) };
+  if (whole && seeds >= 1 && seeds <= MAX_RUNS) return { seeds, problem: null };
+  return { seeds: 1, problem: text.needsSeeds(MAX_RUNS.toLocaleString("en")) };
 }
 
 /** The largest number of runs in one request. */
-const MOST = 1000;
+const MAX_RUNS = 1000;
 
 /** True if an experiment depends on a random seed. */
 const hasSeed = ({ schema }: Experiment) => "seed" in ((schema.properties ?? {}) as Record<string, Json>);

@@ -12,7 +12,7 @@ import "./publish.css";
 
 export interface Props {
   of: { creature: string } | { run: string };
-  /** Its present title, or nothing. */
+  /** The current title; empty without one. */
   title: string;
   file?: Creature;
 }

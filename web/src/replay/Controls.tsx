@@ -5,7 +5,7 @@ import { ColourBar } from "../ui/ColourBar";
 import { css } from "../ui/colours";
 import { number } from "../ui/format";
 import type { Field, FieldName } from "./fields";
-import { type ReplayView, SPEEDS } from "./look";
+import { type ReplayView, SPEEDS } from "./replayView";
 import { text } from "./text";
 
 const SPEED_CHOICES = SPEEDS.map((speed) => [String(speed), `${speed} ×`] as const);
@@ -24,11 +24,11 @@ export function Speed({ value, onChange }: { value: number; onChange: (speed: nu
 interface Props {
   names: FieldName[];
   name: FieldName;
-  look: ReplayView;
+  view: ReplayView;
   change: (part: Partial<ReplayView>) => void;
 }
 
-export function LookChoice({ names, name, look, change }: Props) {
+export function LookChoice({ names, name, view, change }: Props) {
   return (
     <div class="row">
       {names.length > 1 && (
@@ -36,13 +36,13 @@ export function LookChoice({ names, name, look, change }: Props) {
           label={text.field}
           choices={names.map((each) => [each, text.fields[each]] as const)}
           value={name}
-          onChoose={(field) => change({ field })}
+          onSelect={(field) => change({ field })}
         />
       )}
       {names.includes("speed") && (
-        <Check title={text.tracers} on={look.tracers} onChange={(tracers) => change({ tracers })} />
+        <Check title={text.tracers} on={view.tracers} onChange={(tracers) => change({ tracers })} />
       )}
-      <Check title={text.follow} on={look.follow} onChange={(follow) => change({ follow })} />
+      <Check title={text.follow} on={view.follow} onChange={(follow) => change({ follow })} />
     </div>
   );
 }

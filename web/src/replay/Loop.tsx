@@ -3,7 +3,7 @@
 import { useMemo, useRef, useState } from "preact/hooks";
 import type { Replay } from "../decode/replay";
 import type { Size } from "../ui/canvas";
-import { prefersStillness, useTheme } from "../ui/theme";
+import { prefersReducedMotion, useTheme } from "../ui/theme";
 import { CanvasStage } from "./CanvasStage";
 import { useClock } from "./clock";
 import { fieldOf } from "./fields";
@@ -25,7 +25,7 @@ export function ReplayLoop({ replay, name, onFirst }: Props) {
   const { frames, every } = replay.header;
   const [time, setTime] = useState(0);
   const drawn = useRef(false);
-  const still = prefersStillness();
+  const still = prefersReducedMotion();
   useClock(!still, (seconds) => {
     setTime((now) => (now + (seconds * STEPS_PER_SECOND) / every) % Math.max(1, frames - 1));
   });

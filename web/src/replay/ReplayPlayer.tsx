@@ -9,7 +9,7 @@ import { useClock, useKeys } from "./clock";
 import { FieldLegend, LookChoice, Speed } from "./Controls";
 import { type Field, fieldOf, fieldsOf } from "./fields";
 import { FluidPainter } from "./fluid";
-import { type ReplayView, DEFAULT_VIEW } from "./look";
+import { type ReplayView, DEFAULT_VIEW } from "./replayView";
 import { type Moment, newMoment, useMoment } from "./moment";
 import { drawScene, sceneOf } from "./scene";
 import { Tracers } from "./tracers";
@@ -30,7 +30,7 @@ interface Props {
   films: Film[];
   /** By default, the player keeps its own moment and view. */
   moment?: Moment;
-  look?: ReplayView;
+  view?: ReplayView;
   onLook?: (change: Partial<ReplayView>) => void;
 }
 
@@ -38,14 +38,14 @@ interface Props {
 export function ReplayPlayer({ films, ...given }: Props) {
   const theme = useTheme();
   const [own, setOwn] = useState(DEFAULT_VIEW);
-  const look = given.look ?? own;
+  const view = given.view ?? own;
   const change = given.onLook ?? ((part) => setOwn((old) => ({ ...old, ...part })));
   const replays = useMemo(() => films.map(({ replay }) => replay), [films]);
   const names = useMemo(() => fieldsOf(replays), [replays]);
-  const name = names.includes(look.field!) ? look.field! : names[0]!;
+  const name = names.includes(view.field!) ? view.field! : names[0]!;
   const field = useMemo(() => fieldOf(name, replays, theme), [replays, name, theme]);
   const player = useRef<HTMLDivElement>(null);
-  const playback = usePlayback(replays[0]!, look.speed, given.moment, player);
+  const playback = usePlayback(replays[0]!, view.speed, given.moment, player);
   return (
     <div ref={player} class="player" role="group" aria-label={text.player} tabIndex={-1}>
       <div class="stages">
@@ -53,8 +53,8 @@ export function ReplayPlayer({ films, ...given }: Props) {
           <figure key={i}>
             <Stage
               {...{ replay, theme, field }}
-              tracing={look.tracers}
-              follow={look.follow}
+              tracing={view.tracers}
+              follow={view.follow}
               time={playback.moment.time}
               onClick={playback.toggle}
             />
@@ -64,9 +64,9 @@ export function ReplayPlayer({ films, ...given }: Props) {
       </div>
       <div class="row">
         <Transport {...playback} header={replays[0]!.header} />
-        <Speed value={look.speed} onChange={(speed) => change({ speed })} />
+        <Speed value={view.speed} onChange={(speed) => change({ speed })} />
       </div>
-      <LookChoice {...{ names, name, look, change }} />
+      <LookChoice {...{ names, name, view, change }} />
       {field && <FieldLegend field={field} />}
     </div>
   );

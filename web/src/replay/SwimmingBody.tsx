@@ -4,7 +4,7 @@ import { useEffect, useRef } from "preact/hooks";
 import type { Motion } from "../decode/motion";
 import { prepare, useSize } from "../ui/canvas";
 import { useClock } from "./clock";
-import { prefersStillness, useTheme } from "../ui/theme";
+import { prefersReducedMotion, useTheme } from "../ui/theme";
 import { traceBody } from "./bodyPath";
 import "./replay.css";
 
@@ -27,7 +27,7 @@ export function SwimmingBody({ motion }: { motion: Motion | null }) {
     traceBody(context, motion, share.current, [0, 0, width]);
     context.stroke();
   };
-  useClock(motion !== null && !prefersStillness(), (seconds) => {
+  useClock(motion !== null && !prefersReducedMotion(), (seconds) => {
     share.current = (share.current + seconds / SECONDS) % 1;
     draw();
   });

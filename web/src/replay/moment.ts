@@ -1,7 +1,7 @@
 /** The moment of a replay that all parts of a page show. */
 
 import { useEffect, useState } from "preact/hooks";
-import { prefersStillness } from "../ui/theme";
+import { prefersReducedMotion } from "../ui/theme";
 
 export class Moment {
   /** In frames; may be a fraction. */
@@ -45,7 +45,7 @@ export class Moment {
   }
 }
 
-export const newMoment = () => new Moment(!prefersStillness());
+export const newMoment = () => new Moment(!prefersReducedMotion());
 
 /** Redraw a component when the moment changes. */
 export function useMoment(moment: Moment): Moment {

@@ -3,7 +3,7 @@ import { type Replay, decodeReplay } from "../decode/replay";
 import { replayBytes } from "../decode/replay.fixture";
 import { keyAction } from "./clock";
 import { coloursOf, fieldOf, fieldsOf } from "./fields";
-import { replayViewOf, queryOf } from "./look";
+import { replayViewOf, queryOf } from "./replayView";
 import { Moment } from "./moment";
 import { Tracers, velocityAt } from "./tracers";
 

@@ -28,10 +28,10 @@ const INK = {
   dark: { body: "#fdf8ec", halo: "rgb(4 10 14 / 0.75)", faint: "rgb(230 240 245 / 0.26)" },
 };
 
-export function sceneOf(replay: Replay, look: Pick<Scene, "painter" | "follow" | "theme">): Scene {
+export function sceneOf(replay: Replay, view: Pick<Scene, "painter" | "follow" | "theme">): Scene {
   const { frames, edges } = replay.header;
   const path = Array.from({ length: frames }, (_, frame) => meanOf(positionsAt(replay, frame)));
-  return { replay, chains: chainsOf(edges), path, ...look };
+  return { replay, chains: chainsOf(edges), path, ...view };
 }
 
 export function drawScene(canvas: HTMLCanvasElement, size: Size, scene: Scene, time: number) {

@@ -7,12 +7,12 @@ import type { Replay } from "../decode/replay";
 import { type Point, wrap } from "./motion";
 
 /** Cells per particle, and the largest number of particles. */
-const [ROOM, MAX_COUNT] = [7, 1500];
+const [CELLS_PER_PARTICLE, MAX_COUNT] = [7, 1500];
 /** The largest distance in one step of the integration, in cells. */
-const STRIDE = 0.5;
+const MAX_STEP = 0.5;
 /** Frames of a trail, and its pieces, which fade. */
-const TRAIL = 32;
-const PIECES = 4;
+const TRAIL_FRAMES = 32;
+const TRAIL_PIECES = 4;
 
 export class Tracers {
   readonly count: number;
@@ -21,7 +21,7 @@ export class Tracers {
 
   constructor(readonly replay: Replay) {
     const [width, height] = replay.header.size;
-    this.count = Math.min(MAX_COUNT, Math.round((width * height) / ROOM));
+    this.count = Math.min(MAX_COUNT, Math.round((width * height) / CELLS_PER_PARTICLE));
     this.tracks = [spread(this.count, width, height)];
   }
 
@@ -35,7 +35,7 @@ export class Tracers {
 
   private advance(from: Float32Array, frame: number): Float32Array {
     const { every, velocity } = this.replay.header;
-    const parts = Math.max(1, Math.ceil((every * velocity.scale) / STRIDE));
+    const parts = Math.max(1, Math.ceil((every * velocity.scale) / MAX_STEP));
     const dt = every / parts;
     const to = from.slice();
     for (let i = 0; i < to.length; i += 2) {
@@ -85,7 +85,7 @@ export function velocityAt({ header, velocity }: Replay, time: number, x: number
   return [part(0), part(1)];
 }
 
-interface Look {
+interface View {
   time: number;
   camera: Point;
   scale: number;
@@ -93,24 +93,24 @@ interface Look {
 }
 
 /** Draw each particle with its trail, in the tile around the camera. */
-export function drawTracers(context: CanvasRenderingContext2D, tracers: Tracers, look: Look) {
-  const now = Math.floor(look.time);
-  const first = Math.max(0, now - TRAIL);
-  const share = look.time - now;
+export function drawTracers(context: CanvasRenderingContext2D, tracers: Tracers, view: View) {
+  const now = Math.floor(view.time);
+  const first = Math.max(0, now - TRAIL_FRAMES);
+  const share = view.time - now;
   const frames = [...Array(now - first + 1).keys()].map((k) => tracers.at(first + k));
   if (share > 0) frames.push(mixed(tracers.at(now), tracers.at(now + 1), share));
-  const shifts = shiftsOf(frames.at(-1)!, tracers, look);
-  context.strokeStyle = context.fillStyle = look.colour;
+  const shifts = shiftsOf(frames.at(-1)!, tracers, view);
+  context.strokeStyle = context.fillStyle = view.colour;
   context.lineWidth = 1;
-  const step = Math.max(1, Math.ceil((frames.length - 1) / PIECES));
+  const step = Math.max(1, Math.ceil((frames.length - 1) / TRAIL_PIECES));
   for (let start = 0; start < frames.length - 1; start += step) {
     context.globalAlpha = 0.12 + (0.4 * (start + step)) / frames.length;
-    drawTrails(context, frames.slice(start, start + step + 1), shifts, look);
+    drawTrails(context, frames.slice(start, start + step + 1), shifts, view);
   }
   context.globalAlpha = 0.75;
   const heads = frames.at(-1)!;
   for (let i = 0; i < heads.length; i += 2) {
-    const [x, y] = screen(heads, i, shifts, look);
+    const [x, y] = screen(heads, i, shifts, view);
     context.fillRect(x - 1, y - 1, 2, 2);
   }
   context.globalAlpha = 1;
@@ -120,12 +120,12 @@ function drawTrails(
   context: CanvasRenderingContext2D,
   frames: Float32Array[],
   shifts: Float32Array,
-  look: Look,
+  view: View,
 ) {
   context.beginPath();
   for (let i = 0; i < shifts.length; i += 2) {
     frames.forEach((frame, k) => {
-      const [x, y] = screen(frame, i, shifts, look);
+      const [x, y] = screen(frame, i, shifts, view);
       if (k === 0) context.moveTo(x, y);
       else context.lineTo(x, y);
     });
@@ -134,7 +134,7 @@ function drawTrails(
 }
 
 /** Shifts in pixels that bring each particle into the tile around the camera. */
-function shiftsOf(heads: Float32Array, tracers: Tracers, { camera, scale }: Look): Float32Array {
+function shiftsOf(heads: Float32Array, tracers: Tracers, { camera, scale }: View): Float32Array {
   const { size } = tracers.replay.header;
   return heads.map((value, i) => {
     const [side, middle] = [size[i & 1]!, camera[i & 1]!];
@@ -143,7 +143,7 @@ function shiftsOf(heads: Float32Array, tracers: Tracers, { camera, scale }: Look
   });
 }
 
-function screen(frame: Float32Array, i: number, shifts: Float32Array, { scale }: Look): Point {
+function screen(frame: Float32Array, i: number, shifts: Float32Array, { scale }: View): Point {
   return [frame[i]! * scale + shifts[i]!, shifts[i + 1]! - frame[i + 1]! * scale];
 }
 

@@ -3,7 +3,7 @@
 import type { Run } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { extend, remove, restore } from "../store/commands";
-import { moment, short } from "../ui/format";
+import { dateTime, shortId } from "../ui/format";
 import { useDisclosure } from "../ui/disclosure";
 import { InlineForm } from "./InlineForm";
 import { text } from "./text";
@@ -62,7 +62,7 @@ export function ForkedFrom({ run }: { run: Run }) {
   return (
     <p class="quiet">
       {text.forkedFrom(from.creatures)}
-      {from.run ? <a href={`/runs/${from.run}`}>{text.runOf(short(from.run))}</a> : text.deletedRun}.
+      {from.run ? <a href={`/runs/${from.run}`}>{text.runOf(shortId(from.run))}</a> : text.deletedRun}.
     </p>
   );
 }
@@ -72,7 +72,7 @@ export function BinNotice({ run }: { run: Run }) {
   const refusal = useRefusal(run);
   return (
     <p class="banner warning" role="status">
-      {text.inBin(run.purge_at && moment(run.purge_at))}{" "}
+      {text.inBin(run.purge_at && dateTime(run.purge_at))}{" "}
       {refusal ?? <button onClick={() => void restore(run.id)}>{text.restore}</button>}
     </p>
   );

@@ -4,7 +4,7 @@ import type { LogEntry, Run } from "../api/types";
 import { useLog } from "../store/log";
 import { setQuery } from "../store/router";
 import { Select } from "../ui/Select";
-import { count, moment } from "../ui/format";
+import { count, dateTime } from "../ui/format";
 import { Card } from "../ui/Page";
 import { copyText } from "../ui/clipboard";
 import { text } from "./text";
@@ -83,7 +83,7 @@ function Line({ at, level, attempt, text: message }: LogEntry) {
   const [first, ...more] = summaryOf(message);
   return (
     <li class={`log-${level}`}>
-      <time dateTime={at} title={moment(at)}>
+      <time dateTime={at} title={dateTime(at)}>
         {new Date(at).toLocaleTimeString(undefined, { hour12: false })}
       </time>
       <span class="quiet log-attempt">{attempt > 0 ? text.attempt(attempt) : ""}</span>

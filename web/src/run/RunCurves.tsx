@@ -8,9 +8,9 @@ import { hasArchive, useCurvesOf, useExperiments } from "../store/fetch";
 import { useRuns } from "../store/store";
 import { setQuery } from "../store/router";
 import { Curves } from "../charts/curves/Curves";
-import { type CurveView, type OtherRun, arrangePlots, curveViewOf } from "../charts/curves/look";
+import { type CurveView, type OtherRun, arrangePlots, curveViewOf } from "../charts/curves/curveView";
 import { REASONS, divergedBy, scoresOf, workOf } from "../charts/curves/plots";
-import { count, percent, short, titleOf, words } from "../ui/format";
+import { count, percent, shortId, titleOf, words } from "../ui/format";
 import { CurveOptions } from "../charts/curves/CurveOptions";
 import { Card } from "../ui/Page";
 import { RunPicker } from "./RunPicker";
@@ -33,14 +33,18 @@ interface ComparedRuns {
 }
 
 export function CurvesCard({ run, curves, query, beside: { ids, others, error } }: Props) {
-  const look = curveViewOf(query);
+  const view = curveViewOf(query);
   return (
     <Card id="curves" kind="curves-card" title={text.curves}>
-      {curves && <CurveOptions look={look} />}
+      {curves && <CurveOptions view={view} />}
       {curves && !sharedSlug && <ComparedList {...{ run, ids, others }} />}
       {error && <p class="wrong-text small">{error}</p>}
       {curves ? (
-        <Curves plots={arrangePlots(scoresOf, curves, others, look)} x={placesOf(curves, look)} look={look} />
+        <Curves
+          plots={arrangePlots(scoresOf, curves, others, view)}
+          x={xValuesOf(curves, view)}
+          view={view}
+        />
       ) : (
         <p class="quiet waiting">{text.noCurves}</p>
       )}
@@ -49,12 +53,12 @@ export function CurvesCard({ run, curves, query, beside: { ids, others, error } 
 }
 
 export function SearchCard({ run, curves, query, beside }: Props & { curves: Columns }) {
-  const look = curveViewOf(query);
-  const plots = arrangePlots(workOf, curves, beside.others, look);
+  const view = curveViewOf(query);
+  const plots = arrangePlots(workOf, curves, beside.others, view);
   if (plots.length === 0 && run.diverged === 0) return null;
   return (
     <Card id="search" kind="wide-curves" title={text.search}>
-      <Curves plots={plots} x={placesOf(curves, look)} look={look} />
+      <Curves plots={plots} x={xValuesOf(curves, view)} view={view} />
       <DivergedTable run={run} reasons={divergedBy(curves)} />
     </Card>
   );
@@ -83,7 +87,7 @@ function DivergedTable({ run, reasons }: { run: Run; reasons: [reason: string, c
   );
 }
 
-const placesOf = (curves: Columns, { over }: CurveView) => curves[over] as readonly number[];
+const xValuesOf = (curves: Columns, { over }: CurveView) => curves[over] as readonly number[];
 
 /** The runs to compare from the address, without duplicates and the run itself. */
 export function useComparedRuns(query: URLSearchParams, id: string): ComparedRuns {
@@ -95,7 +99,7 @@ export function useComparedRuns(query: URLSearchParams, id: string): ComparedRun
   const others = ids.flatMap((id, i): OtherRun[] => {
     const [curves, run] = [value?.get(id), runs[i]];
     if (!curves || !run || curves.generation.length === 0) return [];
-    const name = `${titleOf(run, experiments)} ${short(id)}`;
+    const name = `${titleOf(run, experiments)} ${shortId(id)}`;
     return [{ name, colour: `--series-${2 + i}`, curves }];
   });
   return { ids, others, error };
@@ -104,7 +108,7 @@ export function useComparedRuns(query: URLSearchParams, id: string): ComparedRun
 function ComparedList({ run, ids, others }: { run: Run; ids: string[]; others: OtherRun[] }) {
   const set = (next: string[]) => setQuery({ with: next.length > 0 ? next.join() : null });
   const without = (id: string) => set(ids.filter((other) => other !== id));
-  const nameOf = (id: string) => others.find(({ name }) => name.endsWith(short(id)))?.name ?? short(id);
+  const nameOf = (id: string) => others.find(({ name }) => name.endsWith(shortId(id)))?.name ?? shortId(id);
   return (
     <div class="row beside-runs" role="group" aria-label={text.comparedRuns}>
       {ids.length > 0 && <Chip colour="--series-1">{text.thisRun}</Chip>}
@@ -121,7 +125,7 @@ function ComparedList({ run, ids, others }: { run: Run; ids: string[]; others: O
           run={run}
           label={text.compareWith}
           fits={(other) => hasArchive(other) && other.generation > 0 && !ids.includes(other.id)}
-          onChoose={(id) => set([...ids, id])}
+          onSelect={(id) => set([...ids, id])}
         />
       )}
     </div>

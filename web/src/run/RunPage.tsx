@@ -11,7 +11,7 @@ import { editRun } from "../store/commands";
 import { forceFreeShare } from "../ui/coupling";
 import { RunActivity, CommandButtons, StatusBadge, RunProgress, timeOf } from "./RunStatus";
 import { endReasonOf, type Figure, figuresOf, generationsOf } from "./figures";
-import { count, moment, number, short, titleOf } from "../ui/format";
+import { count, dateTime, number, shortId, titleOf } from "../ui/format";
 import { NotForceFree } from "../ui/NotForceFree";
 import { Page, useTitle } from "../ui/Page";
 import { NotFound } from "../ui/NotFound";
@@ -66,7 +66,7 @@ function Header({ run, title }: { run: Run; title: string }) {
         onName={(name) => void editRun(run.id, { name })}
       >
         <h1>
-          {title} <code>{short(run.id)}</code>
+          {title} <code>{shortId(run.id)}</code>
         </h1>
       </NameField>
       <StatusBadge run={run} />
@@ -110,7 +110,7 @@ function RunSections({ run, query, error, detail }: SectionsProps) {
       <div class="run-columns even">
         <div class="stack">
           <LogCard run={run} query={query} />
-          <FilesCard run={run} about={text.filesAbout(hasArchive(run), moment(run.created_at), run)} />
+          <FilesCard run={run} about={text.filesAbout(hasArchive(run), dateTime(run.created_at), run)} />
         </div>
         <SpecCard run={run} query={query} />
       </div>
@@ -143,7 +143,7 @@ function SectionLinks({ run: { experiment, spec } }: { run: Run }) {
   );
 }
 
-/** True for experiments that improve by gradient steps. */
+/** True for experiments that take gradient steps. */
 const learns = (run: Run) => ["folding", "refinement"].includes(run.experiment);
 
 function Banners({ run }: { run: Run }) {

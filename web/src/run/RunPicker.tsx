@@ -3,7 +3,7 @@
 import { useEffect, useRef } from "preact/hooks";
 import type { Run } from "../api/types";
 import { useExperiments, useRunChoices } from "../store/fetch";
-import { moment, short, titleOf } from "../ui/format";
+import { dateTime, shortId, titleOf } from "../ui/format";
 import { useDisclosure } from "../ui/disclosure";
 import { InlineForm } from "./InlineForm";
 import { text } from "./text";
@@ -12,7 +12,7 @@ interface Props {
   run: Run;
   label: string;
   fits: (other: Run) => boolean;
-  onChoose: (id: string) => void;
+  onSelect: (id: string) => void;
 }
 
 export function RunPicker(props: Props) {
@@ -25,7 +25,7 @@ export function RunPicker(props: Props) {
   );
 }
 
-function RunSelect({ run, label, fits, onChoose, onClose }: Props & { onClose: () => void }) {
+function RunSelect({ run, label, fits, onSelect, onClose }: Props & { onClose: () => void }) {
   const { value, error } = useRunChoices(run.id);
   const experiments = useExperiments().value ?? [];
   const select = useRef<HTMLSelectElement>(null);
@@ -37,7 +37,7 @@ function RunSelect({ run, label, fits, onChoose, onClose }: Props & { onClose: (
     const id = select.current?.value;
     if (!id) return select.current?.focus();
     onClose();
-    onChoose(id);
+    onSelect(id);
   };
   return (
     <InlineForm onSubmit={choose} onClose={onClose} closeButton={close}>
@@ -51,7 +51,7 @@ function RunSelect({ run, label, fits, onChoose, onClose }: Props & { onClose: (
             <option value="">{value ? text.selectRun : text.loadingRuns}</option>
             {fitting.map((other) => (
               <option key={other.id} value={other.id}>
-                {titleOf(other, experiments)} {short(other.id)}, {moment(other.created_at)}
+                {titleOf(other, experiments)} {shortId(other.id)}, {dateTime(other.created_at)}
               </option>
             ))}
           </select>

@@ -52,12 +52,12 @@ export function figuresOf(run: Run): Figure[] {
 }
 
 /** Positions of the figure that lists show; the first one for other experiments. */
-const KEYS: Record<string, number> = { refinement: 1, neuroevolution: 2 };
+const KEY_FIGURE: Record<string, number> = { refinement: 1, neuroevolution: 2 };
 
 export function keyFigureOf(run: Run): Figure {
   // Small measurements have no exponent: the list shows their memory.
   const small = run.experiment === "scaling" && summaryOf(run, "exponent") === null;
-  const [name, value] = figuresOf(run)[small ? 2 : (KEYS[run.experiment] ?? 0)]!;
+  const [name, value] = figuresOf(run)[small ? 2 : (KEY_FIGURE[run.experiment] ?? 0)]!;
   return [name === text.qdScore ? name : name.toLowerCase(), value];
 }
 

@@ -84,7 +84,7 @@ function Selects({ query, experiments, tags, onChange }: Props) {
           title={title}
           value={value}
           choices={[["", text.any], ...choices]}
-          onChange={(chosen) => onChange({ [name]: chosen || null })}
+          onChange={(selected) => onChange({ [name]: selected || null })}
         />
       ))}
       <Select

@@ -5,7 +5,7 @@ import { useRefusal } from "../store/principal";
 import { useStore } from "../store/store";
 import { editRun, restore } from "../store/commands";
 import { forceFreeShare } from "../ui/coupling";
-import { DASH, moment, number, short, titleOf } from "../ui/format";
+import { DASH, dateTime, number, shortId, titleOf } from "../ui/format";
 import { NotForceFree } from "../ui/NotForceFree";
 import { keyFigureOf } from "../run/figures";
 import { CommandButtons, StatusBadge, RunProgress, timeOf } from "../run/RunStatus";
@@ -17,23 +17,23 @@ import { text } from "./text";
 interface Props {
   id: string;
   experiments: Experiment[];
-  chosen: boolean;
+  selected: boolean;
   knownTags: string;
-  onChoose: () => void;
+  onSelect: () => void;
 }
 
-export function RunRow({ id, experiments, chosen, knownTags, onChoose }: Props) {
+export function RunRow({ id, experiments, selected, knownTags, onSelect }: Props) {
   const run = useStore((state) => state.runs.get(id)!);
   const title = titleOf(run, experiments);
-  const name = `${title} ${short(run.id)}`;
+  const name = `${title} ${shortId(run.id)}`;
   const fixed = useRefusal(run) !== null || run.deleted_at !== null;
   const time = timeOf(run);
   const [figureName, figure] = keyFigureOf(run);
   return (
-    <tr class={chosen ? "chosen-row" : ""}>
+    <tr class={selected ? "selected-row" : ""}>
       <td class="row-choice">
         {!run.deleted_at && (
-          <input type="checkbox" aria-label={text.compareRun(name)} checked={chosen} onChange={onChoose} />
+          <input type="checkbox" aria-label={text.compareRun(name)} checked={selected} onChange={onSelect} />
         )}
       </td>
       <th scope="row">
@@ -82,7 +82,7 @@ function RowTitle({ run, title, name, fixed }: PartProps) {
     <>
       <NameField of={run} {...{ title, fixed }} onName={(name) => void editRun(run.id, { name })}>
         <a class="run-name" href={`/runs/${run.id}`}>
-          {title} <code>{short(run.id)}</code>
+          {title} <code>{shortId(run.id)}</code>
         </a>
       </NameField>
       {run.sweep && (
@@ -102,7 +102,7 @@ function RowNotes({ run }: { run: Run }) {
       {run.status === "running" && run.generation === 0 && (
         <span class="row-note quiet">{text.compiling}</span>
       )}
-      {run.purge_at && <span class="row-note gone quiet">{text.purged(moment(run.purge_at))}</span>}
+      {run.purge_at && <span class="row-note gone quiet">{text.purged(dateTime(run.purge_at))}</span>}
       {run.waiting_reason && <span class="row-note reason">{run.waiting_reason}</span>}
       {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}
       {run.warning && <span class="row-note warning-text">{run.warning}</span>}

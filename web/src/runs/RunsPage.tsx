@@ -10,7 +10,7 @@ import { useStore } from "../store/store";
 import { useSweeps } from "../store/sweeps";
 import { showFailure } from "../store/toasts";
 import { setQuery } from "../store/router";
-import { wasGuided } from "../archive/guide";
+import { hasTakenTour } from "../archive/tour";
 import { Empty, Page } from "../ui/Page";
 import { Heading } from "../ui/Table";
 import { Filters } from "./Filters";
@@ -45,7 +45,7 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
   const next = useStore((state) => state.next);
   const experiments = useExperiments().value ?? [];
   const tags = useTags();
-  const [chosen, setChosen] = useState<string[]>([]);
+  const [selected, setChosen] = useState<string[]>([]);
   const choose = (id: string) =>
     setChosen((old) => (old.includes(id) ? old.filter((each) => each !== id) : [...old, id]));
   const swept = together && (sweeps?.items.length ?? 0) > 0;
@@ -61,11 +61,11 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
       {(listed.length > 0 || swept || isFiltered(query)) && (
         <Filters query={query} experiments={experiments} tags={tags} onChange={setQuery} />
       )}
-      {chosen.length > 0 && <CompareBar ids={chosen} onClear={() => setChosen([])} />}
+      {selected.length > 0 && <CompareBar ids={selected} onClear={() => setChosen([])} />}
       {empty && <NothingListed query={query} />}
       {query.sweep && <SweepBanner sweep={query.sweep} />}
       {swept && <SweepRows page={sweeps!} onMore={most < MAX_SWEEPS ? () => setMost(MAX_SWEEPS) : null} />}
-      {listed.length > 0 && <Table {...{ query, listed, experiments, chosen }} onChoose={choose} />}
+      {listed.length > 0 && <Table {...{ query, listed, experiments, selected }} onSelect={choose} />}
       <datalist id={TAGS_ID}>
         {tags.map((tag) => (
           <option key={tag} value={tag} />
@@ -97,11 +97,11 @@ interface TableProps {
   query: RunQuery;
   listed: readonly string[];
   experiments: Experiment[];
-  chosen: string[];
-  onChoose: (id: string) => void;
+  selected: string[];
+  onSelect: (id: string) => void;
 }
 
-function Table({ query, listed, experiments, chosen, onChoose }: TableProps) {
+function Table({ query, listed, experiments, selected, onSelect }: TableProps) {
   return (
     <table class="runs">
       <thead>
@@ -128,9 +128,9 @@ function Table({ query, listed, experiments, chosen, onChoose }: TableProps) {
             key={id}
             id={id}
             experiments={experiments}
-            chosen={chosen.includes(id)}
+            selected={selected.includes(id)}
             knownTags={TAGS_ID}
-            onChoose={() => onChoose(id)}
+            onSelect={() => onSelect(id)}
           />
         ))}
       </tbody>
@@ -140,7 +140,7 @@ function Table({ query, listed, experiments, chosen, onChoose }: TableProps) {
 
 function CompareBar({ ids, onClear }: { ids: string[]; onClear: () => void }) {
   return (
-    <p class="chosen row" role="status">
+    <p class="selected row" role="status">
       <span>
         {text.selected(ids.length)}
         {ids.length === 1 && text.selectAnother}
@@ -189,7 +189,7 @@ function NothingListed({ query }: { query: RunQuery }) {
 
 function Welcome() {
   const demonstration = useStore((state) => [...state.runs.values()].find((run) => run.demonstration));
-  if (wasGuided() || !demonstration) return null;
+  if (hasTakenTour() || !demonstration) return null;
   return (
     <p class="banner welcome">
       {text.welcome} <a href={`/runs/${demonstration.id}`}>{text.tour}</a>

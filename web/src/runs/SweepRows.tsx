@@ -1,8 +1,8 @@
 /** Sweeps above the list of runs, one row for each. */
 
 import type { SweepPage } from "../api/types";
-import { moment } from "../ui/format";
-import { SweepProgress, SweepStates, sizeOf, sweepTitle } from "../sweeps/SweepStatus";
+import { dateTime } from "../ui/format";
+import { SweepProgress, SweepStates, sizeText, sweepTitle } from "../sweeps/SweepStatus";
 import { text } from "./text";
 
 interface Props {
@@ -22,7 +22,7 @@ export function SweepRows({ page, onMore }: Props) {
                 {sweepTitle(sweep)}
               </a>
               <span class="quiet small">
-                {sizeOf(sweep)} · {moment(sweep.created_at)}
+                {sizeText(sweep)} · {dateTime(sweep.created_at)}
               </span>
             </span>
             <span class="sweep-status">

@@ -11,7 +11,7 @@ export const text = {
   signOut: "Sign out",
   validUntil: (day: string) => ` Your token is valid until ${day}.`,
   localOnly:
-    "The server answers only this machine and requires no token. To use it from another machine, forward the port: ",
+    "The server accepts requests from this machine only, without a token. To use it from another machine, forward the port: ",
   signIn: "Sign in",
   signInHint:
     "This server requires a token. Its administrator can create one for you. The server printed the first token when it started.",

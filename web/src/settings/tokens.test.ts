@@ -27,7 +27,7 @@ describe("a token", () => {
     expect(isExpired(token(changes), NOW)).toBe(over);
   });
 
-  it("is good for as many days as were chosen, or for ever", () => {
+  it("is good for as many days as were selected, or for ever", () => {
     expect(endOf(7, NOW)).toBe("2026-06-22T12:00:00.000Z");
     expect(endOf(0, NOW)).toBeNull();
   });

@@ -6,7 +6,7 @@ import { creatureFileUrl } from "../api/urls";
 import type { Share } from "../api/types";
 import { useFetched, useRunDetail } from "../store/fetch";
 import { useStore } from "../store/store";
-import { count, moment, short } from "../ui/format";
+import { count, dateTime, shortId } from "../ui/format";
 import { NotFound } from "../ui/NotFound";
 import { ArchiveRun } from "../run/ArchiveRun";
 import { CreatureView } from "../creature/CreaturePage";
@@ -60,7 +60,7 @@ const LICENCE_URLS: Record<string, string> = {
 /** Title and id of the page; the title of an untitled share contains the id already. */
 export function headingOf({ run, title }: Share, creature: string | null, inside: boolean) {
   const heading = run && inside ? text.creature : title;
-  const id = creature && short(creature);
+  const id = creature && shortId(creature);
   return [heading, id && heading.includes(id) ? null : id] as const;
 }
 
@@ -78,8 +78,8 @@ function Terms({ share: { credit, licence, expires_at, created_at } }: { share: 
           licence
         )}
       </Term>
-      <Term name={text.shared}>{moment(created_at)}</Term>
-      {expires_at && <Term name={text.until}>{moment(expires_at)}</Term>}
+      <Term name={text.shared}>{dateTime(created_at)}</Term>
+      {expires_at && <Term name={text.until}>{dateTime(expires_at)}</Term>}
     </dl>
   );
 }

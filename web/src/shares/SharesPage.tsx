@@ -5,7 +5,7 @@ import type { Share } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { usePages } from "../store/paging";
 import { showFailure, showToast } from "../store/toasts";
-import { moment } from "../ui/format";
+import { dateTime } from "../ui/format";
 import { ConfirmButton } from "../ui/ConfirmButton";
 import { Empty, Page } from "../ui/Page";
 import { type Column, Table } from "../ui/Table";
@@ -40,8 +40,8 @@ const columnsOf = (onChange: (share: Share) => void): Column<Share>[] => [
   { title: text.title, cell: (share) => <Title {...share} /> },
   { title: text.content, cell: (share) => <Content {...share} /> },
   { title: text.licence, cell: ({ licence }) => licence.slice(0, 40) },
-  { title: text.publishedOn, cell: ({ created_at }) => moment(created_at) },
-  { title: text.expires, cell: ({ expires_at }) => (expires_at ? moment(expires_at) : text.never) },
+  { title: text.publishedOn, cell: ({ created_at }) => dateTime(created_at) },
+  { title: text.expires, cell: ({ expires_at }) => (expires_at ? dateTime(expires_at) : text.never) },
   { title: text.visibleTo, cell: ({ state, listed }) => text.viewers(state, listed) },
   { title: text.actions, unseen: true, cell: (share) => <Actions share={share} onChange={onChange} /> },
 ];

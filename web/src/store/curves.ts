@@ -62,7 +62,7 @@ function filterRows(curves: Curves, keep: (i: number) => boolean): Curves {
   return { ...columns((name) => kept(curves[name])), summary: mapValues(curves.summary, kept) };
 }
 
-/** Every second value and the last one; each stands for those before it. */
+/** Every second value and the last one: the newest value, or the sum of counts, since the one before. */
 function thinOut(summary: NumberColumns): NumberColumns {
   const columns = Object.entries(summary).map(([name, column]) => {
     const last = column.length - 1;

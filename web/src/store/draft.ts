@@ -9,7 +9,7 @@ export interface Base {
   /** `experiment/name` of a preset, id of a run, hash of a creature, or name of a file. */
   name: string;
   spec: Spec;
-  /** True for a file, whose name this server may not know. */
+  /** True for a file; the server may not know its name. */
   foreign?: boolean;
   /** The initial creatures, in place of random ones. */
   fork?: ForkSource;

@@ -5,7 +5,7 @@ import * as api from "../api/client";
 import { type Motion, decodeMotion } from "../decode/motion";
 import { poll } from "./polling";
 
-/** The renderer works in order; a hovered cell waits for these requests only. */
+/** The renderer works in order, so a hovered cell waits for at most this number of requests. */
 const MAX_REQUESTS = 8;
 /** Cached motions of creatures that are not visible. */
 const MAX_HIDDEN = 100;

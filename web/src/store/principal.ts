@@ -1,4 +1,4 @@
-/** The signed-in principal, and why it may not do something. */
+/** The signed-in principal and its permissions. */
 
 import { useEffect, useState } from "preact/hooks";
 import { readPrincipal } from "../api/client";
@@ -30,14 +30,14 @@ export function useSignedOut(): boolean {
   return unknown;
 }
 
-/** Why the principal may not create, or change this thing; null if allowed. */
+/** The reason that forbids creating, or changing `thing`; null if it is allowed. */
 export const useRefusal = (thing?: Owned): string | null =>
   refusalOf(
     useStore((state) => state.principal),
     thing,
   );
 
-/** Token names are not unique; the server decides in the end. */
+/** Token names are not unique, so the server has the final decision. */
 export function refusalOf(principal: Principal | null, thing?: Owned): string | null {
   if (!principal || principal.scope === "admin") return null;
   if (principal.scope === "read") return text.readOnly;

@@ -16,7 +16,7 @@ let source: EventSource | null = null;
 let reconnecting: Timer | undefined;
 let closing: Timer | undefined;
 
-/** Open the stream; resolves when it is open, has failed or takes long. Data fetched earlier would be fetched twice. */
+/** Open the stream; wait until it is open, has failed or takes long, because opening it fetches all data again. */
 export function connect(): Promise<unknown> {
   document.addEventListener("visibilitychange", followVisibility);
   const opened = open();
@@ -33,7 +33,7 @@ function followVisibility(): void {
   else if (!source) open();
 }
 
-/** EventSource reconnects by itself and misses nothing; after a new one, everything is fetched again. */
+/** An EventSource reconnects without losing events; after a new one, everything is fetched again. */
 function open(): EventSource {
   const opened = new EventSource(EVENTS_URL);
   source = opened;

@@ -14,8 +14,8 @@ const POINTS = 300;
 /** The newest sweeps. */
 export function useSweeps(limit: number, wanted: boolean): Loaded<SweepPage | null> {
   const version = useStore((state) => (wanted ? `${state.epoch} ${totalOf(state.sweepVersions)}` : ""));
-  const news = useThrottled(version);
-  return useFetched(async () => (wanted ? await api.readSweeps(limit) : null), [news, limit, wanted]);
+  const throttled = useThrottled(version);
+  return useFetched(async () => (wanted ? await api.readSweeps(limit) : null), [throttled, limit, wanted]);
 }
 
 const totalOf = (counts: ReadonlyMap<string, number>) =>
@@ -30,7 +30,7 @@ export interface SweepDetail {
 
 /** A sweep with the summary of its runs. */
 export function useSweep(id: string, each: boolean): Loaded<SweepDetail> {
-  const news = useThrottled(useStore((state) => `${state.epoch} ${state.sweepVersions.get(id) ?? 0}`));
+  const throttled = useThrottled(useStore((state) => `${state.epoch} ${state.sweepVersions.get(id) ?? 0}`));
   return useFetched(async () => {
     const [sweep, summary, curves] = await Promise.all([
       api.readSweep(id),
@@ -38,7 +38,7 @@ export function useSweep(id: string, each: boolean): Loaded<SweepDetail> {
       each ? api.readSweepCurves(id, POINTS) : null,
     ]);
     return { sweep, summary, curves };
-  }, [id, news, each]);
+  }, [id, throttled, each]);
 }
 
 const OUTCOMES: Record<api.RunCommand, string> = {

@@ -2,32 +2,34 @@
 
 import type { Member, Spread } from "../api/types";
 import { DASH, count, number, words } from "../ui/format";
-import { LineKey } from "../charts/lineStyle";
+import { LineSample } from "../charts/lineStyle";
 import { SCORES } from "../run/figures";
 import { Card } from "../ui/Page";
 import { type Column, Table } from "../ui/Table";
-import { type ShownCase, memberName } from "./bands";
+import { type ShownCase, memberName } from "./summaryPlots";
 import { text } from "./text";
 
 interface LegendProps {
   cases: ShownCase[];
-  chosen: number[];
-  onChoose: (places: number[]) => void;
+  selected: number[];
+  onSelect: (places: number[]) => void;
 }
 
 /** One legend for all plots, which draw only the selected cases. */
-export function Cases({ cases, chosen, onChoose }: LegendProps) {
-  const turn = (place: number) =>
-    onChoose(chosen.includes(place) ? chosen.filter((one) => one !== place) : [...chosen, place]);
+export function Cases({ cases, selected, onSelect }: LegendProps) {
+  const turn = (caseIndex: number) =>
+    onSelect(
+      selected.includes(caseIndex) ? selected.filter((one) => one !== caseIndex) : [...selected, caseIndex],
+    );
   return (
     <ul class="compare-legend sweep-legend" aria-label={text.cases}>
       {cases.map((shown) => (
-        <li key={shown.place}>
+        <li key={shown.caseIndex}>
           <label class="compact">
             <input
               type="checkbox"
-              checked={chosen.includes(shown.place)}
-              onChange={() => turn(shown.place)}
+              checked={selected.includes(shown.caseIndex)}
+              onChange={() => turn(shown.caseIndex)}
             />
             <CaseName shown={shown} />
           </label>
@@ -37,10 +39,10 @@ export function Cases({ cases, chosen, onChoose }: LegendProps) {
   );
 }
 
-function CaseName({ shown: { place, name } }: { shown: ShownCase }) {
+function CaseName({ shown: { caseIndex, name } }: { shown: ShownCase }) {
   return (
     <>
-      <LineKey index={place} /> {name}
+      <LineSample index={caseIndex} /> {name}
     </>
   );
 }
@@ -73,7 +75,12 @@ export function Finals({ cases, generation }: { cases: ShownCase[]; generation: 
   ];
   return (
     <Card id="finals" title={text.figures} note={text.figuresAbout(generation)}>
-      <Table label={text.figuresOfCases} columns={columns} rows={cases} keyOf={({ place }) => place} />
+      <Table
+        label={text.figuresOfCases}
+        columns={columns}
+        rows={cases}
+        keyOf={({ caseIndex }) => caseIndex}
+      />
     </Card>
   );
 }

@@ -14,9 +14,9 @@ import {
 } from "../store/sweeps";
 import { setQuery } from "../store/router";
 import { Curves } from "../charts/curves/Curves";
-import { type ShownCase, bandsOf, caseName } from "./bands";
-import { SweepProgress, SweepStates, sizeOf, sweepTitle } from "./SweepStatus";
-import { moment } from "../ui/format";
+import { type ShownCase, summaryPlotsOf, caseName } from "./summaryPlots";
+import { SweepProgress, SweepStates, sizeText, sweepTitle } from "./SweepStatus";
+import { dateTime } from "../ui/format";
 import { Card, Page, useTitle } from "../ui/Page";
 import { ConfirmButton } from "../ui/ConfirmButton";
 import { NotFound } from "../ui/NotFound";
@@ -41,9 +41,9 @@ export function SweepPage({ id, query }: { id: string; query: URLSearchParams })
 
 function LoadedSweep({ value, query, each }: { value: SweepDetail; query: URLSearchParams; each: boolean }) {
   const { sweep, summary, curves } = value;
-  const chosen = chosenOf(query, summary.cases.length);
+  const selected = chosenOf(query, summary.cases.length);
   const cases = summary.cases.map(shownOf);
-  const shown = chosen.map((place) => cases[place]!);
+  const shown = selected.map((caseIndex) => cases[caseIndex]!);
   const choose = (places: number[]) => setQuery({ cases: places.length > 0 ? places.join() : "-" });
   return (
     <>
@@ -56,7 +56,7 @@ function LoadedSweep({ value, query, each }: { value: SweepDetail; query: URLSea
         <CurveBar log={query.get("log") === "1"}>
           <Check title={text.eachRun} name="each" on={each} />
         </CurveBar>
-        {cases.length > 1 && <Cases cases={cases} chosen={chosen} onChoose={choose} />}
+        {cases.length > 1 && <Cases cases={cases} selected={selected} onSelect={choose} />}
         <CaseCurves {...{ shown, query }} curves={each ? curves : null} />
       </Card>
       <Finals cases={cases} generation={summary.generation} />
@@ -65,12 +65,12 @@ function LoadedSweep({ value, query, each }: { value: SweepDetail; query: URLSea
   );
 }
 
-const shownOf = (summary: CaseSummary, place: number): ShownCase => ({
+const shownOf = (summary: CaseSummary, caseIndex: number): ShownCase => ({
   summary,
-  place,
+  caseIndex,
   name: caseName(summary.values),
-  colour: colourOf(place),
-  dash: dashOf(place),
+  colour: colourOf(caseIndex),
+  dash: dashOf(caseIndex),
 });
 
 /** The cases in the address, or the first ones. */
@@ -79,7 +79,7 @@ function chosenOf(query: URLSearchParams, count: number): number[] {
   const asked = query.get("cases");
   if (asked === null) return all.slice(0, MAX_LINES);
   const named = asked.split(",").map(Number);
-  return all.filter((place) => named.includes(place));
+  return all.filter((caseIndex) => named.includes(caseIndex));
 }
 
 interface CurvesProps {
@@ -90,10 +90,10 @@ interface CurvesProps {
 
 function CaseCurves({ shown, query, curves }: CurvesProps) {
   const log = query.get("log") === "1";
-  const plots = bandsOf(shown, curves);
+  const plots = summaryPlotsOf(shown, curves);
   if (shown.length === 0) return <p class="quiet">{text.chooseCase}</p>;
   if (plots.length === 0) return <p class="quiet waiting">{text.noCurves}</p>;
-  return <Curves plots={plots} x={NO_X} look={{ over: "generation", log, smooth: 1 }} />;
+  return <Curves plots={plots} x={NO_X} view={{ over: "generation", log, smooth: 1 }} />;
 }
 
 /** Each case has its own x values. */
@@ -114,7 +114,7 @@ function Head({ sweep }: { sweep: Sweep }) {
         <Actions sweep={sweep} title={title} />
       </header>
       <p class="quiet sweep-about">
-        {kind ?? sweep.experiment} · {sizeOf(sweep)} · {moment(sweep.created_at)}
+        {kind ?? sweep.experiment} · {sizeText(sweep)} · {dateTime(sweep.created_at)}
         {sweep.owner && <> · {text.by(sweep.owner)}</>} · <a href={`/?sweep=${sweep.id}`}>{text.listRuns}</a>
       </p>
       {sweep.deleted > 0 && <BinNotice sweep={sweep} />}

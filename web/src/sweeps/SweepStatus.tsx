@@ -1,16 +1,16 @@
 /** Title, size and progress of a sweep. */
 
 import type { Sweep } from "../api/types";
-import { short } from "../ui/format";
+import { shortId } from "../ui/format";
 import { Progress } from "../ui/Page";
 import { STATES } from "../run/RunStatus";
 import { text } from "./text";
 import "./sweeps.css";
 
-export const sweepTitle = ({ name, id }: Sweep) => name ?? text.sweepTitle(short(id));
+export const sweepTitle = ({ name, id }: Sweep) => name ?? text.sweepTitle(shortId(id));
 
 /** The number of runs with its factors: “6 runs: 3 seeds × 2 values of world.viscosity”. */
-export function sizeOf({ seeds, grid, cases, total }: Sweep): string {
+export function sizeText({ seeds, grid, cases, total }: Sweep): string {
   const fields = Object.entries(grid).map(([path, values]) => text.valuesOf(values.length, path));
   const each = seeds.length > 0 ? [text.seeds(seeds.length)] : [];
   const factors = [...each, ...fields].join(" × ");

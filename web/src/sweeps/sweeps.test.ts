@@ -2,7 +2,7 @@
 
 import { describe, expect, it } from "vitest";
 import type { CaseSummary } from "../api/types";
-import { bandsOf, caseName } from "./bands";
+import { summaryPlotsOf, caseName } from "./summaryPlots";
 
 const none = { median: [null], low: [null], high: [null], min: [null], max: [null] };
 
@@ -16,17 +16,17 @@ function summaryOf(generation: number[], median: number[]): CaseSummary {
 }
 
 describe("the bands of a sweep", () => {
-  const shown = (summary: CaseSummary, place: number) => ({
+  const shown = (summary: CaseSummary, caseIndex: number) => ({
     summary,
-    place,
-    name: `case ${place}`,
-    colour: `--series-${place}`,
+    caseIndex,
+    name: `case ${caseIndex}`,
+    colour: `--series-${caseIndex}`,
     dash: undefined,
   });
 
   it("lie between the quartiles of each case, with the median in them", () => {
     const cases = [summaryOf([1, 2], [5, 6]), summaryOf([1], [7])].map(shown);
-    const [plot, ...others] = bandsOf(cases, null);
+    const [plot, ...others] = summaryPlotsOf(cases, null);
     expect(others).toEqual([]);
     expect(plot!.series.map(({ y }) => y)).toEqual([[6, 7], [4, 5], [5, 6], [8], [6], [7]]);
     expect(plot!.bands!.map(({ high, low }) => [high, low])).toEqual([
@@ -42,7 +42,7 @@ describe("the bands of a sweep", () => {
       { run: "a", ...line },
       { run: "of another case", ...line },
     ];
-    const [plot] = bandsOf([shown(summaryOf([1, 2], [5, 6]), 0)], { generation: [1, 2], runs: lines });
+    const [plot] = summaryPlotsOf([shown(summaryOf([1, 2], [5, 6]), 0)], { generation: [1, 2], runs: lines });
     expect(plot!.series.map(({ faint = false }) => faint)).toEqual([true, false, false, false]);
     expect(plot!.bands).toEqual([{ high: 1, low: 2, colour: "--series-0" }]);
   });

@@ -1,4 +1,4 @@
-/** Open creature files that are dropped or chosen; a page may handle dropped files itself. */
+/** Open creature files that are dropped or selected; a page may handle dropped files itself. */
 
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";

@@ -6,7 +6,7 @@ interface Props {
   label: string;
   value: string;
   limit: number;
-  /** Several lines, which Enter does not end. */
+  /** True for several lines: Enter starts a new one. */
   long?: boolean;
   list?: string;
   onDone: (value: string | null) => void;

@@ -1,4 +1,4 @@
-/** Parts of every page: its frame, cards, notes where there is nothing to show, progress bars. */
+/** Parts of every page: frame, cards, notes for empty lists, progress bars. */
 
 import type { ComponentChildren } from "preact";
 import { useEffect } from "preact/hooks";
@@ -104,7 +104,7 @@ interface ProgressProps {
   label: string;
   /** From 0 to 1. */
   share: number;
-  /** CSS class: the state of what progresses. */
+  /** CSS class: the status of the run or sweep. */
   kind: string;
 }
 

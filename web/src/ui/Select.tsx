@@ -50,14 +50,14 @@ interface SegmentsProps<T extends string> {
   label: string;
   choices: Option<T>;
   value: T;
-  onChoose: (name: T) => void;
+  onSelect: (name: T) => void;
 }
 
-export function Segments<T extends string>({ label, choices, value, onChoose }: SegmentsProps<T>) {
+export function Segments<T extends string>({ label, choices, value, onSelect }: SegmentsProps<T>) {
   return (
     <div class="choices" role="group" aria-label={label}>
       {choices.map(([name, title]) => (
-        <button key={name} type="button" aria-pressed={name === value} onClick={() => onChoose(name)}>
+        <button key={name} type="button" aria-pressed={name === value} onClick={() => onSelect(name)}>
           {title}
         </button>
       ))}

@@ -6,7 +6,7 @@ export type Rgb = [number, number, number];
 
 /**
  * Seventeen even samples of perceptually uniform maps of matplotlib (CC0): viridis and magma
- * (S. van der Walt and N. Smith, 2015), the latter without black, the ground of a dark page;
+ * (S. van der Walt and N. Smith, 2015), the latter without black, the background of a dark page;
  * cividis (Nuñez, Anderton and Renslow, PLoS ONE 13, e0199239, 2018).
  */
 const SAMPLES = {

@@ -16,7 +16,7 @@ const part = (value: Json | undefined): Spec =>
 /** True if a coupling cannot exert a net force on a body. */
 export const isForceFree = (coupling: Json | undefined) => part(coupling).projection !== "none";
 
-/** How many of the simulations of a run are force-free. */
+/** The share of a run's simulations that are force-free. */
 export function forceFreeShare(spec: Spec): "all" | "some" | "none" {
   const forms = Array.isArray(spec.forms) ? spec.forms : null;
   if (!forms) return isForceFree(spec.coupling) ? "all" : "none";

@@ -52,14 +52,14 @@ export function duration(seconds: number | null): string {
   return `${Math.floor(s / 86400)} d ${Math.floor((s % 86400) / 3600)} h`;
 }
 
-export function moment(iso: string): string {
+export function dateTime(iso: string): string {
   const options = { dateStyle: "medium", timeStyle: "short" } as const;
   return new Date(iso).toLocaleString(undefined, options);
 }
 
 export const inDays = (days: number, now: number) => new Date(now + days * 86_400_000).toISOString();
 
-export function short(id: string): string {
+export function shortId(id: string): string {
   return id.slice(0, 8);
 }
 

@@ -16,5 +16,5 @@ export function parse(markdown: string): Map<string, string> {
 
 const GLOSSARY = parse(text);
 
-/** The definition of a term, whatever its capitals; undefined for an unknown term. */
+/** The definition of a term, ignoring case; undefined for an unknown term. */
 export const define = (term: string): string | undefined => GLOSSARY.get(term.toLowerCase());

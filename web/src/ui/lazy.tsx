@@ -7,30 +7,32 @@ import { text } from "./text";
 /** Show a `section` (or `main`) until the component is loaded. */
 export function lazy<P extends object>(
   load: () => Promise<ComponentType<P>>,
-  Around: "main" | "section" = "main",
+  Placeholder: "main" | "section" = "main",
 ): ComponentType<P> {
-  let Found: ComponentType<P> | null = null;
-  return function Later(props: P) {
+  let Loaded: ComponentType<P> | null = null;
+  return function LazyComponent(props: P) {
     const [, redraw] = useState(0);
     const [failed, setFailed] = useState(false);
     useEffect(() => {
-      if (Found) return;
+      if (Loaded) return;
       load().then(
         (found) => {
-          Found = found;
+          Loaded = found;
           redraw((count) => count + 1);
         },
         () => setFailed(true),
       );
     }, []);
-    if (Found) return <Found {...props} />;
+    if (Loaded) return <Loaded {...props} />;
     return (
-      <Around class="lazy">{failed ? <LoadFailed /> : <p class="quiet loading">{text.loading}</p>}</Around>
+      <Placeholder class="lazy">
+        {failed ? <LoadFailed /> : <p class="quiet loading">{text.loading}</p>}
+      </Placeholder>
     );
   };
 }
 
-/** The server was updated since this tab was opened, or cannot be reached. */
+/** Shown if the server was updated after the tab was opened, or cannot be reached. */
 function LoadFailed() {
   return (
     <p class="banner wrong" role="alert">

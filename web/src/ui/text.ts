@@ -12,7 +12,7 @@ export const text = {
   file: "file",
   creatureFile: "Creature file",
   fork: "Fork",
-  guide: "Tour",
+  tour: "Tour",
   step: (number: number, count: number) => `${number} of ${count}`,
   close: "Close",
   skip: "Skip",
@@ -24,7 +24,7 @@ export const text = {
   noClipboard: "The browser refused to copy. Select the text and copy it with Ctrl + C.",
   forms: {
     ours: ["Ours", "Force- and torque-free; every actuator has the same strength."],
-    strong: ["Ours, tireless", "Force- and torque-free; actuators have unlimited strength."],
+    strong: ["Ours, unlimited strength", "Force- and torque-free; actuators have unlimited strength."],
     paper: ["Paper", "Two layers and free edge angles, as in the paper."],
   } as Record<string, [title: string, about: string]>,
   notForceFreeAbout:

@@ -17,6 +17,6 @@ export function useTheme(): Theme {
   return dark ? "dark" : "light";
 }
 
-export function prefersStillness(): boolean {
+export function prefersReducedMotion(): boolean {
   return window.matchMedia("(prefers-reduced-motion: reduce)").matches;
 }

@@ -4,7 +4,7 @@ import type { Queue, Worker } from "../api/types";
 import { useStore } from "../store/store";
 import { useWorkers } from "../store/fetch";
 import { Card, Empty, Page, Progress } from "../ui/Page";
-import { bytes, count, duration, labelOf, number, percent, short } from "../ui/format";
+import { bytes, count, duration, labelOf, number, percent, shortId } from "../ui/format";
 import { text } from "./text";
 import "./workers.css";
 
@@ -130,7 +130,7 @@ function CurrentRun({ worker: { current_run, status } }: { worker: Worker }) {
   return (
     <div>
       <RunLink run={run} />
-      <Progress label={text.progressOf(labelOf(run), short(run.id))} share={run.progress} kind="running" />
+      <Progress label={text.progressOf(labelOf(run), shortId(run.id))} share={run.progress} kind="running" />
       <span class="quiet small">
         {text.generation(count(run.generation), count(run.generations))}
         {attempt}
@@ -142,7 +142,7 @@ function CurrentRun({ worker: { current_run, status } }: { worker: Worker }) {
 function RunLink({ run }: { run: Parameters<typeof labelOf>[0] & { id: string } }) {
   return (
     <a class="run-name" href={`/runs/${run.id}`}>
-      {labelOf(run)} <code>{short(run.id)}</code>
+      {labelOf(run)} <code>{shortId(run.id)}</code>
     </a>
   );
 }

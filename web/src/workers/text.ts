@@ -4,7 +4,7 @@ export const text = {
   workers: "Workers",
   noWorkers: "No live workers",
   noWorkersHint: "Runs wait for a worker. Start one with ",
-  orBeside: ", or beside a running server with ",
+  orBeside: ", or, if a server is already running, with ",
   perCore: (load: string) => `${load} per core`,
   usedOf: (used: string, memory: string) => `${used} of ${memory}`,
   gpu: "GPU",

@@ -48,7 +48,6 @@ def read_tensorneat(nodes: np.ndarray, conns: np.ndarray, meta: Mapping[str, Any
     is_input = kept < inputs
     linear = is_input | np.isin(kept, outputs)
     response = columns.get("response", np.ones(len(kept)))
-    marked = "marker" in conn_columns
     columns_of_nodes = (
         kept.tolist(),
         np.where(is_input, 0, columns["bias"]).tolist(),
@@ -56,23 +55,27 @@ def read_tensorneat(nodes: np.ndarray, conns: np.ndarray, meta: Mapping[str, Any
         _replaced(aggregation, is_input, "sum"),
         _replaced(activation, linear, "identity"),
     )
-    columns_of_links = (
-        _keys("source", conns[given, 0]),
-        _keys("target", conns[given, 1]),
-        conns[given, -1].tolist(),
-        *([_keys("historical marker", conns[given, 2])] if marked else []),
-    )
     return Network(
         inputs=inputs,
         outputs=outputs,
         nodes=tuple(Node(*row) for row in zip(*columns_of_nodes, strict=True)),
-        links=tuple(Link(*row) for row in zip(*columns_of_links, strict=True)),
+        links=_links(conns[given], "marker" in conn_columns),
         rule="live",
         steps=_steps(meta),
         output_transform=_transform(meta),
         input_names=_labels(meta, "input_names"),
         output_names=_labels(meta, "output_names"),
     )
+
+
+def _links(conns: np.ndarray, marked: bool) -> tuple[Link, ...]:
+    columns = (
+        _keys("source", conns[:, 0]),
+        _keys("target", conns[:, 1]),
+        conns[:, -1].tolist(),
+        *([_keys("historical marker", conns[:, 2])] if marked else []),
+    )
+    return tuple(Link(*row) for row in zip(*columns, strict=True))
 
 
 def one_of(meta: Mapping[str, Any], field: str, allowed: tuple[str, ...]) -> str:

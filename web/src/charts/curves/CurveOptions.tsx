@@ -3,7 +3,7 @@
 import type { ComponentChildren } from "preact";
 import { setQuery } from "../../store/router";
 import { Check as Toggle, Select } from "../../ui/Select";
-import { AXES, type CurveView, WINDOWS } from "./look";
+import { AXES, type CurveView, WINDOWS } from "./curveView";
 import { text } from "./text";
 import "./curves.css";
 
@@ -12,7 +12,7 @@ const MEANS = WINDOWS.map((size): [string, string] => [
   size === 1 ? text.none : text.window(size),
 ]);
 
-export function CurveOptions({ look: { over, smooth, log } }: { look: CurveView }) {
+export function CurveOptions({ view: { over, smooth, log } }: { view: CurveView }) {
   return (
     <CurveBar log={log}>
       <Select

@@ -4,7 +4,7 @@ import { useEffect, useMemo, useRef } from "preact/hooks";
 import uPlot from "uplot";
 import { useSize } from "../../ui/canvas";
 import { useTheme } from "../../ui/theme";
-import { type CurveView, tableOf } from "./look";
+import { type CurveView, tableOf } from "./curveView";
 import { optionsOf } from "./options";
 import { type Band, type Plot, type Series, newest } from "./plots";
 import { text } from "./text";
@@ -16,14 +16,14 @@ import "./curves.css";
 interface Props {
   plots: Plot[];
   x: readonly number[];
-  look: CurveView;
+  view: CurveView;
 }
 
-export function Curves({ plots, x, look }: Props) {
+export function Curves({ plots, x, view }: Props) {
   return (
     <div class="curves">
       {plots.map((plot) => (
-        <Curve key={plot.title} {...{ plot, x, look }} />
+        <Curve key={plot.title} {...{ plot, x, view }} />
       ))}
     </div>
   );
@@ -35,22 +35,22 @@ interface CurveProps extends Omit<Props, "plots"> {
   plot: Plot;
 }
 
-function Curve({ plot: { title, write, series, bands = NONE }, x, look }: CurveProps) {
+function Curve({ plot: { title, format, series, bands = NONE }, x, view }: CurveProps) {
   const host = useRef<HTMLDivElement>(null);
   const plot = useRef<uPlot | null>(null);
   const { width, height } = useSize(host);
   const theme = useTheme();
   const drawn = width > 0;
-  const { over, log } = look;
+  const { over, log } = view;
   const form = series
     .map(({ name, colour, dots, dash, faint, edge }) => [name, colour, dots, dash, faint, edge].join(" "))
     .join();
-  const table = useMemo(() => tableOf(series, x, log), [x, log, ...series.flatMap(partsOf)]);
-  const changed = [drawn, theme, form, over, log, write];
+  const table = useMemo(() => tableOf(series, x, log), [x, log, ...series.flatMap(columnsOf)]);
+  const changed = [drawn, theme, form, over, log, format];
 
   useEffect(() => {
     if (!drawn) return;
-    const options = optionsOf({ series, bands, write, over, log, ink: inkOf(host.current!) });
+    const options = optionsOf({ series, bands, format, over, log, ink: colourResolver(host.current!) });
     plot.current = new uPlot(options, [[], ...series.map(() => [])], host.current!);
     return () => plot.current?.destroy();
   }, changed);
@@ -64,7 +64,7 @@ function Curve({ plot: { title, write, series, bands = NONE }, x, look }: CurveP
   }, [table, ...changed]);
 
   const lines = series.filter(({ faint, edge }) => !faint && !edge);
-  const now = lines.map(({ name, y }) => [...(lines.length > 1 ? [name] : []), write(newest(y))]);
+  const now = lines.map(({ name, y }) => [...(lines.length > 1 ? [name] : []), format(newest(y))]);
   const label = text.label(title, text.over[over], now.map((each) => each.join(" ")).join(", "));
   return (
     <figure class="curve">
@@ -72,7 +72,7 @@ function Curve({ plot: { title, write, series, bands = NONE }, x, look }: CurveP
         <span>
           <Term name={title} />
         </span>
-        <Keys series={lines} write={write} />
+        <NewestValues series={lines} format={format} />
       </figcaption>
       <div ref={host} class="plot" role="img" aria-label={label} />
       {!series.some(({ y }) => y.some((value) => value !== null && (!log || value > 0))) && (
@@ -83,7 +83,7 @@ function Curve({ plot: { title, write, series, bands = NONE }, x, look }: CurveP
 }
 
 /** Resolve a CSS variable to a colour for a canvas, with an opacity in percent. */
-const inkOf =
+const colourResolver =
   (element: HTMLElement) =>
   (variable: string, opacity = 100) => {
     element.style.color = `color-mix(in srgb, var(${variable}) ${opacity}%, transparent)`;
@@ -93,10 +93,10 @@ const inkOf =
   };
 
 /** The columns that a table of curves depends on. */
-const partsOf = ({ x, y }: Series) => [x, y];
+const columnsOf = ({ x, y }: Series) => [x, y];
 
-/** The newest values; other runs are named elsewhere. */
-function Keys({ series, write }: { series: Series[]; write: Plot["write"] }) {
+/** The newest values of a run; the legend above the plots names other runs. */
+function NewestValues({ series, format }: { series: Series[]; format: Plot["format"] }) {
   if (series.every(({ other }) => other)) return null;
   const several = series.filter(({ other }) => !other).length > 1;
   return (
@@ -109,7 +109,7 @@ function Keys({ series, write }: { series: Series[]; write: Plot["write"] }) {
               {!other && several && `${name} `}
             </>
           )}
-          <b>{write(newest(y))}</b>
+          <b>{format(newest(y))}</b>
         </span>
       ))}
     </span>

@@ -3,7 +3,7 @@
 import uPlot from "uplot";
 import { count, number } from "../../ui/format";
 import { ticksOf } from "../plot/scale";
-import type { Axis } from "./look";
+import type { Axis } from "./curveView";
 import { type Band, type Plot, type Series, valueAt } from "./plots";
 
 /** Steps between ticks of integers. */
@@ -15,13 +15,13 @@ type Ink = (variable: string, opacity?: number) => string;
 interface Drawing {
   series: Series[];
   bands: readonly Band[];
-  write: Plot["write"];
+  format: Plot["format"];
   over: Axis;
   log: boolean;
   ink: Ink;
 }
 
-export function optionsOf({ series, bands, write, over, log, ink }: Drawing): uPlot.Options {
+export function optionsOf({ series, bands, format, over, log, ink }: Drawing): uPlot.Options {
   const axis: uPlot.Axis = {
     stroke: ink("--quiet"),
     grid: { stroke: ink("--line"), width: 1 },
@@ -40,21 +40,21 @@ export function optionsOf({ series, bands, write, over, log, ink }: Drawing): uP
     },
     axes: [
       { ...axis, size: 24, gap: 4, ...named, ...(over !== "seconds" && { incrs: WHOLE }) },
-      { ...axis, size: 52, gap: 6, values: mapped(write), ...(log && LOG_TICKS) },
+      { ...axis, size: 52, gap: 6, values: mapped(format), ...(log && LOG_TICKS) },
     ],
     series: [{}, ...series.map((each) => lookOf(each, ink, series.length === 1 && !log))],
     bands: bands.map(({ high, low, colour }) => ({
       series: [high + 1, low + 1],
       fill: ink(colour, 17),
     })),
-    plugins: [tooltip(series, write, over)],
+    plugins: [tooltip(series, format, over)],
   };
 }
 
 const mapped =
-  (write: (value: number) => string): uPlot.Axis.DynamicValues =>
+  (format: (value: number) => string): uPlot.Axis.DynamicValues =>
   (_, values) =>
-    values.map(write);
+    values.map(format);
 
 /** Round ticks, all labelled; those of uPlot start at the end of the scale. */
 const LOG_TICKS: Pick<uPlot.Axis, "splits" | "filter"> = {
@@ -65,13 +65,13 @@ const LOG_TICKS: Pick<uPlot.Axis, "splits" | "filter"> = {
 function lookOf(series: Series, ink: Ink, alone: boolean): uPlot.Series {
   const { name, colour, dots, dash, faint, edge } = series;
   const stroke = ink(colour);
-  const look: uPlot.Series = { label: name, stroke, width: 1.75 };
-  if (dots) return { ...look, paths: () => null, points: { show: true, size: 7, fill: stroke } };
-  if (edge) return { ...look, stroke: ink(colour, 40), width: 0.75, points: { show: false } };
-  if (faint) return { ...look, width: 1, alpha: 0.35, points: { show: false } };
+  const base: uPlot.Series = { label: name, stroke, width: 1.75 };
+  if (dots) return { ...base, paths: () => null, points: { show: true, size: 7, fill: stroke } };
+  if (edge) return { ...base, stroke: ink(colour, 40), width: 0.75, points: { show: false } };
+  if (faint) return { ...base, width: 1, alpha: 0.35, points: { show: false } };
   const lonely = (plot: uPlot) => plot.data[0].length === 1;
   const fill = alone && { fill: ink(colour, 12) };
-  return { ...look, ...(dash && { dash }), points: { show: lonely }, ...fill };
+  return { ...base, ...(dash && { dash }), points: { show: lonely }, ...fill };
 }
 
 /** From zero, so that curves can be compared. */
@@ -87,7 +87,7 @@ function aroundPositive(_: uPlot, low: number | null, high: number | null): [num
 }
 
 /** A tooltip with the values under the pointer, synchronised between plots. */
-function tooltip(series: Series[], write: Plot["write"], over: Axis): uPlot.Plugin {
+function tooltip(series: Series[], format: Plot["format"], over: Axis): uPlot.Plugin {
   const box = document.createElement("div");
   box.className = "curve-tip";
   return {
@@ -95,11 +95,11 @@ function tooltip(series: Series[], write: Plot["write"], over: Axis): uPlot.Plug
       init: (plot) => void plot.over.append(box),
       setCursor: (plot) => {
         const { idx, left = -1 } = plot.cursor;
-        const values = idx == null ? [] : readingOf(plot, series, write, idx);
+        const values = idx == null ? [] : valuesAt(plot, series, format, idx);
         box.hidden = values.length === 0 || left < 0;
         if (values.length === 0) return;
         const between = values.length > 2 ? "\n" : ", ";
-        box.textContent = `${placeOf(plot.data[0][idx!]!, over)}: ${values.join(between)}`;
+        box.textContent = `${xText(plot.data[0][idx!]!, over)}: ${values.join(between)}`;
         box.classList.toggle("flip", left > plot.over.clientWidth / 2);
         box.style.left = `${left}px`;
       },
@@ -107,18 +107,18 @@ function tooltip(series: Series[], write: Plot["write"], over: Axis): uPlot.Plug
   };
 }
 
-function readingOf(plot: uPlot, series: Series[], write: Plot["write"], idx: number): string[] {
+function valuesAt(plot: uPlot, series: Series[], format: Plot["format"], idx: number): string[] {
   return series.flatMap(({ name, faint, dots, edge }, i) => {
     const column = plot.data[i + 1] as (number | null | undefined)[];
     if (faint || edge || column[idx] === null) return [];
     // Between two points a line has the earlier value.
     const value = dots ? column[idx] : valueAt(plot.data[0] as number[], withNulls(column), idx);
     if (value == null) return [];
-    return [series.length > 1 ? `${name} ${write(value)}` : write(value)];
+    return [series.length > 1 ? `${name} ${format(value)}` : format(value)];
   });
 }
 
 const withNulls = (column: (number | null | undefined)[]) => column.map((value) => value ?? null);
 
-const placeOf = (at: number, over: Axis) =>
+const xText = (at: number, over: Axis) =>
   over === "seconds" ? `${number(at)} s` : over === "evaluations" ? count(at) : String(at);

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Curves } from "../../store/curves";
-import { overlayPlots, tableOf } from "./look";
+import { overlayPlots, tableOf } from "./curveView";
 import { type Plot, scoresOf, valueAt } from "./plots";
 
 describe("curves over one axis", () => {
@@ -15,8 +15,8 @@ describe("curves over one axis", () => {
     const runs = [small, large].map((curves, i) => {
       return { name: `run ${i}`, colour: `--series-${i}`, ...(i === 1 && { dash: [7, 4] }), curves };
     });
-    const look = { over: "evaluations", log: false, smooth: 1 } as const;
-    const plots = overlayPlots(scoresOf, runs, look);
+    const view = { over: "evaluations", log: false, smooth: 1 } as const;
+    const plots = overlayPlots(scoresOf, runs, view);
     expect(plots.map(({ title }) => title)).toEqual(["QD score", "Coverage", "Best fitness"]);
     const [{ series }] = plots as [Plot];
     expect(series.map(({ name, colour, dash }) => [name, colour, dash])).toEqual([
@@ -28,7 +28,7 @@ describe("curves over one axis", () => {
       [1, 2, 3, undefined],
       [undefined, 10, undefined, undefined],
     ]);
-    expect(overlayPlots(scoresOf, [], look).map(({ series }) => series)).toEqual([[], [], []]);
+    expect(overlayPlots(scoresOf, [], view).map(({ series }) => series)).toEqual([[], [], []]);
   });
 
   it("have a value at every point between the first and the last", () => {

@@ -31,7 +31,7 @@ export interface Band {
 
 export interface Plot {
   title: string;
-  write: (value: number | null) => string;
+  format: (value: number | null) => string;
   series: Series[];
   bands?: readonly Band[];
 }
@@ -47,11 +47,11 @@ export function scoresOf(curves: Curves): Plot[] {
   const score = { name: text.asFound, colour: "--curve-1", y: qd_score };
   const share = { name: text.asFound, colour: "--curve-2", y: coverage };
   return [
-    { title: text.qdScore, write: number, series: [score, ...reevaluated(curves, "corrected_qd_score")] },
-    { title: text.coverage, write: percent, series: [share, ...reevaluated(curves, "corrected_coverage")] },
+    { title: text.qdScore, format: number, series: [score, ...reevaluated(curves, "corrected_qd_score")] },
+    { title: text.coverage, format: percent, series: [share, ...reevaluated(curves, "corrected_coverage")] },
     {
       title: text.bestFitness,
-      write: number,
+      format: number,
       series: [{ name: "best", colour: "--curve-3", y: best }],
     },
   ];
@@ -60,24 +60,24 @@ export function scoresOf(curves: Curves): Plot[] {
 /** Work of the search: insertions by emitter, re-evaluations, time, diverged evaluations. */
 export function workOf(curves: Curves): Plot[] {
   const plots: Plot[] = [
-    { title: text.inserted, write: number, series: ofEmitters(curves, ": inserted") },
-    { title: text.improved, write: number, series: ofEmitters(curves, ": improved") },
+    { title: text.inserted, format: number, series: ofEmitters(curves, ": inserted") },
+    { title: text.improved, format: number, series: ofEmitters(curves, ": improved") },
     {
       title: text.hitRate,
-      write: percent,
+      format: percent,
       series: one(curves, "hit_rate", "--series-3", true),
     },
     {
       title: text.deviceSeconds,
-      write: number,
+      format: number,
       series: one(withoutFirst(curves), "device_seconds", "--curve-2", false),
     },
-    { title: text.diverged, write: number, series: divergedSoFar(curves) },
+    { title: text.diverged, format: number, series: divergedSoFar(curves) },
   ];
   return plots.filter(({ series }) => series.length > 0);
 }
 
-/** Descriptions of the reasons of the engine for divergence. */
+/** Descriptions of the engine's reasons for divergence. */
 export const REASONS: Record<string, string> = {
   "non-finite": text.nonFinite,
   supersonic: text.supersonic,

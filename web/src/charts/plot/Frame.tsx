@@ -2,7 +2,8 @@
 
 import { Term } from "../../ui/Term";
 import type { Axis } from "./Plot";
-import { place, ticksOf } from "./scale";
+import { positionOf, ticksOf } from "./scale";
+import "./plot.css";
 
 export interface Room {
   left: number;
@@ -26,28 +27,28 @@ interface Props {
 }
 
 /** Pixels per label along each axis. */
-const [WIDE, HIGH] = [52, 44];
+const [X_SPACING, Y_SPACING] = [52, 44];
 
 export function Frame({ x, y, room, upper, shaded }: Props) {
   const { left, right, top, bottom } = room;
-  const across = (value: number) => left + place(x.scale, value) * (right - left);
-  const up = (value: number) => bottom - place(y.scale, value) * (bottom - top);
+  const across = (value: number) => left + positionOf(x.scale, value) * (right - left);
+  const up = (value: number) => bottom - positionOf(y.scale, value) * (bottom - top);
   return (
     <g class="xy-frame">
       <rect x={left} y={top} width={right - left} height={bottom - top} class={shaded ? "shaded" : ""} />
-      {ticksOf(y.scale, (bottom - top) / HIGH).map((value) => (
+      {ticksOf(y.scale, (bottom - top) / Y_SPACING).map((value) => (
         <g key={value}>
           <path d={`M${left} ${up(value)}H${right}`} />
           <text x={left - 8} y={up(value) + 4} class="end">
-            {y.write(value)}
+            {y.format(value)}
           </text>
         </g>
       ))}
-      {ticksOf(x.scale, (right - left) / WIDE).map((value) => (
+      {ticksOf(x.scale, (right - left) / X_SPACING).map((value) => (
         <g key={value}>
           <path d={`M${across(value)} ${top}V${bottom}`} />
           <text x={across(value)} y={bottom + 18}>
-            {x.write(value)}
+            {x.format(value)}
           </text>
         </g>
       ))}
@@ -83,7 +84,7 @@ type UpperProps = Pick<Upper, "ticks"> & { across: (value: number) => number; ro
 function UpperTicks({ ticks, across, room }: UpperProps) {
   return (
     <g>
-      {apart(ticks, across).map(({ at, text }) => (
+      {uncrowded(ticks, across).map(({ at, text }) => (
         <g key={at}>
           <path class="base" d={`M${across(at)} ${room.top}v-4`} />
           <text x={across(at)} y={room.top - 9}>
@@ -96,9 +97,9 @@ function UpperTicks({ ticks, across, room }: UpperProps) {
 }
 
 /** The ticks with enough room, from the last one down. */
-function apart(ticks: Upper["ticks"], across: (value: number) => number): Upper["ticks"] {
+function uncrowded(ticks: Upper["ticks"], across: (value: number) => number): Upper["ticks"] {
   return ticks.reduceRight<Upper["ticks"]>((kept, tick) => {
-    const crowded = kept[0] && across(kept[0].at) - across(tick.at) < WIDE;
+    const crowded = kept[0] && across(kept[0].at) - across(tick.at) < X_SPACING;
     return crowded ? kept : [tick, ...kept];
   }, []);
 }

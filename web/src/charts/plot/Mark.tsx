@@ -7,21 +7,21 @@ interface MarkProps {
   point: Point;
   line: Line;
   spot: [number, number];
-  look: string;
+  state: string;
   /** True if the tooltip is to the left. */
   flip: boolean;
-  onNear: (point: Point | null) => void;
+  onFocusPoint: (point: Point | null) => void;
 }
 
-export function Mark({ point, line, spot, look, flip, onNear }: MarkProps) {
-  const [name, ...figures] = point.says;
+export function Mark({ point, line, spot, state, flip, onFocusPoint }: MarkProps) {
+  const [name, ...figures] = point.tooltip;
   const kind = point.y === null ? "cross" : point.hollow ? "hollow" : "";
   const common = {
-    class: `mark ${kind} ${look}`,
+    class: `mark ${kind} ${state}`,
     style: { left: `${spot[0]}px`, top: `${spot[1]}px`, "--colour": `var(${line.colour})` },
     "aria-label": [name, ...figures].join(", "),
-    onFocus: () => onNear(point),
-    onBlur: () => onNear(null),
+    onFocus: () => onFocusPoint(point),
+    onBlur: () => onFocusPoint(null),
   };
   const tip = (
     <span class={`tip ${flip ? "flip" : ""}`} aria-hidden="true">

@@ -4,7 +4,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { useSize } from "../../ui/canvas";
 import { AxisTitles, Frame, type Room, type Upper } from "./Frame";
 import { Mark } from "./Mark";
-import { type Scale, place } from "./scale";
+import { type Scale, positionOf } from "./scale";
 import "../lineStyle.css";
 import "./plot.css";
 
@@ -15,7 +15,7 @@ export interface Point {
   hollow?: boolean;
   href?: string;
   /** Tooltip: a name, then figures. */
-  says: [name: string, ...figures: string[]];
+  tooltip: [name: string, ...figures: string[]];
 }
 
 export interface Line {
@@ -31,7 +31,7 @@ export interface Line {
 export interface Axis {
   title: string;
   scale: Scale;
-  write: (value: number) => string;
+  format: (value: number) => string;
 }
 
 interface Props {
@@ -42,26 +42,26 @@ interface Props {
   upper?: Upper | null;
   shaded?: boolean;
   /** Called with the mark under the pointer or with the focus. */
-  onNear?: (point: Point | null) => void;
+  onFocusPoint?: (point: Point | null) => void;
 }
 
-export function Plot({ title, x, y, lines, upper = null, shaded = false, onNear }: Props) {
+export function Plot({ title, x, y, lines, upper = null, shaded = false, onFocusPoint }: Props) {
   const host = useRef<HTMLDivElement>(null);
   const { width, height } = useSize(host);
-  const [lit, setLit] = useState<string | null>(null);
-  const [near, setNear] = useState<Point | null>(null);
-  useEffect(() => onNear?.(near), [near]);
+  const [hovered, setHovered] = useState<string | null>(null);
+  const [focused, setFocused] = useState<Point | null>(null);
+  useEffect(() => onFocusPoint?.(focused), [focused]);
   const room: Room = { left: 78, right: width - 14, top: upper ? 48 : 14, bottom: height - 48 };
   const drawn = lines.map((line, k) => ({ line, spots: line.points.map((p) => spotOf(p, k, x, y, room)) }));
-  const highlighted = lit ?? lines.find(({ points }) => points.includes(near!))?.name ?? null;
+  const highlighted = hovered ?? lines.find(({ points }) => points.includes(focused!))?.name ?? null;
   const faint = ({ name }: Line) => (highlighted !== null && highlighted !== name ? "faint" : "");
   const follow = (event: PointerEvent) => {
     const box = host.current!.getBoundingClientRect();
-    setNear(nearest(drawn, event.clientX - box.left, event.clientY - box.top));
+    setFocused(nearest(drawn, event.clientX - box.left, event.clientY - box.top));
   };
   return (
     <figure class="xy">
-      {lines.length > 1 && <Legend lines={lines} of={x.title} onLight={setLit} />}
+      {lines.length > 1 && <Legend lines={lines} of={x.title} onHover={setHovered} />}
       <div
         ref={host}
         class="xy-plot"
@@ -69,7 +69,7 @@ export function Plot({ title, x, y, lines, upper = null, shaded = false, onNear 
         aria-label={title}
         onPointerMove={follow}
         onPointerDown={follow}
-        onPointerLeave={() => setNear(null)}
+        onPointerLeave={() => setFocused(null)}
       >
         {width > 0 && (
           <svg width={width} height={height} aria-hidden="true">
@@ -85,9 +85,9 @@ export function Plot({ title, x, y, lines, upper = null, shaded = false, onNear 
             <Marks
               key={each.line.name}
               {...each}
-              {...{ near, width }}
+              {...{ focused, width }}
               faint={faint(each.line)}
-              onNear={setNear}
+              onFocusPoint={setFocused}
             />
           ))}
       </div>
@@ -99,8 +99,8 @@ export function Plot({ title, x, y, lines, upper = null, shaded = false, onNear 
 function spotOf(point: Point, k: number, x: Axis, y: Axis, room: Room): [number, number] {
   const { left, right, top, bottom } = room;
   return [
-    left + place(x.scale, point.x) * (right - left),
-    point.y === null ? top + 10 + 12 * k : bottom - place(y.scale, point.y) * (bottom - top),
+    left + positionOf(x.scale, point.x) * (right - left),
+    point.y === null ? top + 10 + 12 * k : bottom - positionOf(y.scale, point.y) * (bottom - top),
   ];
 }
 
@@ -115,18 +115,18 @@ function LinePath({ line, spots, faint }: Drawn & { faint: string }) {
 }
 
 interface MarksProps extends Drawn {
-  near: Point | null;
+  focused: Point | null;
   width: number;
   faint: string;
-  onNear: (point: Point | null) => void;
+  onFocusPoint: (point: Point | null) => void;
 }
 
-function Marks({ line, spots, near, width, faint, onNear }: MarksProps) {
+function Marks({ line, spots, focused, width, faint, onFocusPoint }: MarksProps) {
   return line.points.map((point, i) => (
     <Mark
       key={point.x}
-      {...{ point, line, spot: spots[i]!, flip: spots[i]![0] > width / 2, onNear }}
-      look={point === near ? "near" : faint}
+      {...{ point, line, spot: spots[i]!, flip: spots[i]![0] > width / 2, onFocusPoint }}
+      state={point === focused ? "near" : faint}
     />
   ));
 }
@@ -137,11 +137,11 @@ interface Drawn {
 }
 
 /** Maximal distance of the pointer from a point, in pixels. */
-const REACH = 22;
+const MAX_DISTANCE = 22;
 
 /** The point nearest to the pointer. */
 function nearest(drawn: Drawn[], x: number, y: number): Point | null {
-  let [found, least]: [Point | null, number] = [null, REACH];
+  let [found, least]: [Point | null, number] = [null, MAX_DISTANCE];
   for (const { line, spots } of drawn) {
     spots.forEach(([left, top], i) => {
       const distance = Math.hypot(left - x, top - y);
@@ -158,14 +158,14 @@ function pathOf(spots: [number, number][]): string {
 interface LegendProps {
   lines: Line[];
   of: string;
-  onLight: (name: string | null) => void;
+  onHover: (name: string | null) => void;
 }
 
-function Legend({ lines, of, onLight }: LegendProps) {
+function Legend({ lines, of, onHover }: LegendProps) {
   return (
     <figcaption class="row xy-legend">
       {lines.map((line) => (
-        <span key={line.name} onPointerEnter={() => onLight(line.name)} onPointerLeave={() => onLight(null)}>
+        <span key={line.name} onPointerEnter={() => onHover(line.name)} onPointerLeave={() => onHover(null)}>
           <svg viewBox="0 0 26 10" aria-hidden="true">
             <path
               d="M1 5h24"

@@ -1,11 +1,11 @@
 import { describe, expect, it } from "vitest";
-import { fromZero, logAround, place, ticksOf, valueAt } from "./scale";
+import { fromZero, logAround, positionOf, ticksOf, valueAt } from "./scale";
 
 describe("an axis", () => {
   it("has decades of equal length on a log scale", () => {
     const scale = { log: true, low: 0.01, high: 100 };
-    expect([0.01, 0.1, 1, 100].map((value) => place(scale, value))).toEqual([0, 0.25, 0.5, 1]);
-    expect(place({ log: false, low: -1, high: 3 }, 0)).toBe(0.25);
+    expect([0.01, 0.1, 1, 100].map((value) => positionOf(scale, value))).toEqual([0, 0.25, 0.5, 1]);
+    expect(positionOf({ log: false, low: -1, high: 3 }, 0)).toBe(0.25);
   });
 
   it("has room for all values and starts at zero unless some are negative", () => {
@@ -31,20 +31,22 @@ describe("an axis", () => {
   it("has whole decades as ticks of a wide logarithmic scale", () => {
     const scale = { log: true, low: 1e-4, high: 1e2 };
     const made = ticksOf(scale, 7);
-    expect(made.map((value) => Number((6 * place(scale, value)).toFixed(9)))).toEqual([0, 1, 2, 3, 4, 5, 6]);
+    expect(made.map((value) => Number((6 * positionOf(scale, value)).toFixed(9)))).toEqual([
+      0, 1, 2, 3, 4, 5, 6,
+    ]);
     made.forEach((value, k) => expect(value).toBeCloseTo(10 ** (k - 4), 12));
   });
 
   it("has round ticks on a linear scale, no more than asked for", () => {
     const scale = { log: false, low: 0, high: 0.15 };
     expect(ticksOf(scale, 6)).toEqual([0, 0.05, 0.1, 0.15]);
-    expect(place(scale, 0.15)).toBeCloseTo(1, 12);
+    expect(positionOf(scale, 0.15)).toBeCloseTo(1, 12);
   });
 
   it("has an inverse", () => {
     for (const log of [true, false]) {
       const scale = { log, low: 2, high: 8 };
-      expect(place(scale, valueAt(scale, 0.3))).toBeCloseTo(0.3, 12);
+      expect(positionOf(scale, valueAt(scale, 0.3))).toBeCloseTo(0.3, 12);
     }
     expect(ticksOf({ log: true, low: 2, high: 8 }, 6)).toEqual([2, 5]);
   });

@@ -7,7 +7,7 @@ export interface Scale {
 }
 
 /** The position of a value, from 0 to 1 along the axis. */
-export function place({ log, low, high }: Scale, value: number): number {
+export function positionOf({ log, low, high }: Scale, value: number): number {
   if (!log) return (value - low) / (high - low);
   return (Math.log10(value) - Math.log10(low)) / (Math.log10(high) - Math.log10(low));
 }

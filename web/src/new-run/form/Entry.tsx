@@ -67,12 +67,12 @@ export function EntryName({ path, title, state, target }: NameProps) {
 }
 
 /** The longest value that the reset button names. */
-const LONGEST = 12;
+const MAX_LENGTH = 12;
 
 function Reset({ path, state }: { path: string; state: FormState }) {
   const value = valueAt(state.original, path);
   const shown = typeof value === "number" ? number(value, 6) : String(value ?? text.auto);
-  const short = typeof value !== "object" && shown.length <= LONGEST;
+  const short = typeof value !== "object" && shown.length <= MAX_LENGTH;
   return (
     <button
       type="button"

@@ -5,7 +5,7 @@ import type { Json } from "../../api/types";
 import { Term } from "../../ui/Term";
 import { Options } from "../../ui/Select";
 import { words } from "../../ui/format";
-import { countWithin, isOff, isThere, partOf, valueAt, withChoice } from "./document";
+import { countWithin, isOff, isApplicable, partOf, valueAt, withChoice } from "./document";
 import type { Field, Rows, Section, Union } from "./fields";
 import { Entry, EntryName, type FormState, Messages } from "./Entry";
 import { text } from "./text";
@@ -68,10 +68,10 @@ function Part({ part, state, kind, open = true, children }: PartProps) {
           <Term name={part.title} />
         </legend>
       )}
-      {switchable && <Switch {...{ part, off, state }} />}
+      {switchable && <PartSwitch {...{ part, off, state }} />}
       {part.help && <p class="help">{part.help}</p>}
       <div hidden={!open} id={kind === "inside" ? `inside-${part.path || "general"}` : undefined}>
-        {part.kind === "union" && <Kinds union={part} state={state} />}
+        {part.kind === "union" && <KindSelect union={part} state={state} />}
         <Messages messages={state.messages.get(part.path)} />
         {section && !off && <Fields section={section} state={state} />}
         {children}
@@ -81,7 +81,7 @@ function Part({ part, state, kind, open = true, children }: PartProps) {
 }
 
 /** A switch for a section; its first values are those of the preset, or defaults. */
-function Switch({ part, off, state }: { part: Section; off: boolean; state: FormState }) {
+function PartSwitch({ part, off, state }: { part: Section; off: boolean; state: FormState }) {
   const fresh = valueAt(state.original, part.path) ?? part.fresh!;
   const id = `field-${part.path}`;
   return (
@@ -98,8 +98,8 @@ function Switch({ part, off, state }: { part: Section; off: boolean; state: Form
   );
 }
 
-/** The choice between several parts; a newly chosen one has its defaults. */
-function Kinds({ union, state }: { union: Union; state: FormState }) {
+/** The choice between several parts; a newly selected one has its defaults. */
+function KindSelect({ union, state }: { union: Union; state: FormState }) {
   const path = `${union.path}.${union.tag}`;
   const value = valueAt(state.document, path);
   const original = valueAt(state.original, union.path);
@@ -128,7 +128,7 @@ function Kinds({ union, state }: { union: Union; state: FormState }) {
 }
 
 function Fields({ section, state }: { section: Section; state: FormState }) {
-  const there = section.fields.filter((field) => isThere(field, state.document));
+  const there = section.fields.filter((field) => isApplicable(field, state.document));
   return there.map((field) => {
     if (field.kind === "constant") return null;
     if (field.kind === "rows") return <RowList key={field.path} rows={field} state={state} />;

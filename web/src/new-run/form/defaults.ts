@@ -9,7 +9,7 @@ export function completed(schema: Schema, spec: Spec): Spec {
   return filled(schema, schema, latest(spec)) as Spec;
 }
 
-/** Without the versions of plug-ins: a new run takes the current ones. */
+/** Drop the versions of plug-ins, because a new run takes the current ones. */
 function latest(value: Json): Json {
   if (Array.isArray(value)) return value.map(latest);
   if (!isObject(value)) return value;
@@ -41,10 +41,10 @@ function filledProperties(schema: Schema, root: Schema, value: Spec): Spec {
 function filledUnion(schema: Schema, root: Schema, value: Spec): Json {
   const parts = (schema.oneOf as Schema[]).map((part) => resolve(part, root));
   const tag = tagOf(parts);
-  const usual = isObject(schema.default) ? schema.default[tag] : undefined;
-  const named = value[tag] ?? usual ?? namesOf(parts[0]!, tag)[0]!;
-  const chosen = parts.find((part) => namesOf(part, tag).includes(named));
-  return chosen ? filledProperties(chosen, root, { [tag]: named, ...value }) : value;
+  const defaultTag = isObject(schema.default) ? schema.default[tag] : undefined;
+  const named = value[tag] ?? defaultTag ?? namesOf(parts[0]!, tag)[0]!;
+  const selected = parts.find((part) => namesOf(part, tag).includes(named));
+  return selected ? filledProperties(selected, root, { [tag]: named, ...value }) : value;
 }
 
 function namesOf(part: Schema, tag: string): Json[] {

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Spec } from "../../api/types";
-import { complaints, messagesByPath, typed, typedJson, typedList, valueAt, withValue } from "./document";
+import { schemaErrors, messagesByPath, typed, typedJson, typedList, valueAt, withValue } from "./document";
 import { FORM } from "./schema.fixture";
 
 describe("a spec under a form", () => {
@@ -67,8 +67,8 @@ describe("a spec under a form", () => {
       viscosities: [1],
       axes: [{ bins: 4 }],
     };
-    expect(complaints(FORM, whole)).toEqual([]);
-    expect(complaints(FORM, withValue(whole, path, value))).toEqual([{ field, message }]);
+    expect(schemaErrors(FORM, whole)).toEqual([]);
+    expect(schemaErrors(FORM, withValue(whole, path, value))).toEqual([{ field, message }]);
   });
 
   it("shows the server's errors at the field they name, however the place is written", () => {

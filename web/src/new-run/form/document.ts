@@ -35,7 +35,7 @@ export function typed(text: string): Json {
 }
 
 /** The error of a number by the schema alone; null for a valid one. */
-export function complaint(field: NumberField, value: Json): string | null {
+export function numberError(field: NumberField, value: Json): string | null {
   if (value === null) return field.nullable ? null : text.needsNumber;
   if (typeof value !== "number") return text.notANumber(String(value));
   if (field.whole && !Number.isInteger(value)) return text.notWhole(value);
@@ -50,11 +50,11 @@ export function complaint(field: NumberField, value: Json): string | null {
 }
 
 /**
- * Messages by the path of what shows them: the field that is named, else what is around it.
+ * Messages by the path of the element that shows them: the named field, or else the part around it.
  * `descriptors[0].low` and `descriptors.0.low` are the same place.
  */
 export function messagesByPath(errors: FieldError[], form: Section, document: Json): Map<string, string[]> {
-  const shown = new Set(placesOf(form, document));
+  const shown = new Set(messagePaths(form, document));
   const messages = new Map<string, string[]>();
   for (const { field, message } of errors) {
     let path = field.replace(/\[(\d+)\]/g, ".$1").replace(/^\./, "");
@@ -83,7 +83,7 @@ export function typedJson(text: string): Json {
 }
 
 /** Errors of a document by the schema alone. */
-export function complaints(form: Section, document: Json): FieldError[] {
+export function schemaErrors(form: Section, document: Json): FieldError[] {
   return leavesOf(form, document).flatMap((field) => {
     const message = wrongWith(field, valueAt(document, field.path));
     return message ? [{ field: field.path, message }] : [];
@@ -91,7 +91,7 @@ export function complaints(form: Section, document: Json): FieldError[] {
 }
 
 function wrongWith(field: Field, value: Json): string | null {
-  if (field.kind === "number") return complaint(field, value);
+  if (field.kind === "number") return numberError(field, value);
   if (field.kind === "list") return listComplaint(field, value);
   if (field.kind === "several") return severalComplaint(field, value);
   if (field.kind === "nested" && !Array.isArray(value)) return text.needsNested;
@@ -100,15 +100,15 @@ function wrongWith(field: Field, value: Json): string | null {
 
 function listComplaint({ item, least, most }: List, value: Json): string | null {
   const items = Array.isArray(value) ? value : [];
-  const wrong = items.map((one) => complaint(item, one)).find((message) => message !== null);
+  const wrong = items.map((one) => numberError(item, one)).find((message) => message !== null);
   if (wrong) return wrong;
   if (items.length < least) return text.tooFew(least);
   return items.length > most ? text.tooManyNumbers(most) : null;
 }
 
 function severalComplaint({ least }: Several, value: Json): string | null {
-  const chosen = Array.isArray(value) ? value.length : 0;
-  return chosen < least ? text.selectMore(least) : null;
+  const selected = Array.isArray(value) ? value.length : 0;
+  return selected < least ? text.selectMore(least) : null;
 }
 
 export function partOf(union: Union, document: Json): Section | null {
@@ -133,7 +133,7 @@ function withPlugin(document: Json, { path, settings }: Section, field: Field, v
 }
 
 /** True if a field belongs to the choices of a document. */
-export function isThere({ when }: Field, document: Json): boolean {
+export function isApplicable({ when }: Field, document: Json): boolean {
   return when === undefined || valueAt(document, when.path) === when.is;
 }
 
@@ -142,8 +142,8 @@ export function isOff(section: Section, document: Json): boolean {
 }
 
 /** Fields within a field, as far as the document has them. */
-function insideOf(field: Field, document: Json): Field[] {
-  return within(field, document).filter((each) => isThere(each, document));
+function applicableFields(field: Field, document: Json): Field[] {
+  return within(field, document).filter((each) => isApplicable(each, document));
 }
 
 function within(field: Field, document: Json): Field[] {
@@ -158,13 +158,13 @@ const COMPOUND = ["union", "section", "rows"];
 
 export function leavesOf(field: Field, document: Json): Field[] {
   if (!COMPOUND.includes(field.kind)) return [field];
-  return insideOf(field, document).flatMap((each) => leavesOf(each, document));
+  return applicableFields(field, document).flatMap((each) => leavesOf(each, document));
 }
 
 /** Every path at which a form can show a message; that of the whole form is empty. */
-export function placesOf(field: Field, document: Json): string[] {
+export function messagePaths(field: Field, document: Json): string[] {
   if (field.kind === "constant") return [];
-  const inside = insideOf(field, document).flatMap((each) => placesOf(each, document));
+  const inside = applicableFields(field, document).flatMap((each) => messagePaths(each, document));
   return [field.path, ...inside];
 }
 

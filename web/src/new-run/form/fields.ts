@@ -26,15 +26,15 @@ export interface Section extends Common {
   fields: Field[];
   /** Names of fields whose missing values follow from other fields. */
   following: string[];
-  /** The settings of each plug-in of a choice when it is chosen. */
+  /** The settings of each plug-in of a choice when it is selected. */
   settings?: { path: string; fresh: Record<string, Json> };
-  /** Its first value when it is switched on; undefined if it cannot be switched off. */
+  /** The first value after switching it on; undefined if it cannot be switched off. */
   fresh?: Json;
   /** True if its values are seldom changed. */
   seldom?: boolean;
 }
 
-/** One of several parts; the value at `tag` names it. */
+/** A choice between several parts; the value at `tag` names the selected one. */
 export interface Union extends Common {
   kind: "union";
   tag: string;

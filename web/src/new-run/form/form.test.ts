@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Spec } from "../../api/types";
-import { complaints, messagesByPath, partOf, valueAt, withChoice } from "./document";
+import { schemaErrors, messagesByPath, partOf, valueAt, withChoice } from "./document";
 import type { Field, Rows, Section, Union } from "./fields";
 import { FORM } from "./schema.fixture";
 
@@ -32,7 +32,7 @@ describe("a form", () => {
     expect(part(WORLD, "world.limit")).toMatchObject({ kind: "number", nullable: true, unit: "m" });
   });
 
-  it("keeps the type of what can be chosen", () => {
+  it("keeps the type of what can be selected", () => {
     expect(part(WORLD, "world.factor")).toMatchObject({ kind: "choice", options: [1, 2] });
     expect(part(WORLD, "world.open")).toMatchObject({ kind: "flag" });
     expect(part(FORM, "experiment")).toMatchObject({ kind: "constant" });
@@ -77,8 +77,8 @@ describe("a form", () => {
     expect(row.following).toEqual(["low", "scale"]);
     expect([bins, low, scale]).toMatchObject([{ nullable: false }, { nullable: true }, { nullable: true }]);
     const spec = { axes: [{ name: "a", bins: 4, low: -1, scale: "linear" }] };
-    const chosen = withChoice(spec, row, name, "b");
-    expect(chosen).toEqual({ axes: [{ name: "b", bins: 4, low: null, scale: null }] });
+    const selected = withChoice(spec, row, name, "b");
+    expect(selected).toEqual({ axes: [{ name: "b", bins: 4, low: null, scale: null }] });
     expect(valueAt(withChoice(spec, row, scale, "log10"), "axes.0.low")).toBe(-1);
     expect(valueAt(withChoice(spec, row, bins, 9), "axes.0.low")).toBe(-1);
   });
@@ -88,11 +88,11 @@ describe("a form", () => {
     expect(rows.fresh).toEqual({ operator: "any" });
     const row = rows.row(2) as Union;
     expect([row.path, row.tag]).toEqual(["emitters.2", "operator"]);
-    const chosen = row.parts.get("line")!;
-    expect(chosen.fresh).toEqual({ operator: "line", step: 0.5 });
-    expect(chosen.fields.map(({ path }) => path)).toEqual(["emitters.2.step"]);
+    const selected = row.parts.get("line")!;
+    expect(selected.fresh).toEqual({ operator: "line", step: 0.5 });
+    expect(selected.fields.map(({ path }) => path)).toEqual(["emitters.2.step"]);
     const spec: Spec = { emitters: [{ operator: "any" }, { operator: "line", step: 0 }] };
-    const wrong = complaints(FORM, spec).filter(({ field }) => field.startsWith("emitters"));
+    const wrong = schemaErrors(FORM, spec).filter(({ field }) => field.startsWith("emitters"));
     expect(wrong).toEqual([{ field: "emitters.1.step", message: "Needs more than 0." }]);
     const error = { field: "emitters.1.step", message: "no" };
     expect([...messagesByPath([error], FORM, spec).keys()]).toEqual(["emitters.1.step"]);

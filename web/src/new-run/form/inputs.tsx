@@ -52,16 +52,16 @@ function ChoiceInput({ field, value, unit: _, onChange, ...attributes }: Props<C
 
 /** A check box for each option; the selected ones stay in the order of the schema. */
 function SeveralInput({ field, value, onChange, id, "aria-invalid": invalid }: Props<Several>) {
-  const chosen = Array.isArray(value) ? value : [];
+  const selected = Array.isArray(value) ? value : [];
   const turn = (option: Json, on: boolean) =>
-    onChange(field.options.filter((each) => (each === option ? on : chosen.includes(each))));
+    onChange(field.options.filter((each) => (each === option ? on : selected.includes(each))));
   return (
     <div class="several row" role="group" aria-labelledby={`${id}-label`}>
       {field.options.map((option) => (
         <label key={String(option)}>
           <input
             type="checkbox"
-            checked={chosen.includes(option)}
+            checked={selected.includes(option)}
             aria-invalid={invalid}
             onChange={(event) => turn(option, event.currentTarget.checked)}
           />

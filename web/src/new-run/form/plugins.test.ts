@@ -3,7 +3,7 @@
 import { describe, expect, it } from "vitest";
 import type { Schema, Spec } from "../../api/types";
 import { completed } from "./defaults";
-import { changedPaths, complaints, valueAt, withChoice } from "./document";
+import { changedPaths, schemaErrors, valueAt, withChoice } from "./document";
 import { type Choice, type Section, formOf } from "./fields";
 
 const settings: Schema = {
@@ -53,20 +53,20 @@ describe("a choice with plug-ins", () => {
   });
 
   it("brings its settings with it, and takes them away again", () => {
-    const chosen = withChoice(SPEC, task, fitness, "mine.straight");
-    expect(valueAt(chosen, "task.plugin.settings.strictness")).toBe(1);
-    const left = withChoice(chosen, task, fitness, "displacement");
+    const selected = withChoice(SPEC, task, fitness, "mine.straight");
+    expect(valueAt(selected, "task.plugin.settings.strictness")).toBe(1);
+    const left = withChoice(selected, task, fitness, "displacement");
     expect(valueAt(left, "task.plugin")).toBeNull();
-    expect(changedPaths(chosen, SPEC)).toEqual(["task.fitness", "task.plugin"]);
+    expect(changedPaths(selected, SPEC)).toEqual(["task.fitness", "task.plugin"]);
     expect(changedPaths(left, SPEC)).toEqual([]);
   });
 
-  it("has its settings checked where it is chosen, and only there", () => {
+  it("has its settings checked where it is selected, and only there", () => {
     const wrong = { fitness: "mine.straight", plugin: { settings: { strictness: 11 } } };
-    expect(complaints(form, { ...SPEC, task: wrong })).toEqual([
+    expect(schemaErrors(form, { ...SPEC, task: wrong })).toEqual([
       { field: "task.plugin.settings.strictness", message: "Needs at most 10." },
     ]);
-    expect(complaints(form, { ...SPEC, task: { ...wrong, fitness: "displacement" } })).toEqual([]);
+    expect(schemaErrors(form, { ...SPEC, task: { ...wrong, fitness: "displacement" } })).toEqual([]);
   });
 });
 

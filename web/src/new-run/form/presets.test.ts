@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { Json } from "../../api/types";
 import {
-  complaints,
+  schemaErrors,
   isOff,
   messagesByPath,
   partOf,
@@ -57,7 +57,7 @@ describe("the form of a preset", () => {
   it.each(PRESETS)("of %s holds every value and changes none", (_, { schema }, { spec }) => {
     const form = formOf(schema);
     expect(rebuilt(form, spec, {})).toEqual(spec);
-    expect(complaints(form, spec)).toEqual([]);
+    expect(schemaErrors(form, spec)).toEqual([]);
   });
 
   it.each(PRESETS)("of %s shows an error at each of its fields", (_, { schema }, { spec }) => {

@@ -10,7 +10,7 @@ import { formsOf, reynoldsAxis, sweepAxes, sweepLines } from "./gaits";
 import { Card } from "../../ui/Page";
 import { Segments } from "../../ui/Select";
 import { ReplayLoop } from "../../replay/Loop";
-import { RecordingStatus, useReplays } from "../../replay/recordings";
+import { ReplayStatus, useReplays } from "../../replay/replays";
 import { useDebounced } from "../../store/timing";
 import { type ResultsProps, TableCard, hrefOf, useTable } from "../results/resultsPage";
 import { text } from "./text";
@@ -33,7 +33,7 @@ export function GaitsRun({ run, query }: ResultsProps) {
         id="displacement"
         kind="plot-card"
         title={text.title}
-        actions={forms.length > 1 && <Forms forms={forms} chosen={asked} />}
+        actions={forms.length > 1 && <Forms forms={forms} selected={asked} />}
       >
         {missing ? (
           <p class="quiet waiting">{missing}</p>
@@ -41,7 +41,7 @@ export function GaitsRun({ run, query }: ResultsProps) {
           <div class={shown.length > 1 ? "" : "with-replay"}>
             <div class={shown.length > 1 ? "beside" : ""}>
               {shown.map((form) => (
-                <Sweep key={form} {...{ run, query, form }} all={results!.rows} onNear={setNear} />
+                <Sweep key={form} {...{ run, query, form }} all={results!.rows} onFocusPoint={setNear} />
               ))}
             </div>
             <MarkReplay point={settled} />
@@ -54,14 +54,14 @@ export function GaitsRun({ run, query }: ResultsProps) {
   );
 }
 
-function Forms({ forms, chosen }: { forms: string[]; chosen: string }) {
+function Forms({ forms, selected }: { forms: string[]; selected: string }) {
   const choices = forms.map((form): [string, string] => [form, formOf(form).title]);
   return (
     <Segments
       label={text.form}
       choices={[...choices, [REPLAYS, text.sideBySide]]}
-      value={chosen}
-      onChoose={(form) => setQuery({ form: form === forms[0] ? null : form })}
+      value={selected}
+      onSelect={(form) => setQuery({ form: form === forms[0] ? null : form })}
     />
   );
 }
@@ -69,15 +69,15 @@ function Forms({ forms, chosen }: { forms: string[]; chosen: string }) {
 interface SweepProps extends ResultsProps {
   form: string;
   all: ResultRow[];
-  onNear: (point: Point | null) => void;
+  onFocusPoint: (point: Point | null) => void;
 }
 
-function Sweep({ run, form, all, onNear }: SweepProps) {
+function Sweep({ run, form, all, onFocusPoint }: SweepProps) {
   const rows = useMemo(() => all.filter((row) => row.form === form), [all, form]);
   // The marks must stay the same objects while the pointer is on one of them.
   const lines = useMemo(() => sweepLines(run.spec, rows, hrefOf(run)), [run.id, run.spec, rows]);
   const { title, about, free } = formOf(form);
-  // Bodies that push themselves go many times as far, so they do not share an axis with the others.
+  // Forms that are not force-free move bodies many times as far, so they have an axis of their own.
   const peers = all.filter((row) => formOf(String(row.form)).free === free);
   return (
     <div class="sweep">
@@ -90,7 +90,7 @@ function Sweep({ run, form, all, onNear }: SweepProps) {
         lines={lines}
         upper={reynoldsAxis(rows)}
         shaded={!free}
-        onNear={onNear}
+        onFocusPoint={onFocusPoint}
       />
     </div>
   );
@@ -116,7 +116,7 @@ function Key({ rows }: { rows: ResultRow[] }) {
   );
 }
 
-/** A moving pointer passes marks that are not meant. */
+/** Delay before a mark counts as chosen, so that a moving pointer requests no replays. */
 const SETTLE_MS = 120;
 
 /** The last mark under a resting pointer; leaving it keeps its replay. */
@@ -137,10 +137,10 @@ function MarkReplay({ point }: { point: Point | null }) {
 function Playing({ point }: { point: Point }) {
   const rendering = useReplays([shaOf(point.href!)]);
   const replay = rendering.replays?.[0];
-  const [name, ...figures] = point.says;
+  const [name, ...figures] = point.tooltip;
   return (
     <>
-      <RecordingStatus {...rendering} what={text.simulating} />
+      <ReplayStatus {...rendering} what={text.simulating} />
       {replay && <ReplayLoop replay={replay} name={text.swimming(name)} />}
       <p class="small">
         <b>{name}</b>

@@ -18,14 +18,14 @@ describe("a sweep of gaits", () => {
   it("has a line for each swimmer, from the lowest viscosity to the highest", () => {
     expect(worm!.points.map(({ x, y }) => `${x} ${y}`)).toEqual(["0.01 3", "1 0.5"]);
     expect(worm!.points[1]!.href).toBe("/creatures/ab");
-    expect(worm!.points[1]!.says).toEqual(["Worm at ν = 1", "0.5 cells per cycle", "Reynolds number 2"]);
+    expect(worm!.points[1]!.tooltip).toEqual(["Worm at ν = 1", "0.5 cells per cycle", "Reynolds number 2"]);
   });
 
   it("marks what limits or warnings make doubtful, and what did not finish", () => {
     expect(worm!.points.map(({ hollow }) => hollow)).toEqual([true, false]);
-    expect(worm!.points[0]!.says).toContain("limits active in 10 % of node steps");
+    expect(worm!.points[0]!.tooltip).toContain("limits active in 10 % of node steps");
     expect(ray!.points[0]!.y).toBeNull();
-    expect(ray!.points[0]!.says[1]).toBe("Non-finite");
+    expect(ray!.points[0]!.tooltip[1]).toBe("Non-finite");
   });
 
   it("has the worm's Reynolds numbers above its viscosities", () => {

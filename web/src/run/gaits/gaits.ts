@@ -7,7 +7,7 @@ import type { Axis, Line, Point } from "../../charts/plot/Plot";
 import { fromZero, logAround } from "../../charts/plot/scale";
 import { text } from "./text";
 
-/** The order of the paper gives each swimmer the same colour in every run. */
+/** In the order of the paper, so that each swimmer has the same colour in every run. */
 const SWIMMERS = ["worm", "tadpole", "ray", "cilia", "jellyfish"];
 
 type Href = (creature: string) => string;
@@ -22,14 +22,14 @@ export const formsOf = (spec: Spec) => strings(spec.forms);
 /** Common axes of several forms make them comparable. */
 export function sweepAxes(spec: Spec, rows: readonly ResultRow[]): { x: Axis; y: Axis } {
   const ways = rows.filter(finished).map((row) => Number(row.displacement));
-  const write = (value: number) => number(value, 2);
+  const format = (value: number) => number(value, 2);
   return {
     x: {
       title: text.viscosity,
       scale: logAround(numbers(spec.viscosities)),
-      write,
+      format,
     },
-    y: { title: text.displacement, scale: fromZero(ways), write },
+    y: { title: text.displacement, scale: fromZero(ways), format },
   };
 }
 
@@ -70,7 +70,7 @@ function pointOf(row: ResultRow, hrefOf: Href): Point {
     y: way,
     hollow: doubtful(row),
     ...(row.creature && { href: hrefOf(row.creature) }),
-    says: [text.mark(words(String(row.swimmer)), number(Number(row.viscosity))), ...figures],
+    tooltip: [text.mark(words(String(row.swimmer)), number(Number(row.viscosity))), ...figures],
   };
 }
 

@@ -8,11 +8,11 @@ import { StepRange } from "../../replay/Transport";
 import { useClock } from "../../replay/clock";
 import { chainsOf, type Point, positionsAt } from "../../replay/motion";
 import { type Size, prepare } from "../../ui/canvas";
-import { prefersStillness, useTheme } from "../../ui/theme";
+import { prefersReducedMotion, useTheme } from "../../ui/theme";
 import { text } from "./text";
 
 /** Seconds of playback, and of rest at the end. */
-const [LIFE_S, REST_S] = [4, 1.5];
+const [PLAY_SECONDS, PAUSE_SECONDS] = [4, 1.5];
 /** Shares of the simulation that are shown as pictures. */
 const MOMENTS = [0, 0.1, 0.4, 1];
 
@@ -25,12 +25,12 @@ export function FoldPlayer({ replay, target }: { replay: Replay; target: Target 
   const { frames, every, steps } = replay.header;
   const last = frames - 1;
   const theme = useTheme();
-  const [playing, setPlaying] = useState(() => !prefersStillness());
-  const [time, setTime] = useState(() => (prefersStillness() ? last : 0));
+  const [playing, setPlaying] = useState(() => !prefersReducedMotion());
+  const [time, setTime] = useState(() => (prefersReducedMotion() ? last : 0));
   const [shown, setShown] = useState(0.6);
   useClock(playing, (seconds) => {
-    const whole = last * (1 + REST_S / LIFE_S);
-    setTime((now) => (now + (seconds * last) / LIFE_S) % Math.max(1, whole));
+    const whole = last * (1 + PAUSE_SECONDS / PLAY_SECONDS);
+    setTime((now) => (now + (seconds * last) / PLAY_SECONDS) % Math.max(1, whole));
   });
   const fold = useMemo((): Fold => {
     const { picture, ...ink } = INK[theme];
@@ -60,18 +60,18 @@ export function FoldPlayer({ replay, target }: { replay: Replay; target: Target 
           />
         </label>
       </div>
-      <Moments fold={fold} onChoose={(share) => scrub(share * last)} />
+      <Moments fold={fold} onSelect={(share) => scrub(share * last)} />
     </div>
   );
 }
 
-function Moments({ fold, onChoose }: { fold: Fold; onChoose: (share: number) => void }) {
+function Moments({ fold, onSelect }: { fold: Fold; onSelect: (share: number) => void }) {
   const { frames, steps } = fold.replay.header;
   return (
     <ol class="fold-moments" aria-label={text.moments}>
       {MOMENTS.map((share) => (
         <li key={share}>
-          <button class="plain" onClick={() => onChoose(share)}>
+          <button class="plain" onClick={() => onSelect(share)}>
             <Still
               fold={fold}
               time={share * (frames - 1)}
@@ -120,7 +120,7 @@ export function pictureOf({ width, height, pixels }: Target, rgb: readonly numbe
 }
 
 /** Place of a picture on the lattice: left, top (upwards), width and height, in cells. */
-export function placeOf(target: Target, [width, height]: readonly [number, number]) {
+export function pictureBox(target: Target, [width, height]: readonly [number, number]) {
   const scale = target.size / Math.max(target.width, target.height);
   const [wide, high] = [Math.round(scale * target.width), Math.round(scale * target.height)];
   const [left, bottom] = [Math.floor((width - wide) / 2), Math.floor((height - high) / 2)];
@@ -133,7 +133,7 @@ function drawFold(canvas: HTMLCanvasElement, size: Size, fold: Fold, time: numbe
   const world = fold.replay.header.size;
   const scale = size.width / world[0];
   const screen = ([x, y]: Point): Point => [(x + 0.5) * scale, (world[1] - 0.5 - y) * scale];
-  const { left, top, wide, high } = placeOf(fold.target, world);
+  const { left, top, wide, high } = pictureBox(fold.target, world);
   context.globalAlpha = fold.shown;
   context.imageSmoothingQuality = "high";
   context.drawImage(fold.picture, ...screen([left, top]), wide * scale, high * scale);

@@ -6,11 +6,11 @@ import type { ResultRow, Run, Target } from "../../api/types";
 import { useFetched } from "../../store/fetch";
 import { useStore } from "../../store/store";
 import { setQuery } from "../../store/router";
-import { number, short } from "../../ui/format";
+import { number, shortId } from "../../ui/format";
 import { Card } from "../../ui/Page";
 import { FoldPlayer } from "./FoldPlayer";
 import { pictureOf } from "./FoldPlayer";
-import { RecordingStatus, useReplays } from "../../replay/recordings";
+import { ReplayStatus, useReplays } from "../../replay/replays";
 import { hrefOf } from "../results/resultsPage";
 import { text } from "./text";
 import "./folds.css";
@@ -23,13 +23,13 @@ interface Props {
 
 export function FoldsCard({ run, query, rows }: Props) {
   const { value: targets, error } = useFetched(() => api.readTargets(run.id), [run.id]);
-  const chosen = targets?.find(({ name }) => name === query.get("picture")) ?? targets?.[0];
-  const row = rows.find(({ picture }) => picture === chosen?.name);
+  const selected = targets?.find(({ name }) => name === query.get("picture")) ?? targets?.[0];
+  const row = rows.find(({ picture }) => picture === selected?.name);
   return (
     <Card id="folds" kind="folds" title={rows.length > 0 ? text.filaments : text.pictures}>
       {error && <p class="wrong-text small">{error}</p>}
-      {targets && <Pictures {...{ run, targets, rows, chosen: chosen!.name }} />}
-      {row?.creature && <Fold key={row.creature} {...{ run, row }} target={chosen!} />}
+      {targets && <Pictures {...{ run, targets, rows, selected: selected!.name }} />}
+      {row?.creature && <Fold key={row.creature} {...{ run, row }} target={selected!} />}
       {targets && rows.length === 0 && <p class="quiet small">{text.noFilaments}</p>}
     </Card>
   );
@@ -39,10 +39,10 @@ interface PicturesProps {
   run: Run;
   targets: Target[];
   rows: ResultRow[];
-  chosen: string;
+  selected: string;
 }
 
-function Pictures({ run, targets, rows, chosen }: PicturesProps) {
+function Pictures({ run, targets, rows, selected }: PicturesProps) {
   const summary = useStore((state) => state.runs.get(run.id))?.summary;
   const lossOf = (name: string) => {
     const loss = rows.find(({ picture }) => picture === name)?.least ?? summary?.[`loss of ${name}`];
@@ -53,7 +53,7 @@ function Pictures({ run, targets, rows, chosen }: PicturesProps) {
       {targets.map((target) => (
         <button
           key={target.name}
-          aria-pressed={rows.length > 0 ? target.name === chosen : undefined}
+          aria-pressed={rows.length > 0 ? target.name === selected : undefined}
           disabled={rows.length === 0}
           onClick={() => setQuery({ picture: target.name })}
         >
@@ -83,12 +83,12 @@ function Fold({ run, row, target }: { run: Run; row: ResultRow; target: Target }
   const replay = rendering.replays?.[0];
   return (
     <>
-      <RecordingStatus {...rendering} what={text.recordingFold} />
+      <ReplayStatus {...rendering} what={text.recordingFold} />
       {replay && <FoldPlayer replay={replay} target={target} />}
       <p class="quiet small">
         {text.losses(number(Number(row.first)), number(Number(row.least)), number(Number(row.empty)))}{" "}
         <a href={hrefOf(run)(row.creature!)}>
-          {text.openCreature} <code>{short(row.creature!)}</code>
+          {text.openCreature} <code>{shortId(row.creature!)}</code>
         </a>
       </p>
     </>

@@ -5,11 +5,11 @@ import type { ResultRow, Run } from "../../api/types";
 import { Plot, type Axis, type Line } from "../../charts/plot/Plot";
 import { fromZero, logAround } from "../../charts/plot/scale";
 import { ReplayPlayer } from "../../replay/ReplayPlayer";
-import { RecordingStatus, useReplays } from "../../replay/recordings";
+import { ReplayStatus, useReplays } from "../../replay/replays";
 import type { Curves } from "../../store/curves";
 import { useStore } from "../../store/store";
 import { Card } from "../../ui/Page";
-import { number, short, count } from "../../ui/format";
+import { number, shortId, count } from "../../ui/format";
 import { type ResultsProps, TableCard, hrefOf, useTable } from "../results/resultsPage";
 import { FoldsCard } from "./FoldsCard";
 import { text } from "./text";
@@ -17,13 +17,13 @@ import { text } from "./text";
 export function LearningRun({ run, query }: ResultsProps) {
   const curves = useStore((state) => state.details.get(run.id))?.curves;
   const { results } = useTable(run);
-  const course = curves && courseOf(run, curves);
+  const curve = curves && learningCurveOf(run, curves);
   const rows = results?.rows ?? [];
   return (
     <>
-      <Card id="course" kind="plot-card" title={course?.title ?? text.progress}>
-        {course && course.lines.length > 0 ? (
-          <Plot {...course} />
+      <Card id="curve" kind="plot-card" title={curve?.title ?? text.progress}>
+        {curve && curve.lines.length > 0 ? (
+          <Plot {...curve} />
         ) : (
           <p class="quiet waiting">{text.firstStep}</p>
         )}
@@ -67,7 +67,7 @@ function SideBySide({ run, before, after }: Ends) {
   }, [run.id, first, last]);
   return (
     <>
-      <RecordingStatus {...rendering} what={text.recordingBoth} />
+      <ReplayStatus {...rendering} what={text.recordingBoth} />
       {films.length > 0 && <ReplayPlayer films={films} />}
     </>
   );
@@ -78,7 +78,7 @@ function Name({ run, row, title }: { run: Run; row: ResultRow; title: string }) 
     <>
       <b>{title}</b> {text.fitness(number(Number(row.fitness), 4))}{" "}
       <a href={hrefOf(run)(row.creature!)}>
-        <code>{short(row.creature!)}</code>
+        <code>{shortId(row.creature!)}</code>
       </a>
     </>
   );
@@ -88,7 +88,7 @@ function Name({ run, row, title }: { run: Run; row: ResultRow; title: string }) 
 const MARKS = 120;
 const LOSS = "loss of ";
 
-export interface Course {
+export interface LearningCurve {
   title: string;
   x: Axis;
   y: Axis;
@@ -96,7 +96,7 @@ export interface Course {
 }
 
 /** The loss of each filament, or the fitness of a creature, by step. */
-export function courseOf(run: Run, curves: Curves): Course {
+export function learningCurveOf(run: Run, curves: Curves): LearningCurve {
   const folds = run.experiment === "folding";
   // A refinement measures its creature before the first step.
   const before = folds ? 0 : 1;
@@ -109,10 +109,10 @@ export function courseOf(run: Run, curves: Curves): Course {
   const steps = { log: false, low: 0, high: Math.max(1, run.generations - before) };
   return {
     title: folds ? text.lossAgainstUpdates : text.fitnessAgainstSteps,
-    x: { title: folds ? text.update : text.stepAxis, scale: steps, write: count },
+    x: { title: folds ? text.update : text.stepAxis, scale: steps, format: count },
     y: folds
-      ? { title: text.lossAxis, scale: logAround(values), write: (value) => number(value, 2) }
-      : { title: text.fitnessAxis, scale: rises, write: (value) => number(value, digitsOf(rises)) },
+      ? { title: text.lossAxis, scale: logAround(values), format: (value) => number(value, 2) }
+      : { title: text.fitnessAxis, scale: rises, format: (value) => number(value, digitsOf(rises)) },
     lines,
   };
 }
@@ -131,7 +131,7 @@ function lineOf(column: string, curves: Curves, before: number, k: number): Line
       .map((i) => ({
         x: step(i),
         y: values[i]!,
-        says: [name, text.afterCount(count(step(i))), number(values[i]!)],
+        tooltip: [name, text.afterCount(count(step(i))), number(values[i]!)],
       })),
   };
 }

@@ -2,16 +2,16 @@ import { describe, expect, it } from "vitest";
 import { NO_CURVES } from "../../store/curves";
 import type { Run } from "../../api/types";
 import { ticksOf } from "../../charts/plot/scale";
-import { placeOf } from "./FoldPlayer";
-import { courseOf } from "./LearningRun";
+import { pictureBox } from "./FoldPlayer";
+import { learningCurveOf } from "./LearningRun";
 
-describe("a course", () => {
+describe("a curve", () => {
   const curves = (summary: Record<string, number[]>) => ({ ...NO_CURVES, generation: [1, 2, 3], summary });
   const run = (experiment: string) => ({ experiment, generations: 3 }) as unknown as Run;
 
   it("names values apart that hardly differ", () => {
-    const { y } = courseOf(run("refinement"), curves({ fitness: [2.956, 3.01, 3.018] }));
-    const names = ticksOf(y.scale, 8).map(y.write);
+    const { y } = learningCurveOf(run("refinement"), curves({ fitness: [2.956, 3.01, 3.018] }));
+    const names = ticksOf(y.scale, 8).map(y.format);
     expect(names.length).toBeGreaterThan(3);
     expect(new Set(names).size).toBe(names.length);
   });
@@ -22,7 +22,7 @@ describe("a course", () => {
       "loss of 7": [0.1, 0.04, 0.01],
       loss: [0.1, 0.045, 0.015],
     };
-    const { lines } = courseOf(run("folding"), curves(told));
+    const { lines } = learningCurveOf(run("folding"), curves(told));
     expect(lines.map(({ name }) => name)).toEqual(["3", "7"]);
     expect(lines[1]!.points.map(({ y }) => y)).toEqual([0.1, 0.04, 0.01]);
   });
@@ -31,6 +31,6 @@ describe("a course", () => {
 describe("the picture under a filament", () => {
   it("lies in the middle of the world, as large as the spec has it", () => {
     const target = { name: "3", width: 8, height: 16, size: 32, pixels: "" };
-    expect(placeOf(target, [48, 64])).toEqual({ left: 15.5, top: 47.5, wide: 16, high: 32 });
+    expect(pictureBox(target, [48, 64])).toEqual({ left: 15.5, top: 47.5, wide: 16, high: 32 });
   });
 });

@@ -6,7 +6,7 @@ import type { Genes, Genome, Run } from "../../api/types";
 import { networkOf } from "../../decode/network";
 import { type Elites, fittest } from "../../store/elites";
 import { useFetched, useSpecies } from "../../store/fetch";
-import { number, short } from "../../ui/format";
+import { number, shortId } from "../../ui/format";
 import { Card } from "../../ui/Page";
 import { NetworkGraph } from "../../creature/NetworkGraph";
 import { SpeciesPlot } from "./SpeciesPlot";
@@ -46,7 +46,7 @@ function BestNetwork({ run, elites }: { run: Run; elites: Elites }) {
     <>
       {text.bestOf(number(best.fitness, 4), best.generation)}{" "}
       <a href={`/creatures/${best.creature}?run=${run.id}`}>
-        <code>{short(best.creature)}</code>
+        <code>{shortId(best.creature)}</code>
       </a>
     </>
   );

@@ -6,11 +6,11 @@ import { type Size, useSize } from "../../ui/canvas";
 import { count } from "../../ui/format";
 import { AxisTitles, Frame, type Room } from "../../charts/plot/Frame";
 import type { Axis } from "../../charts/plot/Plot";
-import { place } from "../../charts/plot/scale";
+import { positionOf } from "../../charts/plot/scale";
 import { type Stack, colourOf, pathOf, speciesAt, stackOf } from "./speciesStack";
 import { text } from "./text";
 
-interface Place {
+interface Pointed {
   i: number;
   /** Members below the pointer; null if a key selected the generation. */
   height: number | null;
@@ -22,8 +22,8 @@ function axesOf({ generation, size }: Stack): { x: Axis; y: Axis } {
   const [first, last] = [generation[0]!, generation.at(-1)!];
   const generations = { log: false, low: first, high: Math.max(last, first + 1) };
   return {
-    x: { title: text.generation, scale: generations, write: whole },
-    y: { title: text.members, scale: { log: false, low: 0, high: size }, write: whole },
+    x: { title: text.generation, scale: generations, format: whole },
+    y: { title: text.members, scale: { log: false, low: 0, high: size }, format: whole },
   };
 }
 
@@ -35,7 +35,7 @@ const roomOf = ({ width, height }: Size): Room => ({
 });
 
 /** The generation and the members at a point of the plot. */
-function placeAt(stack: Stack, room: Room, left: number, top: number): Place {
+function pointedAt(stack: Stack, room: Room, left: number, top: number): Pointed {
   const { generation, size } = stack;
   const { low, high } = axesOf(stack).x.scale;
   const value = low + ((left - room.left) / (room.right - room.left)) * (high - low);
@@ -48,19 +48,19 @@ export function SpeciesPlot({ history }: { history: SpeciesHistory }) {
   const host = useRef<HTMLDivElement>(null);
   const size = useSize(host);
   const stack = useMemo(() => stackOf(history), [history]);
-  const [place, setPlace] = useState<Place | null>(null);
+  const [pointed, setPointed] = useState<Pointed | null>(null);
   const last = stack.generation.length - 1;
   const follow = (event: PointerEvent) => {
     const box = host.current!.getBoundingClientRect();
-    setPlace(placeAt(stack, roomOf(size), event.clientX - box.left, event.clientY - box.top));
+    setPointed(pointedAt(stack, roomOf(size), event.clientX - box.left, event.clientY - box.top));
   };
   const walk = (event: KeyboardEvent) => {
     const by = { ArrowLeft: -1, ArrowRight: 1, Home: -last, End: last }[event.key];
     if (by === undefined) return;
     event.preventDefault();
-    setPlace((old) => ({ i: Math.min(last, Math.max(0, (old?.i ?? last) + by)), height: null }));
+    setPointed((old) => ({ i: Math.min(last, Math.max(0, (old?.i ?? last) + by)), height: null }));
   };
-  const shown = place && place.i <= last ? place : null;
+  const shown = pointed && pointed.i <= last ? pointed : null;
   const reading = shown && readingOf(stack, shown);
   return (
     <figure class="species">
@@ -70,12 +70,12 @@ export function SpeciesPlot({ history }: { history: SpeciesHistory }) {
         role="application"
         tabIndex={0}
         aria-label={text.plot(summaryOf(stack))}
-        aria-describedby="species-reading"
+        aria-describedby="species-at-cursor"
         onPointerMove={follow}
         onPointerDown={follow}
-        onPointerLeave={() => setPlace(null)}
+        onPointerLeave={() => setPointed(null)}
         onKeyDown={walk}
-        onBlur={() => setPlace(null)}
+        onBlur={() => setPointed(null)}
       >
         {size.width > 0 && (
           <>
@@ -84,7 +84,7 @@ export function SpeciesPlot({ history }: { history: SpeciesHistory }) {
           </>
         )}
       </div>
-      <figcaption id="species-reading" class="small" aria-live="polite">
+      <figcaption id="species-at-cursor" class="small" aria-live="polite">
         {reading ? reading.text : summaryOf(stack)}
       </figcaption>
     </figure>
@@ -94,15 +94,16 @@ export function SpeciesPlot({ history }: { history: SpeciesHistory }) {
 interface AreasProps {
   stack: Stack;
   size: Size;
-  shown: Place | null;
+  shown: Pointed | null;
   lit: number | null;
 }
 
 function Areas({ stack, size, shown, lit }: AreasProps) {
   const room = roomOf(size);
   const axes = axesOf(stack);
-  const x = (i: number) => room.left + place(axes.x.scale, stack.generation[i]!) * (room.right - room.left);
-  const y = (members: number) => room.bottom - place(axes.y.scale, members) * (room.bottom - room.top);
+  const x = (i: number) =>
+    room.left + positionOf(axes.x.scale, stack.generation[i]!) * (room.right - room.left);
+  const y = (members: number) => room.bottom - positionOf(axes.y.scale, members) * (room.bottom - room.top);
   return (
     <svg width={size.width} height={size.height} aria-hidden="true">
       <Frame {...axes} room={room} upper={null} shaded={false} />
@@ -127,7 +128,7 @@ function summaryOf(stack: Stack): string {
   return text.summary(living, stack.generation[last]!, count(all), count(stack.size));
 }
 
-function readingOf(stack: Stack, { i, height }: Place): { number: number | null; text: string } {
+function readingOf(stack: Stack, { i, height }: Pointed): { number: number | null; text: string } {
   const living = livingIn(stack, i);
   const generation = stack.generation[i]!;
   const found = height === null ? null : speciesAt(stack, i, height);

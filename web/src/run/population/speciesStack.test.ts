@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { colourOf, lifeOf, pathOf, speciesAt, stackOf } from "./speciesStack";
+import { colourOf, extentOf, pathOf, speciesAt, stackOf } from "./speciesStack";
 
 describe("species over time", () => {
   const history = { generation: [1, 2, 3], number: [[0], [0, 2], [2]], members: [[8], [5, 3], [8]] };
@@ -18,8 +18,8 @@ describe("species over time", () => {
   });
 
   it("grow from nothing and shrink to nothing", () => {
-    expect(lifeOf(stack.areas[0]!)).toEqual([0, 2]);
-    expect(lifeOf({ from: [0, 0, 0, 0, 0], to: [0, 0, 1, 0, 0] })).toEqual([1, 3]);
+    expect(extentOf(stack.areas[0]!)).toEqual([0, 2]);
+    expect(extentOf({ from: [0, 0, 0, 0, 0], to: [0, 0, 1, 0, 0] })).toEqual([1, 3]);
     const path = pathOf(
       stack.areas[0]!,
       (i) => 10 * i,

@@ -16,7 +16,7 @@ export interface Stack {
   size: number;
 }
 
-/** The oldest species lie lowest, so that a species keeps its neighbours while it lives. */
+/** The oldest species are at the bottom, so that a living species keeps its neighbours. */
 export function stackOf({ generation, number, members }: SpeciesHistory): Stack {
   const sizes = number.map((row, i) => new Map(row.map((each, k) => [each, members[i]![k]!])));
   const all = [...new Set(number.flat())].sort((a, b) => a - b);
@@ -45,14 +45,14 @@ export function speciesAt(stack: Stack, i: number, height: number): [number, num
 
 /** The outline of an area, along its upper edge and back along its lower edge. */
 export function pathOf({ from, to }: Area, x: (i: number) => number, y: (v: number) => number): string {
-  const [first, last] = lifeOf({ from, to });
+  const [first, last] = extentOf({ from, to });
   const there = range(first, last).map((i) => `${x(i).toFixed(1)} ${y(to[i]!).toFixed(1)}`);
   const back = range(first, last).map((i) => `${x(i).toFixed(1)} ${y(from[i]!).toFixed(1)}`);
   return `M${there.join("L")}L${back.reverse().join("L")}Z`;
 }
 
 /** First and last generation of the outline: one before the species and one after. */
-export function lifeOf({ from, to }: Pick<Area, "from" | "to">): [first: number, last: number] {
+export function extentOf({ from, to }: Pick<Area, "from" | "to">): [first: number, last: number] {
   const alive = to.map((top, i) => top > from[i]!);
   return [Math.max(0, alive.indexOf(true) - 1), Math.min(to.length - 1, alive.lastIndexOf(true) + 1)];
 }

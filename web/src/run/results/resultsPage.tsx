@@ -6,7 +6,7 @@ import { useResults } from "../../store/fetch";
 import { setQuery } from "../../store/router";
 import { Card } from "../../ui/Page";
 import { Heading, type SortOrder } from "../../ui/Table";
-import { short } from "../../ui/format";
+import { shortId } from "../../ui/format";
 import { type Order, type Column, columnsOf, sortRows } from "./columns";
 import { text } from "./text";
 import "./results.css";
@@ -111,7 +111,7 @@ function Row({ row, columns, linked, hrefOf }: RowProps) {
           <td>
             {creature && (
               <a href={hrefOf(creature)}>
-                <code>{short(creature)}</code>
+                <code>{shortId(creature)}</code>
               </a>
             )}
           </td>

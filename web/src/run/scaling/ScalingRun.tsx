@@ -96,28 +96,28 @@ function memoryLines(rows: readonly ResultRow[]): Line[] {
   return [lineOf(MEMORY, rows, bytes)];
 }
 
-function lineOf(part: Part, rows: readonly ResultRow[], write: (value: number) => string): Line {
-  const { column, method, ...look } = part;
+function lineOf(part: Part, rows: readonly ResultRow[], format: (value: number) => string): Line {
+  const { column, method, ...view } = part;
   const mine = rows.filter((row) => row.method === method && positive(row[column]));
   const points = mine.map((row) => ({
     x: Number(row.nodes),
     y: Number(row[column]),
-    says: [part.name, text.nodesOf(count(Number(row.nodes))), write(Number(row[column]))] as [
+    tooltip: [part.name, text.nodesOf(count(Number(row.nodes))), format(Number(row[column]))] as [
       string,
       ...string[],
     ],
   }));
-  return { ...look, points: points.sort((a, b) => a.x - b.x) };
+  return { ...view, points: points.sort((a, b) => a.x - b.x) };
 }
 
 function nodesAxis(spec: Spec): Axis {
   const nodes = Array.isArray(spec.nodes) ? spec.nodes.map(Number) : [];
-  return { title: text.nodes, scale: logAround(nodes), write: thousands };
+  return { title: text.nodes, scale: logAround(nodes), format: thousands };
 }
 
-function logAxis(title: string, lines: Line[], write: (value: number) => string): Axis {
+function logAxis(title: string, lines: Line[], format: (value: number) => string): Axis {
   const values = lines.flatMap(({ points }) => points.map(({ y }) => y ?? 0));
-  return { title, scale: logAround(values), write };
+  return { title, scale: logAround(values), format };
 }
 
 function thousands(value: number): string {

@@ -6,7 +6,7 @@ import type { Run } from "../../api/types";
 import { useExperiments, useFetched } from "../../store/fetch";
 import { useStore } from "../../store/store";
 import { setQuery } from "../../store/router";
-import { short, titleOf, words } from "../../ui/format";
+import { shortId, titleOf, words } from "../../ui/format";
 import { brief, nameOf, nearestPreset, sectionsOf } from "./sections";
 import { Card } from "../../ui/Page";
 import { type Column, Table } from "../../ui/Table";
@@ -26,12 +26,12 @@ export function SpecCard({ run, query }: { run: Run; query: URLSearchParams }) {
         run={run}
         label={text.compareSpec}
         fits={() => true}
-        onChoose={(id) => setQuery({ against: id })}
+        onSelect={(id) => setQuery({ against: id })}
       />
       <button class="slim" onClick={() => copyText(json, text.copied)}>
         {text.copyJson}
       </button>
-      <a class="button slim" href={href} download={`${short(run.id)}-spec.json`}>
+      <a class="button slim" href={href} download={`${shortId(run.id)}-spec.json`}>
         spec.json
       </a>
     </>
@@ -60,20 +60,20 @@ function Sections({ run }: { run: Run }) {
       {nearest && <p class="quiet small">{sentenceOf(nearest.preset.name, nearest.changed.length)}</p>}
       <div class="spec-sections">
         {sections.map(({ title, fields }) => (
-          <details key={title} open={fields.some(({ usual }) => usual !== null)}>
+          <details key={title} open={fields.some(({ presetValue }) => presetValue !== null)}>
             <summary>
               {title} <span class="quiet small">{fields.length}</span>
             </summary>
             <dl>
-              {fields.map(({ path, name, text: value, usual }) => (
-                <div key={path} class={usual === null ? "" : "unusual"} title={path}>
+              {fields.map(({ path, name, text: value, presetValue }) => (
+                <div key={path} class={presetValue === null ? "" : "unusual"} title={path}>
                   <dt>{name}</dt>
                   <dd>
                     {value}
-                    {usual !== null && (
+                    {presetValue !== null && (
                       <span class="quiet small">
                         {" "}
-                        {text.preset} {usual}
+                        {text.preset} {presetValue}
                       </span>
                     )}
                   </dd>
@@ -114,7 +114,7 @@ function DifferenceTo({ run, id }: { run: Run; id: string }) {
           <p class="quiet">
             {rows.length === 0 ? text.noDifference : text.differences(rows.length)}
             <a href={`/runs/${id}`}>
-              {titleOf(other, experiments)} <code>{short(id)}</code>
+              {titleOf(other, experiments)} <code>{shortId(id)}</code>
             </a>
           </p>
           {rows.length > 0 && (

@@ -21,13 +21,13 @@ export function differences(specs: readonly Spec[]): Difference[] {
 }
 
 /** A value as a table shows it. */
-export function written(value: Json | undefined): string {
+export function valueText(value: Json | undefined): string {
   if (value === undefined) return DASH;
   if (value === null || (Array.isArray(value) && value.length === 0)) return text.none;
   if (typeof value === "boolean") return value ? text.yes : text.no;
   if (typeof value === "number") return number(value, 9);
   if (typeof value === "string") return value;
-  return Array.isArray(value) ? value.map(written).join(", ") : JSON.stringify(value);
+  return Array.isArray(value) ? value.map(valueText).join(", ") : JSON.stringify(value);
 }
 
 /** Lists of plain values are one value. */

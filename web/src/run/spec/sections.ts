@@ -2,18 +2,18 @@
 
 import type { Json, Preset, Spec } from "../../api/types";
 import { words } from "../../ui/format";
-import { type Difference, differences, written } from "./difference";
+import { type Difference, differences, valueText } from "./difference";
 import { text } from "./text";
 
 /** Characters of a value that are shown; pictures have thousands. */
-const LONGEST = 120;
+const MAX_LENGTH = 120;
 
 export interface Field {
   path: string;
   name: string;
   text: string;
   /** The value of the preset; null if it is the same. */
-  usual: string | null;
+  presetValue: string | null;
 }
 
 export interface Section {
@@ -36,7 +36,7 @@ export function nearestPreset(
 
 /** One section for each part of the spec; fields that are no part come first. */
 export function sectionsOf(spec: Spec, changed: readonly Difference[]): Section[] {
-  const usual = new Map(changed.map(({ path, values }) => [path, values[0]]));
+  const presetValue = new Map(changed.map(({ path, values }) => [path, values[0]]));
   const sections = new Map<string, Field[]>([["", []]]);
   for (const { path, values } of differences([{}, spec])) {
     const [head, ...rest] = path.split(".");
@@ -46,7 +46,7 @@ export function sectionsOf(spec: Spec, changed: readonly Difference[]): Section[
       path,
       name: nameOf(rest.length > 0 ? rest : [head!]),
       text: brief(values[1]),
-      usual: usual.has(path) ? brief(usual.get(path)) : null,
+      presetValue: presetValue.has(path) ? brief(presetValue.get(path)) : null,
     });
   }
   return [...sections]
@@ -61,6 +61,6 @@ export function nameOf(parts: readonly string[]): string {
 }
 
 export function brief(value: Json | undefined): string {
-  const text = written(value);
-  return text.length > LONGEST ? `${text.slice(0, LONGEST)} …` : text;
+  const text = valueText(value);
+  return text.length > MAX_LENGTH ? `${text.slice(0, MAX_LENGTH)} …` : text;
 }

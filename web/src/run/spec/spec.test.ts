@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Preset } from "../../api/types";
-import { differences, written } from "./difference";
+import { differences, valueText } from "./difference";
 import { brief, nameOf, nearestPreset, sectionsOf } from "./sections";
 
 describe("a spec that is read", () => {
@@ -26,8 +26,8 @@ describe("a spec that is read", () => {
     const sections = sectionsOf(spec, nearestPreset(spec, presets)!.changed);
     expect(sections.map(({ title }) => title)).toEqual(["Run", "Search", "Axes", "World"]);
     const [batch, stop] = sections[1]!.fields;
-    expect(batch).toEqual({ path: "search.batch", name: "Batch", text: "64", usual: "16" });
-    expect(stop!.usual).toBeNull();
+    expect(batch).toEqual({ path: "search.batch", name: "Batch", text: "64", presetValue: "16" });
+    expect(stop!.presetValue).toBeNull();
     expect(sections[2]!.fields[0]!.name).toBe("1, name");
   });
 
@@ -86,6 +86,6 @@ describe("the difference between specs", () => {
     [["a", 2], "a, 2"],
     [[], "none"],
   ])("writes %j as %s", (value, text) => {
-    expect(written(value)).toBe(text);
+    expect(valueText(value)).toBe(text);
   });
 });

@@ -1,7 +1,7 @@
 import { afterEach, describe, expect, it, vi } from "vitest";
-import { opensByItself } from "./guide";
+import { opensByItself } from "./tour";
 
-const visited = (guided: boolean) => vi.stubGlobal("localStorage", { getItem: () => (guided ? "1" : null) });
+const visited = (taken: boolean) => vi.stubGlobal("localStorage", { getItem: () => (taken ? "1" : null) });
 
 describe("the tour", () => {
   afterEach(() => vi.unstubAllGlobals());
@@ -10,8 +10,8 @@ describe("the tour", () => {
     [true, false, true],
     [false, false, false],
     [true, true, false],
-  ])("over a demonstration (%s), taken before (%s), opens by itself: %s", (demonstration, guided, opens) => {
-    visited(guided);
+  ])("over a demonstration (%s), taken before (%s), opens by itself: %s", (demonstration, taken, opens) => {
+    visited(taken);
     expect(opensByItself({ demonstration })).toBe(opens);
   });
 });

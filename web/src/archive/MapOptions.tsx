@@ -12,7 +12,7 @@ import { text } from "./text";
 
 const PALETTE_CHOICES = PALETTES.map((name) => [name, words(name)] as const);
 
-export function Choices({
+export function MapOptions({
   archive,
   view: { axes, colour, palette },
 }: {
@@ -23,7 +23,7 @@ export function Choices({
   const [x, y] = [axes[0].name, axes[1].name];
   const choose = (axis: "x" | "y") => (name: string) => {
     const [other, old] = axis === "x" ? [y, x] : [x, y];
-    // The axes are swapped if the other one is chosen.
+    // The axes are swapped if the other one is selected.
     setQuery({ x, y, [axis]: name, ...(name === other && { [axis === "x" ? "y" : "x"]: old }) });
   };
   return (

@@ -2,7 +2,7 @@
 
 import type { CaseSummary, CaseValues, Json, Member, SweepCurves } from "../api/types";
 import type { Band, Plot, Series } from "../charts/curves/plots";
-import { number, short } from "../ui/format";
+import { number, shortId } from "../ui/format";
 import { SCORES } from "../run/figures";
 import { text } from "./text";
 
@@ -11,15 +11,15 @@ type Score = (typeof SCORES)[0][0];
 export interface ShownCase {
   summary: CaseSummary;
   /** Index among all cases. */
-  place: number;
+  caseIndex: number;
   name: string;
   colour: string;
   dash: number[] | undefined;
 }
 
 /** One plot for each score that any run has. */
-export function bandsOf(cases: readonly ShownCase[], curves: SweepCurves | null): Plot[] {
-  return SCORES.flatMap(([figure, title, write]) => {
+export function summaryPlotsOf(cases: readonly ShownCase[], curves: SweepCurves | null): Plot[] {
+  return SCORES.flatMap(([figure, title, format]) => {
     const series: Series[] = [];
     const bands: Band[] = [];
     for (const shown of cases) {
@@ -28,7 +28,7 @@ export function bandsOf(cases: readonly ShownCase[], curves: SweepCurves | null)
       series.push(...bandOf(shown, figure));
     }
     const known = series.some(({ y }) => y.some((value) => value !== null));
-    return known ? [{ title, write, series, bands }] : [];
+    return known ? [{ title, format, series, bands }] : [];
   });
 }
 
@@ -46,7 +46,7 @@ function linesOf({ summary, colour }: ShownCase, figure: Score, curves: SweepCur
   const mine = new Set(summary.members.map(({ run }) => run));
   const lines = curves?.runs.filter(({ run }) => mine.has(run)) ?? [];
   return lines.map((line) => ({
-    name: short(line.run),
+    name: shortId(line.run),
     colour,
     x: curves!.generation,
     y: line[figure],
@@ -71,4 +71,4 @@ export function valueText(value: Json): string {
 }
 
 /** The name of a run within its case. */
-export const memberName = ({ seed, run }: Member) => (seed === null ? short(run) : text.seed(seed));
+export const memberName = ({ seed, run }: Member) => (seed === null ? shortId(run) : text.seed(seed));

@@ -25,7 +25,7 @@ export function curveViewOf(query: URLSearchParams): CurveView {
 export interface OtherRun {
   name: string;
   colour: string;
-  /** If there are more runs than colours. */
+  /** Distinguishes lines if there are more runs than colours. */
   dash?: number[];
   curves: Curves;
 }
@@ -35,23 +35,23 @@ export function arrangePlots(
   plotsOf: (curves: Curves) => Plot[],
   curves: Curves,
   others: readonly OtherRun[],
-  look: CurveView,
+  view: CurveView,
 ): Plot[] {
-  const beside = others.map((other) => besideOf(plotsOf, other, look));
+  const compared = others.map((other) => comparisonPlots(plotsOf, other, view));
   return plotsOf(curves).map((plot) => {
     const own = others.length > 0 ? plot.series.map(inOneColour) : plot.series;
-    const mine = own.flatMap((each) => faded({ ...each, x: curves[look.over] }, curves, look));
-    return { ...plot, series: [...mine, ...sameTitle(plot, beside)] };
+    const mine = own.flatMap((each) => withSmoothLine({ ...each, x: curves[view.over] }, curves, view));
+    return { ...plot, series: [...mine, ...sameTitle(plot, compared)] };
   });
 }
 
-/** The plots of several equal runs. */
+/** The plots of several runs, none of which is the main one. */
 export function overlayPlots(
   plotsOf: (curves: Curves) => Plot[],
   runs: readonly OtherRun[],
-  look: CurveView,
+  view: CurveView,
 ): Plot[] {
-  const plots = runs.map((run) => besideOf(plotsOf, run, look));
+  const plots = runs.map((run) => comparisonPlots(plotsOf, run, view));
   return plotsOf(NO_CURVES).map((plot) => ({ ...plot, series: sameTitle(plot, plots) }));
 }
 
@@ -59,7 +59,7 @@ const sameTitle = ({ title }: Plot, plots: Plot[][]) =>
   plots.flatMap((each) => each.find((other) => other.title === title)?.series ?? []);
 
 /** The plots of another run, in its colour and with its own x values. */
-function besideOf(plotsOf: (curves: Curves) => Plot[], other: OtherRun, look: CurveView): Plot[] {
+function comparisonPlots(plotsOf: (curves: Curves) => Plot[], other: OtherRun, view: CurveView): Plot[] {
   const { name, colour, dash, curves } = other;
   return plotsOf(curves).map((plot) => ({
     ...plot,
@@ -68,9 +68,9 @@ function besideOf(plotsOf: (curves: Curves) => Plot[], other: OtherRun, look: Cu
       name: plot.series.length > 1 ? `${name}: ${each.name}` : name,
       colour,
       ...(dash && { dash }),
-      x: curves[look.over],
+      x: curves[view.over],
       other: true,
-      y: smoothed(each, curves.generation, look.smooth),
+      y: smoothed(each, curves.generation, view.smooth),
     })),
   }));
 }
@@ -80,8 +80,8 @@ function inOneColour(series: Series, k: number): Series {
   return { ...series, colour: "--series-1", ...(k > 0 && { dash: [6, 2 + 2 * k] }) };
 }
 
-/** The smooth line, and the measured one faintly behind it. */
-function faded(series: Series, curves: Curves, { smooth }: CurveView): Series[] {
+/** The measured line, faint, and the smoothed one in front of it. */
+function withSmoothLine(series: Series, curves: Curves, { smooth }: CurveView): Series[] {
   if (smooth === 1 || series.dots) return [series];
   const mean = smoothed(series, curves.generation, smooth);
   return [

@@ -1,4 +1,4 @@
-"""Sends malformed files to a server, and watches what that does to it and to other files."""
+"""Send malformed files to a server, and watch its memory and other files."""
 
 import ctypes
 import os
@@ -21,12 +21,12 @@ from malformed import Case
 IN_ACCESS, IN_OPEN = 0x1, 0x20
 EVENT = struct.Struct("iIII")
 OURS = ("Errno", "No module", "took too long", "cannot be read", "Traceback")
-"""Words of what went wrong here; a person with a wrong file has no use for them."""
+"""Words of internal errors, which a refusal must not contain."""
 
 
 @dataclass
 class Findings:
-    """What came of it."""
+    """The outcome of sending malformed files."""
 
     refused: int = 0
     wrong: list[str] = field(default_factory=list)
@@ -37,7 +37,7 @@ class Findings:
 
 @contextmanager
 def watched(canary: Path) -> Iterator[list[str]]:
-    """The kernel tells in the list, at the end, of everybody who opened or read a file."""
+    """Collect the kernel's events of opening or reading a file."""
     libc, told = ctypes.CDLL(None, use_errno=True), []
     watch = libc.inotify_init1(os.O_NONBLOCK | os.O_CLOEXEC)
     assert watch >= 0

@@ -2,8 +2,8 @@
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import { text } from "./text";
-import { prefersStillness } from "./theme";
-import "./guide.css";
+import { prefersReducedMotion } from "./theme";
+import "./tour.css";
 
 export interface Step {
   title: string;
@@ -17,22 +17,22 @@ export interface Step {
 interface Props {
   steps: Step[];
   /** True if the user started the tour; it then has the focus until it ends. */
-  asked: boolean;
+  requested: boolean;
   onStep: (step: Step) => void;
   onEnd: () => void;
 }
 
-export function Guide({ steps, asked, onStep, onEnd }: Props) {
+export function Tour({ steps, requested, onStep, onEnd }: Props) {
   const [number, setNumber] = useState(0);
   const panel = useRef<HTMLElement>(null);
   const step = steps[number]!;
   const last = number === steps.length - 1;
   useEffect(() => {
     onStep(step);
-    reveal(document.querySelector(step.selector));
+    scrollIntoWindow(document.querySelector(step.selector));
   }, [number]);
   useEffect(() => {
-    if (!asked) return;
+    if (!requested) return;
     const before = document.activeElement as HTMLElement | null;
     panel.current!.focus();
     return () => before?.focus();
@@ -46,8 +46,8 @@ export function Guide({ steps, asked, onStep, onEnd }: Props) {
     return () => window.removeEventListener("keydown", press);
   }, [onEnd]);
   return (
-    <aside ref={panel} class="guide" aria-label={text.guide} tabIndex={-1}>
-      <p class="guide-count quiet small">{text.step(number + 1, steps.length)}</p>
+    <aside ref={panel} class="tour" aria-label={text.tour} tabIndex={-1}>
+      <p class="tour-count quiet small">{text.step(number + 1, steps.length)}</p>
       <div aria-live="polite">
         <h2>{step.title}</h2>
         <p>{step.text}</p>
@@ -67,10 +67,10 @@ export function Guide({ steps, asked, onStep, onEnd }: Props) {
 }
 
 /** Scroll to the middle of the window unless the whole element is visible above the panel. */
-function reveal(element: Element | null): void {
+function scrollIntoWindow(element: Element | null): void {
   if (!element) return;
   const { top, bottom } = element.getBoundingClientRect();
   const visible = top >= 0 && bottom <= window.innerHeight;
-  const behavior = prefersStillness() ? "instant" : "smooth";
+  const behavior = prefersReducedMotion() ? "instant" : "smooth";
   if (!visible) element.scrollIntoView({ block: "center", behavior });
 }

@@ -2,7 +2,7 @@
 
 import type { ComponentChildren } from "preact";
 import type { Elite } from "../store/elites";
-import { count, number, short } from "../ui/format";
+import { count, number, shortId } from "../ui/format";
 import { FITNESS, type MapAxis, type Measure } from "./axes";
 import { AGE } from "./colouring";
 import type { Tile } from "./projection";
@@ -19,11 +19,11 @@ interface Props {
   actions: (elite: Elite, cell: number) => ComponentChildren;
 }
 
-export function EliteReading({ tile, axes, colour, hint, onOpen, actions }: Props) {
+export function EliteMeasures({ tile, axes, colour, hint, onOpen, actions }: Props) {
   return (
-    <p id="map-reading" class="map-reading" aria-live="polite">
+    <p id="elite-measures" class="elite-measures" aria-live="polite">
       {tile ? (
-        <Words {...{ tile, onOpen, actions }} measures={[...axes, colour]} />
+        <Figures {...{ tile, onOpen, actions }} measures={[...axes, colour]} />
       ) : (
         <span class="quiet">{hint}</span>
       )}
@@ -31,12 +31,12 @@ export function EliteReading({ tile, axes, colour, hint, onOpen, actions }: Prop
   );
 }
 
-interface WordsProps extends Pick<Props, "onOpen" | "actions"> {
+interface FiguresProps extends Pick<Props, "onOpen" | "actions"> {
   tile: Tile;
   measures: readonly Measure[];
 }
 
-function Words({ tile: { elite, cell, behind }, measures, onOpen, actions }: WordsProps) {
+function Figures({ tile: { elite, cell, hidden }, measures, onOpen, actions }: FiguresProps) {
   const shown = new Map(measures.map((measure) => [measure.name, measure]));
   for (const name of [FITNESS, AGE]) shown.delete(name);
   const figures = [
@@ -51,13 +51,13 @@ function Words({ tile: { elite, cell, behind }, measures, onOpen, actions }: Wor
           {title} <b>{value}</b>
         </span>
       ))}
-      {behind > 0 && (
+      {hidden > 0 && (
         <span>
-          {text.bestOf} <b>{count(behind + 1)}</b> {text.here}
+          {text.bestOf} <b>{count(hidden + 1)}</b> {text.here}
         </span>
       )}
       <button class="link" onClick={() => onOpen(cell)}>
-        {text.open} <code>{short(elite.creature)}</code>
+        {text.open} <code>{shortId(elite.creature)}</code>
       </button>
       {actions(elite, cell)}
     </>

@@ -18,17 +18,17 @@ interface Rendered {
 const MAX_CACHED_BYTES = 64e6;
 const cache = new Map<string, Replay>();
 
-const sizeOf = ({ positions, vorticity }: Replay) => positions.byteLength + vorticity.buffer.byteLength;
+const bytesOf = ({ positions, vorticity }: Replay) => positions.byteLength + vorticity.buffer.byteLength;
 
 /** Add a replay as the newest, and drop the oldest ones beyond the limit. */
 function addToCache(sha: string, replay: Replay): void {
   cache.delete(sha);
   cache.set(sha, replay);
-  let total = [...cache.values()].reduce((sum, each) => sum + sizeOf(each), 0);
+  let total = [...cache.values()].reduce((sum, each) => sum + bytesOf(each), 0);
   for (const [oldest, each] of cache) {
     if (total <= MAX_CACHED_BYTES || oldest === sha) break;
     cache.delete(oldest);
-    total -= sizeOf(each);
+    total -= bytesOf(each);
   }
 }
 
@@ -71,7 +71,7 @@ export function useReplays(shas: string[]): Rendered {
 const decoded = (bytes: ArrayBuffer | null) => bytes && decodeReplay(bytes);
 
 /** Shown while replays are rendered. */
-export function RecordingStatus({ replays, note, error, what }: Rendered & { what: string }) {
+export function ReplayStatus({ replays, note, error, what }: Rendered & { what: string }) {
   if (error) return <p class="banner wrong">{error}</p>;
   if (replays) return null;
   return (

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { type Curves, MAX_POINTS, NO_CURVES, appendCurves } from "../../store/curves";
-import { arrangePlots, curveViewOf, runningMean, tableOf } from "./look";
+import { arrangePlots, curveViewOf, runningMean, tableOf } from "./curveView";
 import { divergedBy, scoresOf, workOf } from "./plots";
 
 const curvesOf = (qd_score: (number | null)[], batch = 16, summary = {}): Curves => {
@@ -15,8 +15,8 @@ describe("the view of curves", () => {
 
   it("is in the address; unknown values are ignored", () => {
     expect(plain).toEqual({ over: "generation", log: false, smooth: 1 });
-    const asked = new URLSearchParams("over=seconds&log=1&smooth=20");
-    expect(curveViewOf(asked)).toEqual({ over: "seconds", log: true, smooth: 20 });
+    const requested = new URLSearchParams("over=seconds&log=1&smooth=20");
+    expect(curveViewOf(requested)).toEqual({ over: "seconds", log: true, smooth: 20 });
     expect(curveViewOf(new URLSearchParams("over=moons&log=yes&smooth=7"))).toEqual(plain);
   });
 
@@ -39,8 +39,8 @@ describe("the view of curves", () => {
 
   it("adds other runs in their colours, with their own x values", () => {
     const others = [{ name: "Demo 12", colour: "--series-2", curves: curvesOf([5, 6], 32) }];
-    const look = { ...plain, over: "evaluations" } as const;
-    const [score] = arrangePlots(scoresOf, curvesOf([1, 2]), others, look);
+    const view = { ...plain, over: "evaluations" } as const;
+    const [score] = arrangePlots(scoresOf, curvesOf([1, 2]), others, view);
     expect(score!.series.map(({ colour }) => colour)).toEqual(["--series-1", "--series-2"]);
     expect(score!.series.map(({ other }) => other ?? false)).toEqual([false, true]);
     expect(tableOf(score!.series, [16, 32], false)).toEqual([

@@ -4,14 +4,14 @@ import { useState } from "preact/hooks";
 import type { Archive, Run } from "../api/types";
 import { fittest } from "../store/elites";
 import { count, number } from "../ui/format";
-import type { Step } from "../ui/Guide";
+import type { Step } from "../ui/Tour";
 import type { ArchiveView } from "./archiveView";
 import { text } from "./text";
 
 const STORAGE_KEY = "microcosmos:guided";
 
-/** If storage is forbidden, the tour is offered again. */
-export function wasGuided(): boolean {
+/** True if this browser has shown the tour; false if it forbids storage. */
+export function hasTakenTour(): boolean {
   try {
     return localStorage.getItem(STORAGE_KEY) !== null;
   } catch {
@@ -19,7 +19,7 @@ export function wasGuided(): boolean {
   }
 }
 
-function rememberGuided(): void {
+function rememberTour(): void {
   try {
     localStorage.setItem(STORAGE_KEY, "1");
   } catch {
@@ -28,21 +28,21 @@ function rememberGuided(): void {
 }
 
 /** The tour opens by itself over the demonstration only. */
-export const opensByItself = (run: Pick<Run, "demonstration">) => run.demonstration && !wasGuided();
+export const opensByItself = (run: Pick<Run, "demonstration">) => run.demonstration && !hasTakenTour();
 
 /** Open on the first visit of the demonstration, and on request. */
-export function useGuide(run: Run) {
+export function useTour(run: Run) {
   const [open, setOpen] = useState(() => opensByItself(run));
-  const [asked, setAsked] = useState(false);
+  const [requested, setRequested] = useState(false);
   const begin = () => {
-    setAsked(true);
+    setRequested(true);
     setOpen(true);
   };
   const end = () => {
-    rememberGuided();
+    rememberTour();
     setOpen(false);
   };
-  return { open, asked, begin, end };
+  return { open, requested, begin, end };
 }
 
 export function stepsOf(run: Run, archive: Archive, { axes, elites, colouring }: ArchiveView): Step[] {
