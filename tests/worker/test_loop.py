@@ -180,7 +180,7 @@ def change(services, **values):
 
 @pytest.fixture
 def watched(services, heartbeat, run_id, killed):
-    """The heartbeats of a worker that computes the run; `killed` lists runs whose job it kills."""
+    """Heartbeats of a worker that computes the run; `killed` lists runs whose job they kill."""
     claim(services, run_id, "worker")
     heartbeat.watch(run_id, lambda: killed.append(run_id))
     return heartbeat
