@@ -72,7 +72,8 @@ test-long: install web
 	$(call part,long server,$(SERVER) -m long)
 	@cat $(TIMES)
 
-ENGINE = $(BIN)/pytest -q -p no:schemathesis -n auto --maxprocesses 4
+# A worker keeps the tests of a file together: they share what the file has compiled.
+ENGINE = $(BIN)/pytest -q -p no:schemathesis -n auto --maxprocesses 4 --dist worksteal
 BITS = MICROCOSMOS_TEST_OPTIMISED=1 $(ENGINE) tests/engine
 SERVER = $(BIN)/pytest -q -n 3 --ignore=tests/engine --ignore=tests/examples
 TIMES := $(VENV)/times

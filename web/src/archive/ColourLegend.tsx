@@ -9,8 +9,8 @@ import { text } from "./text";
 
 export function ColourLegend({ colouring }: { colouring: Colouring }) {
   const { measure, palette, scale } = colouring;
-  const write = measure.name === AGE ? count : number;
-  const numbers = [0, 0.5, 1].map((t) => write(valueAt(scale, t)));
+  const format = measure.name === AGE ? count : number;
+  const numbers = [0, 0.5, 1].map((t) => format(valueAt(scale, t)));
   const label = measure.unit ? `${measure.title} (${measure.unit})` : measure.title;
   return (
     <ColourBar

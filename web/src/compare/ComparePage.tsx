@@ -116,10 +116,10 @@ interface Compared {
   lineIndex: number;
 }
 
-type Written = [title: string, write: (run: Run) => string];
+type FormattedFigure = [title: string, format: (run: Run) => string];
 
-const FIGURES: Written[] = [
-  ...SCORES.map(([name, title, write]): Written => [title, (run) => write(run[name], 5)]),
+const FIGURES: FormattedFigure[] = [
+  ...SCORES.map(([name, title, format]): FormattedFigure => [title, (run) => format(run[name], 5)]),
   [text.generations, (run) => `${count(run.generation)} / ${count(run.generations)}`],
   [text.evaluations, (run) => count(run.evaluations)],
   [text.diverged, (run) => count(run.diverged)],
@@ -129,7 +129,7 @@ const FIGURES: Written[] = [
 ];
 
 function Figures({ runs }: { runs: Compared[] }) {
-  const rows = FIGURES.map(([title, write]) => ({ title, values: runs.map(({ run }) => write(run)) }));
+  const rows = FIGURES.map(([title, format]) => ({ title, values: runs.map(({ run }) => format(run)) }));
   return (
     <Card id="figures" title={text.figures}>
       <RunTable runs={runs} corner={text.figure} rows={rows} />

@@ -15,12 +15,12 @@ const QUANTITIES = {
   angles: {
     ...{ of: anglesOf, item: "joint", unit: text.angleUnit },
     ...{ rest: text.restAngles, actual: text.bodyAngles },
-    write: (value: number) => `${number(value)} rad`,
+    format: (value: number) => `${number(value)} rad`,
   },
   lengths: {
     ...{ of: lengthsOf, item: "edge", unit: text.lengthUnit },
     ...{ rest: text.restLengths, actual: text.bodyLengths },
-    write: (value: number) => percent(value),
+    format: (value: number) => percent(value),
   },
 };
 
@@ -55,7 +55,7 @@ export function SpaceTimeCard({ replay, query, moment }: Props) {
 }
 
 function SpaceTime({ replay, quantity, moment }: Omit<Props, "query"> & { quantity: Quantity }) {
-  const { of, item, unit, write, ...titles } = QUANTITIES[quantity];
+  const { of, item, unit, format, ...titles } = QUANTITIES[quantity];
   const shape = useMemo(() => of(replay), [replay, of]);
   const most = useMemo(() => colourLimit(shape.rest, shape.actual), [shape]);
   const { frames, every, steps } = replay.header;
@@ -64,7 +64,7 @@ function SpaceTime({ replay, quantity, moment }: Omit<Props, "query"> & { quanti
   const { items } = shape.rest;
   const read = (column: number, row: number) => {
     const [rest, actual] = [shape.rest, shape.actual].map(({ values }) =>
-      write(values[column * items + row]!),
+      format(values[column * items + row]!),
     );
     return text.shapeAt(Math.min(steps, column * every), item, row + 1, rest!, actual!);
   };
@@ -92,7 +92,7 @@ function SpaceTime({ replay, quantity, moment }: Omit<Props, "query"> & { quanti
         <span>{text.step(0)}</span>
         <span>{text.step(steps)}</span>
       </p>
-      <DivergingLegend title={unit} end={write(most)} />
+      <DivergingLegend title={unit} end={format(most)} />
     </div>
   );
 }

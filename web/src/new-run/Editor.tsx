@@ -45,7 +45,7 @@ export function Editor(props: Props) {
       ref={form}
       onSubmit={(event) => {
         event.preventDefault();
-        if (!illegible && !editor.slipped && !refusal) void submission.start();
+        if (!illegible && !editor.invalidSweep && !refusal) void submission.start();
       }}
     >
       <div class="new-columns">

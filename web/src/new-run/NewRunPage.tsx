@@ -9,7 +9,7 @@ import { ExperimentPicker } from "./ExperimentPicker";
 import { BaseBar } from "./BaseBar";
 import { Editor } from "./Editor";
 import { usePresetCosts } from "./estimate";
-import { ofPreset } from "./sources";
+import { baseOfPreset } from "./sources";
 import { OpenFileButton, type Take, useDocument } from "./OpenDocument";
 import { useDraft } from "./draftState";
 import { text } from "./text";
@@ -53,9 +53,9 @@ function NewRunForm({ experiments, query }: { experiments: Experiment[]; query: 
         selected={selected}
         preset={selected.presets.find(({ name }) => preset === `${selected.experiment}/${name}`) ?? null}
         estimates={costs}
-        onPreset={(one, of) => draft.startFrom(ofPreset(one, of))}
+        onPreset={(one, of) => draft.startFrom(baseOfPreset(one, of))}
         onExperiment={(one) =>
-          one.presets[0] ? draft.startFrom(ofPreset(one.presets[0], one)) : setPicked(one)
+          one.presets[0] ? draft.startFrom(baseOfPreset(one.presets[0], one)) : setPicked(one)
         }
       />
       {!current && <Loading />}

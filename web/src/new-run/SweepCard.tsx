@@ -8,7 +8,7 @@ import { Card } from "../ui/Page";
 import { Options } from "../ui/Select";
 import { NameEntry } from "./ForkCard";
 import { Messages } from "./form/Entry";
-import { type Axis, nameOf, type SweepForm, isSweep, sweepErrors } from "./sweep";
+import { type Axis, nameOf, type SweepForm, isSweep, errorsAt } from "./sweep";
 import { text } from "./text";
 
 interface Props {
@@ -29,19 +29,19 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
     <Card id="sweep" kind="sweep-card" title={text.sweep}>
       <p class="help">{text.sweepAbout}</p>
       <Entries sweeping={sweeping} />
-      <Messages messages={[problems.seeds, ...sweepErrors(errors, "seeds")]} />
+      <Messages messages={[problems.seeds, ...errorsAt(errors, "seeds")]} />
       {axes.map((axis, i) => (
         <Row
           key={i}
           fields={fields}
           axis={axis}
-          messages={[problems.axes[i] ?? null, ...sweepErrors(errors, `grid.${axis.path}`)]}
+          messages={[problems.axes[i] ?? null, ...errorsAt(errors, `grid.${axis.path}`)]}
           taken={axes.map(({ path }) => path)}
           onChange={(next) => change({ axes: axes.with(i, next) })}
           onRemove={() => change({ axes: axes.toSpliced(i, 1) })}
         />
       ))}
-      <Messages messages={[problems.total, ...sweepErrors(errors, "grid")]} />
+      <Messages messages={[problems.total, ...errorsAt(errors, "grid")]} />
       <p class="sweep-foot row">
         <button type="button" onClick={add} disabled={axes.length >= fields.length}>
           {text.addAxis(axes.length === 0)}

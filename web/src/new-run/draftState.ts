@@ -17,16 +17,16 @@ import { dismissToast, offerUndo } from "../store/toasts";
 import { setQuery } from "../store/router";
 import { changedPaths } from "./form/document";
 import { withInitial } from "./initialCreatures";
-import { addressed, load, ofPreset } from "./sources";
+import { sourceAddress, load, baseOfPreset } from "./sources";
 import { text } from "./text";
 
 const SOURCE_PARAMETERS = ["preset", "from", "fork", "begin", ...FORK_PARAMETERS];
-const UNNAMED = Object.fromEntries(SOURCE_PARAMETERS.map((word) => [word, null]));
+const NO_SOURCE = Object.fromEntries(SOURCE_PARAMETERS.map((word) => [word, null]));
 
 const NONE: ReadonlySet<string> = new Set();
 
 export function useDraft(query: URLSearchParams, experiments: Experiment[]) {
-  const wanted = addressed(query);
+  const wanted = sourceAddress(query);
   const [current, setCurrent] = useState(() => loadDraft(wanted));
   const [restored, setRestored] = useState(current !== null);
   const [revision, setRevision] = useState(0);
@@ -39,7 +39,7 @@ export function useDraft(query: URLSearchParams, experiments: Experiment[]) {
   const put = (next: Draft) => {
     const address = addressOf(next.base);
     shown.current = String(address);
-    setQuery({ ...UNNAMED, ...(address && Object.fromEntries(address)) });
+    setQuery({ ...NO_SOURCE, ...(address && Object.fromEntries(address)) });
     setCurrent(next);
     setRestored(false);
     setRevision((count) => count + 1);
@@ -86,7 +86,7 @@ function useBase(
     // An address without a source keeps the current draft.
     if (shown.current === String(wanted) || (hasDraft && !wanted)) return;
     let wanting = true;
-    const firstPreset = ofPreset(experiments[0]!.presets[0]!, experiments[0]!);
+    const firstPreset = baseOfPreset(experiments[0]!.presets[0]!, experiments[0]!);
     const requested = wanted ? load(wanted, experiments) : Promise.resolve(firstPreset);
     const fail = (error: unknown) => {
       if (!hasDraft) startFrom(firstPreset);

@@ -28,12 +28,12 @@ export function useEditor(draft: DraftState, current: Draft, experiment: Experim
   if (check.estimate) drawing.current = check.estimate.drawing;
   const sweep = useSweepForm(form, spec, experiment);
   const fork = useFork(current);
-  const many = forking ? null : sweep.sent;
-  const all = useEstimate(localErrors.length === 0 ? many : null, api.estimateSweep);
-  const sent = useMemo(() => many && { sweep: many }, [many]);
+  const sweepRequest = forking ? null : sweep.sent;
+  const sweepCheck = useEstimate(localErrors.length === 0 ? sweepRequest : null, api.estimateSweep);
+  const sent = useMemo(() => sweepRequest && { sweep: sweepRequest }, [sweepRequest]);
   const submission = useSubmission(spec, fork.sent ?? sent);
   const refused = (submission.refusal?.errors ?? []).map(fieldError);
-  const errors = [...localErrors, ...(many ? specErrors(refused) : refused), ...check.errors].filter(
+  const errors = [...localErrors, ...(sweepRequest ? specErrors(refused) : refused), ...check.errors].filter(
     ({ field }) => !forking || !isForkField(field),
   );
   const [closed, close] = useClosed(form);
@@ -46,16 +46,16 @@ export function useEditor(draft: DraftState, current: Draft, experiment: Experim
     closed,
     close,
   };
-  const slipped = !forking && isSweep(sweep) && !many && hasProblems(sweep);
-  const unsent = localErrors.length > 0 || slipped ? text.hasErrors : null;
-  const problem = submission.refusal?.problem ?? unsent ?? check.problem ?? all.problem;
+  const invalidSweep = !forking && isSweep(sweep) && !sweepRequest && hasProblems(sweep);
+  const blocked = localErrors.length > 0 || invalidSweep ? text.hasErrors : null;
+  const problem = submission.refusal?.problem ?? blocked ?? check.problem ?? sweepCheck.problem;
   return {
-    ...{ form, state, errors, refused, forking, fork, sweep, check, submission, slipped, problem },
+    ...{ form, state, errors, refused, forking, fork, sweep, check, submission, invalidSweep, problem },
     /** The last drawing, which stays while values are typed. */
     drawing: drawing.current,
-    sweepErrors: all.errors,
-    estimate: many ? all.estimate : check.estimate,
-    runs: many ? sweep.total : 1,
+    sweepErrors: sweepCheck.errors,
+    estimate: sweepRequest ? sweepCheck.estimate : check.estimate,
+    runs: sweepRequest ? sweep.total : 1,
   };
 }
 
@@ -81,7 +81,7 @@ function useClosed(form: Section): [ReadonlySet<string>, FormState["close"]] {
   );
   const [closed, setClosed] = useState<ReadonlySet<string>>(seldom);
   useEffect(() => setClosed(seldom), [seldom]);
-  const close = (path: string, shut: boolean) =>
-    setClosed((now) => new Set(shut ? [...now, path] : [...now].filter((each) => each !== path)));
+  const close = (path: string, isClosed: boolean) =>
+    setClosed((now) => new Set(isClosed ? [...now, path] : [...now].filter((each) => each !== path)));
   return [closed, close];
 }

@@ -4,7 +4,7 @@ import { describe, expect, it, vi } from "vitest";
 import type { Json, Spec } from "../api/types";
 import { addressOf } from "../store/draft";
 import { forkOf, isForkField } from "./ForkCard";
-import { MAX_CREATURES, addressed, load } from "./sources";
+import { MAX_CREATURES, sourceAddress, load } from "./sources";
 import { EXPERIMENTS, experiment } from "./form/presets.fixture";
 import { type Section, formOf } from "./form/fields";
 import { messagePaths } from "./form/document";
@@ -126,7 +126,7 @@ describe("a fork", () => {
     [`begin=${SHA}`, { ...ONE, run: null }],
   ])("is named by the address %s", (text, fork) => {
     const query = new URLSearchParams(text);
-    expect(addressed(query)).toEqual([...query]);
+    expect(sourceAddress(query)).toEqual([...query]);
     expect(addressOf({ ...base, fork })).toEqual([...query]);
   });
 

@@ -2,12 +2,12 @@ import { beforeEach, describe, expect, it, vi } from "vitest";
 import type { DrawnBody, Estimate } from "../api/types";
 import { type Draft, addressOf, discardDraft, loadDraft, saveDraft } from "../store/draft";
 import { EXPERIMENTS, experiment } from "./form/presets.fixture";
-import { load, ofPreset, titleOfBase } from "./sources";
+import { load, baseOfPreset, titleOfBase } from "./sources";
 import { branchesOf, dotsOf, linesOf, tilesOf } from "./BodyDrawing";
 import { about, basis, rough, wait } from "./Costs";
 
 describe("a draft", () => {
-  const base = ofPreset(experiment("gaits").presets[0]!, experiment("gaits"));
+  const base = baseOfPreset(experiment("gaits").presets[0]!, experiment("gaits"));
   const work: Draft = { base, spec: { ...base.spec, period: 77 } };
   const stored = new Map<string, string>();
   beforeEach(() => {

@@ -25,30 +25,31 @@ function parsed(document: string): Json {
 
 /** The kind and the spec of a document; a creature becomes a search or a refinement. */
 export function readDocument(document: Json, refine = false): ReadDocument {
-  if (!isObject(document)) throw new Error(text.notADocument(named(document)));
+  if (!isObject(document)) throw new Error(text.notADocument(describe(document)));
   const { identity, spec, id } = document;
   if (isObject(identity)) {
     const creature = document as unknown as Creature;
     const made = refine ? { experiment: "refinement", creature: document } : specOf(creature);
     return { kind: "creature", creature, spec: made };
   }
-  if (isObject(spec)) return { kind: "run", spec: known(spec, "spec.experiment"), id: String(id ?? "") };
-  return { kind: "spec", spec: known(document, "experiment") };
+  if (isObject(spec))
+    return { kind: "run", spec: checkedSpec(spec, "spec.experiment"), id: String(id ?? "") };
+  return { kind: "spec", spec: checkedSpec(document, "experiment") };
 }
 
-function known(spec: Spec, field: string): Spec {
+function checkedSpec(spec: Spec, field: string): Spec {
   if (typeof spec.experiment === "string") return spec;
-  throw new Error(text.noExperiment(field, named(spec.experiment)));
+  throw new Error(text.noExperiment(field, describe(spec.experiment)));
 }
 
-function named(value: Json | undefined): string {
+function describe(value: Json | undefined): string {
   if (value === undefined) return text.nothing;
   if (Array.isArray(value)) return text.list;
   return value === null ? "null" : `${typeof value} ${JSON.stringify(value).slice(0, 40)}`;
 }
 
 /** Encodings with numeric genes, which NEAT's mutations do not vary. */
-const NUMBERS = ["direct", "weights"];
+const NUMERIC_ENCODINGS = ["direct", "weights"];
 
 /** A run in a creature's world, with its body, coupling, controller and task. */
 export function specOf(creature: Creature): Spec {
@@ -65,7 +66,7 @@ export function specOf(creature: Creature): Spec {
     control,
     ...(room && { genome: room }),
     task,
-    ...((NUMBERS.includes(genome.encoding) || isPlugin(genome.encoding)) && {
+    ...((NUMERIC_ENCODINGS.includes(genome.encoding) || isPlugin(genome.encoding)) && {
       search: { emitters: [{ operator: "iso+line" }] },
     }),
   };

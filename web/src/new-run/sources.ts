@@ -14,7 +14,7 @@ import { text } from "./text";
 /** The largest number of initial creatures, as in the schema of `search.initial`. */
 export const MAX_CREATURES = 4096;
 
-export function addressed(query: URLSearchParams): Address | null {
+export function sourceAddress(query: URLSearchParams): Address | null {
   const word = ["fork", "begin", "from", "creature", "preset"].find((name) => query.get(name));
   if (!word) return null;
   const name = query.get(word)!;
@@ -22,16 +22,16 @@ export function addressed(query: URLSearchParams): Address | null {
   return forkAddress(name, Object.fromEntries(FORK_PARAMETERS.map((each) => [each, query.get(each)])));
 }
 
-export function ofPreset(preset: Preset, { experiment }: Experiment): Base {
+export function baseOfPreset(preset: Preset, { experiment }: Experiment): Base {
   return { kind: "preset", name: `${experiment}/${preset.name}`, spec: preset.spec };
 }
 
 /** Load the source that the address names; throw a readable error if there is none. */
 export async function load(address: Address, experiments: Experiment[]): Promise<Base> {
   const [word, name] = address[0]!;
-  if (word === "preset") return named(name, experiments);
+  if (word === "preset") return presetBase(name, experiments);
   try {
-    if (word === "begin") return await runSource(name, experiments);
+    if (word === "begin") return await searchFromCreature(name, experiments);
     if (word === "fork") return await forkOf(name, Object.fromEntries(address), experiments);
     if (word === "creature") {
       const spec = specOf(await api.readCreature(name));
@@ -45,7 +45,7 @@ export async function load(address: Address, experiments: Experiment[]): Promise
 }
 
 /** A search that starts from one creature, in its world. */
-async function runSource(sha: string, experiments: Experiment[]): Promise<Base> {
+async function searchFromCreature(sha: string, experiments: Experiment[]): Promise<Base> {
   const spec = completeSpec(specOf(await api.readCreature(sha)), experiments);
   if (!isSearch(spec)) throw new Error(text.notEvolvable);
   const fork = { run: null, creature: sha, cells: null, at: null, creatures: 1 };
@@ -60,7 +60,7 @@ async function forkOf(
 ): Promise<Base> {
   const run = await api.readRun(id);
   if (!isSearch(run.spec)) {
-    if (creature) return runSource(creature, experiments);
+    if (creature) return searchFromCreature(creature, experiments);
     throw new Error(text.noArchive);
   }
   const spec = withInitial(completeSpec(run.spec, experiments), []);
@@ -89,8 +89,8 @@ function generationOf(at: string | undefined): number | null {
   throw new Error(text.badGeneration(at));
 }
 
-function named(name: string, experiments: Experiment[]): Base {
-  const all = experiments.flatMap((one) => one.presets.map((preset) => ofPreset(preset, one)));
+function presetBase(name: string, experiments: Experiment[]): Base {
+  const all = experiments.flatMap((one) => one.presets.map((preset) => baseOfPreset(preset, one)));
   const found = all.find((base) => base.name === name);
   if (found) return found;
   const known = all.map((base) => base.name).join(", ");

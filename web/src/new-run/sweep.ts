@@ -29,15 +29,15 @@ export type SweepForm = ReturnType<typeof useSweepForm>;
 function readAll(form: Section, spec: Spec, seeded: boolean, typed: Typed) {
   const fields = sweepable(form, spec);
   const { seeds, problem } = seeded ? readSeeds(typed.seeds) : { seeds: 1, problem: null };
-  const readings = typed.axes.map(({ path, text: typed }) => {
+  const parsed = typed.axes.map(({ path, text: typed }) => {
     const field = fields.find((one) => one.path === path);
     return field ? readValues(field, typed) : { values: [], problem: text.fieldGone };
   });
-  const total = readings.reduce((product, { values }) => product * values.length, seeds);
+  const total = parsed.reduce((product, { values }) => product * values.length, seeds);
   const many = total > MAX_RUNS ? text.tooManyRuns(MAX_RUNS.toLocaleString("en"), total) : null;
-  const problems = { seeds: problem, axes: readings.map((one) => one.problem), total: many };
-  const right = !problem && !many && readings.every((one) => one.problem === null);
-  const grid = Object.fromEntries(typed.axes.map(({ path }, i) => [path, readings[i]!.values]));
+  const problems = { seeds: problem, axes: parsed.map((one) => one.problem), total: many };
+  const right = !problem && !many && parsed.every((one) => one.problem === null);
+  const grid = Object.fromEntries(typed.axes.map(({ path }, i) => [path, parsed[i]!.values]));
   const wanted = right && (total > 1 || typed.axes.length > 0);
   // A single run is no sweep.
   const sent: SweepRequest | null = wanted ? { spec, seeds, grid, name: typed.name.trim() || null } : null;
@@ -48,7 +48,7 @@ function readAll(form: Section, spec: Spec, seeded: boolean, typed: Typed) {
 export const isSweep = ({ seeds, axes }: SweepForm) => axes.length > 0 || seeds.trim() !== "1";
 
 /** Errors of the server for one field of the grid, or for the seeds. */
-export function sweepErrors(errors: readonly FieldError[], path: string): string[] {
+export function errorsAt(errors: readonly FieldError[], path: string): string[] {
   const mine = errors.filter(({ field }) => field === path || field.startsWith(`${path}[`));
   return mine.map(({ message }) => message);
 }
@@ -71,18 +71,18 @@ export function nameOf({ path, title }: Leaf): string {
   return around.length > 0 ? `${around.join(" ")}: ${title.toLowerCase()}` : title;
 }
 
-export interface Reading {
+export interface ParsedValues {
   values: Json[];
   /** The error; null for valid values. */
   problem: string | null;
 }
 
 /** Values between commas or blanks, or a JSON list. */
-export function readValues(field: Leaf, input: string): Reading {
+export function readValues(field: Leaf, input: string): ParsedValues {
   const values = valuesOf(field, input.trim());
   if (values === null) return { values: [], problem: text.needsList };
   if (values.length === 0) return { values, problem: text.needsValues };
-  const wrong = values.map((value) => wrongWith(field, value)).find((said) => said !== null);
+  const wrong = values.map((value) => valueError(field, value)).find((message) => message !== null);
   const twice = values.find((value, i) => values.findIndex((one) => same(one, value)) < i);
   const repeated = twice === undefined ? null : text.repeated(JSON.stringify(twice));
   return { values, problem: wrong ?? repeated };
@@ -108,7 +108,7 @@ function listOf(text: string): Json[] | null {
   }
 }
 
-const FLAGS: Record<string, boolean> = {
+const FLAG_WORDS: Record<string, boolean> = {
   true: true,
   on: true,
   yes: true,
@@ -116,17 +116,17 @@ const FLAGS: Record<string, boolean> = {
   off: false,
   no: false,
 };
-const NOTHING = ["null", "none", "auto"];
+const NULL_WORDS = ["null", "none", "auto"];
 
 function valueOf(field: Leaf, word: string): Json {
-  if (field.kind === "flag") return FLAGS[word.toLowerCase()] ?? word;
-  if ("nullable" in field && field.nullable && NOTHING.includes(word)) return null;
+  if (field.kind === "flag") return FLAG_WORDS[word.toLowerCase()] ?? word;
+  if ("nullable" in field && field.nullable && NULL_WORDS.includes(word)) return null;
   if (field.kind === "number") return typed(word);
   if (field.kind !== "choice") return word;
   return field.options.find((option) => String(option) === word) ?? word;
 }
 
-function wrongWith(field: Leaf, value: Json): string | null {
+function valueError(field: Leaf, value: Json): string | null {
   if (field.kind === "number") return numberError(field, value);
   if (field.kind === "flag" && typeof value !== "boolean") return text.needsFlag(value);
   if (field.kind !== "choice" || value === null) return null;

@@ -6,10 +6,10 @@ import { text } from "./text";
 
 export type Figure = [name: string, value: string];
 
-type Write = (value: number | null | undefined, digits?: number) => string;
+type Format = (value: number | null | undefined, digits?: number) => string;
 
 /** The scores of an archive, with their titles and formats. */
-export const SCORES: [name: "qd_score" | "coverage" | "best", title: string, write: Write][] = [
+export const SCORES: [name: "qd_score" | "coverage" | "best", title: string, format: Format][] = [
   ["qd_score", text.qdScore, number],
   ["coverage", text.coverage, percent],
   ["best", text.bestFitness, number],
@@ -45,7 +45,7 @@ export function figuresOf(run: Run): Figure[] {
       ];
     default:
       return [
-        ...SCORES.map(([name, title, write]): Figure => [title, write(run[name])]),
+        ...SCORES.map(([name, title, format]): Figure => [title, format(run[name])]),
         [text.diverged, count(run.diverged)],
       ];
   }
@@ -73,12 +73,12 @@ const LIMITS: Record<string, (limit: number) => string> = {
 
 /** A sentence from `summary.ended`, such as `evaluations after generation 12`. */
 export function endReasonOf({ summary, spec, generations }: Run): string {
-  const told = typeof summary?.ended === "string" ? summary.ended : "";
-  const [, name, generation] = /^(\w+) after generation (\d+)$/.exec(told) ?? [];
+  const ended = typeof summary?.ended === "string" ? summary.ended : "";
+  const [, name, generation] = /^(\w+) after generation (\d+)$/.exec(ended) ?? [];
   const limit = name === undefined ? null : limitOf(spec, name);
   const reason = limit === null ? undefined : LIMITS[name!]?.(limit);
   if (reason) return text.endedAfter(count(Number(generation)), reason);
-  if (told) return text.endedEarly(told.replaceAll("_", " "));
+  if (ended) return text.endedEarly(ended.replaceAll("_", " "));
   return generations === 1 ? text.completedOne : text.completed(count(generations));
 }
 

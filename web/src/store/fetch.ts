@@ -58,9 +58,9 @@ export function useExperiments(): Loaded<Experiment[]> {
 /** Keep a run, its archive and its curves in the store. */
 export function useRunDetail(id: string): Loaded<true> {
   const epoch = useEpoch(id);
-  const binned = useStore((state) => Boolean(state.runs.get(id)?.deleted_at));
+  const inBin = useStore((state) => Boolean(state.runs.get(id)?.deleted_at));
   useEffect(() => retain([id]), [id]);
-  return useFetched(() => readDetail(id, true), [id, epoch, binned]);
+  return useFetched(() => readDetail(id, true), [id, epoch, inBin]);
 }
 
 /** Keep the curves of several runs in the store. */
@@ -133,18 +133,18 @@ interface Past {
 /** The history of an archive, if a past generation is wanted; read again for a newer one. */
 export function useHistory(id: string, names: string[], at: number | null): Loaded<Past | null> {
   const epoch = useEpoch(id);
-  const [turn, setTurn] = useState(0);
+  const [retries, setRetries] = useState(0);
   const joined = names.join(",");
   const wanted = at !== null;
   const loaded = useFetched(async () => {
     if (!wanted) return null;
     const history = await api.readHistory(id, joined ? joined.split(",") : []);
     return { history, measures: measuresOf(history) };
-  }, [id, epoch, joined, wanted, turn]);
-  const outgrown = wanted && loaded.value !== null && at > loaded.value.history.generation;
+  }, [id, epoch, joined, wanted, retries]);
+  const outdated = wanted && loaded.value !== null && at > loaded.value.history.generation;
   useEffect(() => {
-    if (outgrown) setTurn((count) => count + 1);
-  }, [outgrown]);
+    if (outdated) setRetries((count) => count + 1);
+  }, [outdated]);
   return loaded;
 }
 

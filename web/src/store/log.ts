@@ -22,24 +22,28 @@ export function useLog({ id, ...run }: Run): LoadedLog {
   const { status, requested_state, attempt, warning, error, device } = run;
   const slow = useThrottled(run.generation, SLOW_MS);
   const known = useRef<LogEntry[]>([]);
-  const [whole, setWhole] = useState(false);
+  const [readAll, setReadAll] = useState(false);
   const loaded = useFetched(async () => {
-    known.current = await extendLog(id, known.current, whole);
+    known.current = await extendLog(id, known.current, readAll);
     return known.current;
-  }, [id, epoch, status, requested_state, attempt, warning, error, device, slow, whole]);
+  }, [id, epoch, status, requested_state, attempt, warning, error, device, slow, readAll]);
   const earlier = () => {
     known.current = [];
-    setWhole(true);
+    setReadAll(true);
   };
-  const more = !whole && (loaded.value?.length ?? 0) >= PAGE;
+  const more = !readAll && (loaded.value?.length ?? 0) >= PAGE;
   return { ...loaded, earlier: more ? earlier : null };
 }
 
 /** Add the newest entries to known ones; without known ones, read all or the last page. */
-export async function extendLog(id: string, known: readonly LogEntry[], whole: boolean): Promise<LogEntry[]> {
+export async function extendLog(
+  id: string,
+  known: readonly LogEntry[],
+  readAll: boolean,
+): Promise<LogEntry[]> {
   // Newer entries of the current attempt may replace older ones.
   const kept = known.filter(({ attempt }) => attempt < known.at(-1)!.attempt);
-  const after = kept.at(-1)?.id ?? (whole ? 0 : undefined);
+  const after = kept.at(-1)?.id ?? (readAll ? 0 : undefined);
   return [...kept, ...(await readFollowing(id, after))];
 }
 

@@ -41,7 +41,7 @@ function request(shas: readonly string[]): void {
   visible = new Set(shas);
   for (const sha of shas) {
     const motion = cache.get(sha);
-    if (motion) store(sha, motion);
+    if (motion) addMotion(sha, motion);
   }
   pending = shas.filter((sha) => !cache.has(sha) && !requests.has(sha));
   startRequests();
@@ -58,7 +58,7 @@ function startRequest(sha: string): void {
   };
   const end = poll(async () => decoded(await api.readMotion(sha)), {
     value: (motion) => {
-      store(sha, motion);
+      addMotion(sha, motion);
       done();
       for (const listener of listeners) listener();
     },
@@ -75,18 +75,18 @@ function stop(): void {
   for (const end of requests.values()) end();
   requests.clear();
   visible = new Set();
-  trim();
+  dropOldest();
 }
 
 /** Add a motion as the newest. */
-function store(sha: string, motion: Motion): void {
+function addMotion(sha: string, motion: Motion): void {
   cache.delete(sha);
   cache.set(sha, motion);
-  trim();
+  dropOldest();
 }
 
 /** Drop the oldest invisible motions beyond the limit. */
-function trim(): void {
+function dropOldest(): void {
   for (const oldest of cache.keys()) {
     if (cache.size <= visible.size + MAX_HIDDEN) break;
     if (!visible.has(oldest)) cache.delete(oldest);

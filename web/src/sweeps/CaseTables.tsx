@@ -17,7 +17,7 @@ interface LegendProps {
 
 /** One legend for all plots, which draw only the selected cases. */
 export function Cases({ cases, selected, onSelect }: LegendProps) {
-  const turn = (caseIndex: number) =>
+  const toggle = (caseIndex: number) =>
     onSelect(
       selected.includes(caseIndex) ? selected.filter((one) => one !== caseIndex) : [...selected, caseIndex],
     );
@@ -29,7 +29,7 @@ export function Cases({ cases, selected, onSelect }: LegendProps) {
             <input
               type="checkbox"
               checked={selected.includes(shown.caseIndex)}
-              onChange={() => turn(shown.caseIndex)}
+              onChange={() => toggle(shown.caseIndex)}
             />
             <CaseName shown={shown} />
           </label>
@@ -47,9 +47,9 @@ function CaseName({ shown: { caseIndex, name } }: { shown: ShownCase }) {
   );
 }
 
-type Write = (value: number | null) => string;
+type Format = (value: number | null) => string;
 
-const KNOWN: [name: string, title: string, write: Write][] = [
+const KNOWN_FIGURES: [name: string, title: string, format: Format][] = [
   ...SCORES,
   ["evaluations", text.evaluations, count],
 ];
@@ -58,8 +58,8 @@ const KNOWN: [name: string, title: string, write: Write][] = [
 function figuresOf(cases: ShownCase[]) {
   const names = new Set(cases.flatMap(({ summary }) => Object.keys(summary.finals)));
   return [...names].map((name) => {
-    const [, title, write] = KNOWN.find(([known]) => known === name) ?? [name, words(name), number];
-    return { name, title, write };
+    const [, title, format] = KNOWN_FIGURES.find(([known]) => known === name) ?? [name, words(name), number];
+    return { name, title, format };
   });
 }
 
@@ -68,9 +68,9 @@ export function Finals({ cases, generation }: { cases: ShownCase[]; generation: 
   const columns: Column<ShownCase>[] = [
     { title: text.case, cell: (shown) => <CaseName shown={shown} /> },
     { title: text.runs, cell: ({ summary }) => doneOf(summary.members) },
-    ...figuresOf(cases).map(({ name, title, write }) => ({
+    ...figuresOf(cases).map(({ name, title, format }) => ({
       title,
-      cell: ({ summary }: ShownCase) => <Figure spread={summary.finals[name]} write={write} />,
+      cell: ({ summary }: ShownCase) => <Figure spread={summary.finals[name]} format={format} />,
     })),
   ];
   return (
@@ -90,13 +90,13 @@ function doneOf(members: Member[]): string {
   return done === members.length ? count(done) : text.finished(done, members.length);
 }
 
-function Figure({ spread, write }: { spread: Spread | undefined; write: Write }) {
+function Figure({ spread, format }: { spread: Spread | undefined; format: Format }) {
   if (!spread || spread.median === null) return <>{DASH}</>;
   const { median, low, high, min, max } = spread;
   return (
-    <span title={text.extremes(write(min), write(max))}>
-      <b>{write(median)}</b>
-      {min !== max && <span class="quiet small spread">{text.range(write(low), write(high))}</span>}
+    <span title={text.extremes(format(min), format(max))}>
+      <b>{format(median)}</b>
+      {min !== max && <span class="quiet small spread">{text.range(format(low), format(high))}</span>}
     </span>
   );
 }
@@ -124,9 +124,9 @@ export function Members({ cases }: { cases: ShownCase[] }) {
       title: text.generations,
       cell: ({ member }) => `${count(member.generation)} / ${count(member.generations)}`,
     },
-    ...figuresOf(cases).map(({ name, title, write }) => ({
+    ...figuresOf(cases).map(({ name, title, format }) => ({
       title,
-      cell: ({ shown, i }: Row) => write(shown.summary.finals[name]?.values[i] ?? null),
+      cell: ({ shown, i }: Row) => format(shown.summary.finals[name]?.values[i] ?? null),
     })),
   ];
   return (

@@ -41,10 +41,10 @@ export function SweepPage({ id, query }: { id: string; query: URLSearchParams })
 
 function LoadedSweep({ value, query, each }: { value: SweepDetail; query: URLSearchParams; each: boolean }) {
   const { sweep, summary, curves } = value;
-  const selected = chosenOf(query, summary.cases.length);
+  const selected = selectedCases(query, summary.cases.length);
   const cases = summary.cases.map(shownOf);
   const shown = selected.map((caseIndex) => cases[caseIndex]!);
-  const choose = (places: number[]) => setQuery({ cases: places.length > 0 ? places.join() : "-" });
+  const choose = (indices: number[]) => setQuery({ cases: indices.length > 0 ? indices.join() : "-" });
   return (
     <>
       <Head sweep={sweep} />
@@ -74,11 +74,11 @@ const shownOf = (summary: CaseSummary, caseIndex: number): ShownCase => ({
 });
 
 /** The cases in the address, or the first ones. */
-function chosenOf(query: URLSearchParams, count: number): number[] {
+function selectedCases(query: URLSearchParams, count: number): number[] {
   const all = [...Array(count).keys()];
-  const asked = query.get("cases");
-  if (asked === null) return all.slice(0, MAX_LINES);
-  const named = asked.split(",").map(Number);
+  const requested = query.get("cases");
+  if (requested === null) return all.slice(0, MAX_LINES);
+  const named = requested.split(",").map(Number);
   return all.filter((caseIndex) => named.includes(caseIndex));
 }
 
@@ -128,7 +128,7 @@ function Actions({ sweep, title }: { sweep: Sweep; title: string }) {
   const refusal = useRefusal(sweep);
   if (refusal) return <span class="quiet small">{refusal}</span>;
   const { queued = 0, running = 0, paused = 0 } = status_counts;
-  const going = queued + running;
+  const active = queued + running;
   if (total === 0) return null;
   return (
     <span class="actions" role="group" aria-label={text.allRuns}>
@@ -140,13 +140,13 @@ function Actions({ sweep, title }: { sweep: Sweep; title: string }) {
           onConfirm={() => sendSweepCommand(id, "resume")}
         />
       )}
-      {going > 0 && <button onClick={() => void sendSweepCommand(id, "pause")}>{text.pauseAll}</button>}
-      {going + paused > 0 && (
+      {active > 0 && <button onClick={() => void sendSweepCommand(id, "pause")}>{text.pauseAll}</button>}
+      {active + paused > 0 && (
         <button class="danger" onClick={() => cancelSweepWithUndo(id, title)}>
           {text.cancelAll}
         </button>
       )}
-      {going === 0 && (
+      {active === 0 && (
         <button class="danger" onClick={() => void removeSweep(id)}>
           {text.deleteAll}
         </button>

@@ -60,11 +60,11 @@ export function caseName(values: CaseValues): string {
   const paths = Object.keys(values);
   const last = (path: string) => path.split(".").at(-1)!;
   const clear = new Set(paths.map(last)).size === paths.length;
-  const parts = paths.map((path) => `${clear ? last(path) : path} ${valueText(values[path]!)}`);
+  const parts = paths.map((path) => `${clear ? last(path) : path} ${gridValueText(values[path]!)}`);
   return parts.join(", ") || text.oneCase;
 }
 
-export function valueText(value: Json): string {
+export function gridValueText(value: Json): string {
   if (typeof value === "number") return number(value, 6);
   const written = typeof value === "string" ? value : JSON.stringify(value);
   return written.length > 40 ? `${written.slice(0, 39)}…` : written;

@@ -1,4 +1,4 @@
-/** Reading a JSON schema: references, what may be null, ranges, defaults. */
+/** Read a JSON schema: references, nullable types, ranges, defaults. */
 
 import type { Json, Schema } from "../../api/types";
 

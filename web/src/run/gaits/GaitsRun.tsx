@@ -22,18 +22,18 @@ export function GaitsRun({ run, query }: ResultsProps) {
   const { results, missing } = useTable(run);
   const forms = formsOf(run.spec);
   const wanted = query.get("form") ?? "";
-  const asked = [...forms, REPLAYS].includes(wanted) ? wanted : forms[0]!;
-  const shown = asked === REPLAYS ? forms : [asked];
+  const requested = [...forms, REPLAYS].includes(wanted) ? wanted : forms[0]!;
+  const shown = requested === REPLAYS ? forms : [requested];
   const rows = (results?.rows ?? []).filter((row) => shown.includes(String(row.form)));
-  const [near, setNear] = useState<Point | null>(null);
-  const settled = useLastMark(near);
+  const [focused, setFocused] = useState<Point | null>(null);
+  const settled = useLastMark(focused);
   return (
     <>
       <Card
         id="displacement"
         kind="plot-card"
         title={text.title}
-        actions={forms.length > 1 && <Forms forms={forms} selected={asked} />}
+        actions={forms.length > 1 && <Forms forms={forms} selected={requested} />}
       >
         {missing ? (
           <p class="quiet waiting">{missing}</p>
@@ -41,13 +41,13 @@ export function GaitsRun({ run, query }: ResultsProps) {
           <div class={shown.length > 1 ? "" : "with-replay"}>
             <div class={shown.length > 1 ? "beside" : ""}>
               {shown.map((form) => (
-                <Sweep key={form} {...{ run, query, form }} all={results!.rows} onFocusPoint={setNear} />
+                <Sweep key={form} {...{ run, query, form }} all={results!.rows} onFocusPoint={setFocused} />
               ))}
             </div>
             <MarkReplay point={settled} />
           </div>
         )}
-        {rows.length > 0 && <Key rows={rows} />}
+        {rows.length > 0 && <MarkLegend rows={rows} />}
       </Card>
       {rows.length > 0 && <TableCard run={run} query={query} rows={rows} />}
     </>
@@ -96,7 +96,7 @@ function Sweep({ run, form, all, onFocusPoint }: SweepProps) {
   );
 }
 
-function Key({ rows }: { rows: ResultRow[] }) {
+function MarkLegend({ rows }: { rows: ResultRow[] }) {
   const doubtful = rows.some((row) => row.status === "ok" && (row.limited || row.warnings));
   const failed = rows.some((row) => row.status !== "ok");
   return (
@@ -120,21 +120,21 @@ function Key({ rows }: { rows: ResultRow[] }) {
 const SETTLE_MS = 120;
 
 /** The last mark under a resting pointer; leaving it keeps its replay. */
-function useLastMark(near: Point | null): Point | null {
+function useLastMark(focused: Point | null): Point | null {
   const [last, setLast] = useState<Point | null>(null);
-  useDebounced(near?.href ? near : null, SETTLE_MS, setLast);
+  useDebounced(focused?.href ? focused : null, SETTLE_MS, setLast);
   return last;
 }
 
 function MarkReplay({ point }: { point: Point | null }) {
   return (
     <aside class="mark-replay" aria-label={text.replay}>
-      {point ? <Playing key={point.href} point={point} /> : <p class="quiet small">{text.pointAtMark}</p>}
+      {point ? <MarkPlayer key={point.href} point={point} /> : <p class="quiet small">{text.pointAtMark}</p>}
     </aside>
   );
 }
 
-function Playing({ point }: { point: Point }) {
+function MarkPlayer({ point }: { point: Point }) {
   const rendering = useReplays([shaOf(point.href!)]);
   const replay = rendering.replays?.[0];
   const [name, ...figures] = point.tooltip;

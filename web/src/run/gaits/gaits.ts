@@ -21,7 +21,7 @@ export const formsOf = (spec: Spec) => strings(spec.forms);
 
 /** Common axes of several forms make them comparable. */
 export function sweepAxes(spec: Spec, rows: readonly ResultRow[]): { x: Axis; y: Axis } {
-  const ways = rows.filter(finished).map((row) => Number(row.displacement));
+  const displacements = rows.filter(finished).map((row) => Number(row.displacement));
   const format = (value: number) => number(value, 2);
   return {
     x: {
@@ -29,7 +29,7 @@ export function sweepAxes(spec: Spec, rows: readonly ResultRow[]): { x: Axis; y:
       scale: logAround(numbers(spec.viscosities)),
       format,
     },
-    y: { title: text.displacement, scale: fromZero(ways), format },
+    y: { title: text.displacement, scale: fromZero(displacements), format },
   };
 }
 
@@ -50,24 +50,24 @@ const finished = (row: ResultRow) => row.status === "ok" && measure(row, "displa
 /** True if warnings or active limits make a point doubtful. */
 const doubtful = (row: ResultRow) => Number(row.limited) > 0 || Boolean(row.warnings);
 
-function doubtsOf(row: ResultRow): string[] {
-  const said = String(row.warnings ?? "")
+function warningsOf(row: ResultRow): string[] {
+  const warnings = String(row.warnings ?? "")
     .split("; ")
     .filter(Boolean);
-  if (said.length > 0 || !doubtful(row)) return said;
+  if (warnings.length > 0 || !doubtful(row)) return warnings;
   return [text.limited(percent(Number(row.limited)))];
 }
 
 function pointOf(row: ResultRow, hrefOf: Href): Point {
-  const way = finished(row) ? measure(row, "displacement") : null;
+  const displacement = finished(row) ? measure(row, "displacement") : null;
   const figures = [
-    way === null ? words(String(row.status)) : text.cellsPerCycle(number(way)),
+    displacement === null ? words(String(row.status)) : text.cellsPerCycle(number(displacement)),
     text.reynolds(number(measure(row, "reynolds"))),
-    ...doubtsOf(row),
+    ...warningsOf(row),
   ];
   return {
     x: Number(row.viscosity),
-    y: way,
+    y: displacement,
     hollow: doubtful(row),
     ...(row.creature && { href: hrefOf(row.creature) }),
     tooltip: [text.mark(words(String(row.swimmer)), number(Number(row.viscosity))), ...figures],

@@ -44,7 +44,7 @@ export function FoldPlayer({ replay, target }: { replay: Replay; target: Target 
   };
   return (
     <div class="fold-player">
-      <Still fold={fold} time={moment} name={text.filamentFor(target.name)} />
+      <MomentPicture fold={fold} time={moment} name={text.filamentFor(target.name)} />
       <div class="row">
         <button onClick={() => setPlaying(!playing)}>{playing ? text.pause : text.play}</button>
         <StepRange time={moment} {...{ last, every, steps }} onScrub={scrub} />
@@ -72,7 +72,7 @@ function Moments({ fold, onSelect }: { fold: Fold; onSelect: (share: number) => 
       {MOMENTS.map((share) => (
         <li key={share}>
           <button class="plain" onClick={() => onSelect(share)}>
-            <Still
+            <MomentPicture
               fold={fold}
               time={share * (frames - 1)}
               name={text.afterSteps(Math.round(share * steps))}
@@ -85,7 +85,7 @@ function Moments({ fold, onSelect }: { fold: Fold; onSelect: (share: number) => 
   );
 }
 
-function Still({ fold, time, name }: { fold: Fold; time: number; name: string }) {
+function MomentPicture({ fold, time, name }: { fold: Fold; time: number; name: string }) {
   return (
     <CanvasStage
       size={fold.replay.header.size}

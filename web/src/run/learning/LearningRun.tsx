@@ -37,13 +37,13 @@ export function LearningRun({ run, query }: ResultsProps) {
   );
 }
 
-interface Ends {
+interface Pair {
   run: Run;
   before: ResultRow;
   after: ResultRow;
 }
 
-function Improvement({ run, before, after }: Ends) {
+function Improvement({ run, before, after }: Pair) {
   return (
     <Card id="films" kind="films" title={text.beforeAndAfter}>
       {before.creature === after.creature ? (
@@ -55,14 +55,14 @@ function Improvement({ run, before, after }: Ends) {
   );
 }
 
-function SideBySide({ run, before, after }: Ends) {
+function SideBySide({ run, before, after }: Pair) {
   const rendering = useReplays([before.creature!, after.creature!]);
   const [first, last] = rendering.replays ?? [];
   const films = useMemo(() => {
     if (!first || !last) return [];
     return [
-      { replay: first, name: <Name {...{ run, row: before }} title={text.before} /> },
-      { replay: last, name: <Name {...{ run, row: after }} title={text.after} /> },
+      { replay: first, name: <CreatureLink {...{ run, row: before }} title={text.before} /> },
+      { replay: last, name: <CreatureLink {...{ run, row: after }} title={text.after} /> },
     ];
   }, [run.id, first, last]);
   return (
@@ -73,7 +73,7 @@ function SideBySide({ run, before, after }: Ends) {
   );
 }
 
-function Name({ run, row, title }: { run: Run; row: ResultRow; title: string }) {
+function CreatureLink({ run, row, title }: { run: Run; row: ResultRow; title: string }) {
   return (
     <>
       <b>{title}</b> {text.fitness(number(Number(row.fitness), 4))}{" "}
@@ -85,7 +85,7 @@ function Name({ run, row, title }: { run: Run; row: ResultRow; title: string }) 
 }
 
 /** The largest number of marks on a line. */
-const MARKS = 120;
+const MAX_MARKS = 120;
 const LOSS = "loss of ";
 
 export interface LearningCurve {
@@ -105,14 +105,14 @@ export function learningCurveOf(run: Run, curves: Curves): LearningCurve {
   );
   const lines = names.map((name, k) => lineOf(name, curves, before, k));
   const values = lines.flatMap(({ points }) => points.map(({ y }) => y ?? 0));
-  const rises = around(values);
+  const range = paddedScale(values);
   const steps = { log: false, low: 0, high: Math.max(1, run.generations - before) };
   return {
     title: folds ? text.lossAgainstUpdates : text.fitnessAgainstSteps,
     x: { title: folds ? text.update : text.stepAxis, scale: steps, format: count },
     y: folds
       ? { title: text.lossAxis, scale: logAround(values), format: (value) => number(value, 2) }
-      : { title: text.fitnessAxis, scale: rises, format: (value) => number(value, digitsOf(rises)) },
+      : { title: text.fitnessAxis, scale: range, format: (value) => number(value, digitsOf(range)) },
     lines,
   };
 }
@@ -120,7 +120,7 @@ export function learningCurveOf(run: Run, curves: Curves): LearningCurve {
 function lineOf(column: string, curves: Curves, before: number, k: number): Line {
   const [name, values] = [column.replace(LOSS, ""), curves.summary[column]!];
   const step = (i: number) => curves.generation[i]! - before;
-  const every = Math.max(1, Math.ceil(values.length / MARKS));
+  const every = Math.max(1, Math.ceil(values.length / MAX_MARKS));
   const kept = values.map((_, i) => i).filter((i) => i % every === 0 || i === values.length - 1);
   return {
     name,
@@ -137,11 +137,11 @@ function lineOf(column: string, curves: Curves, before: number, k: number): Line
 }
 
 /** A linear scale that need not start at zero. */
-function around(values: number[]): Axis["scale"] {
+function paddedScale(values: number[]): Axis["scale"] {
   if (values.length === 0) return fromZero([1]);
   const [low, high] = [Math.min(...values), Math.max(...values)];
-  const beside = 0.07 * (high - low || Math.abs(high) || 1);
-  return { log: false, low: low - beside, high: high + beside };
+  const margin = 0.07 * (high - low || Math.abs(high) || 1);
+  return { log: false, low: low - margin, high: high + margin };
 }
 
 /** Digits that tell the ticks of an axis apart. */
