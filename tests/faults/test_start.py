@@ -76,7 +76,7 @@ def test_a_server_without_an_admin_token_does_not_listen(tmp_path, refused):
     tokens.create(shared, "reader", "read")
     shared.close()
     said = refused(MICROCOSMOS_AUTH="required", PORT=str(free_port()))
-    assert "none is live: make one with `python -m server.auth create" in said
+    assert "there is none: create one with `python -m server.auth create" in said
 
 
 @pytest.mark.long
