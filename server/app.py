@@ -1,4 +1,4 @@
-"""The application, put together."""
+"""Assemble the application."""
 
 import asyncio
 from collections.abc import AsyncIterator
@@ -14,10 +14,10 @@ from .auth import bootstrap
 from .auth import routes as tokens
 from .auth.authenticate import Authenticator
 from .auth.authorize import MAY_READ, PUBLIC
-from .auth.capability import HEADER
 from .auth.middleware import PrincipalMiddleware
+from .auth.share_access import SHARE_HEADER
 from .auth.tokens import watch
-from .core import api, errors, page
+from .core import api, errors, static_files
 from .core.processes import on_stop_signal
 from .core.security_headers import SecurityHeaders, redact_request_log
 from .creatures import routes as creatures
@@ -37,7 +37,7 @@ from .services.services import Services, connect
 from .settings import Settings
 from .shares import page as share_page
 from .shares import routes as shares
-from .shares.capability import open_share
+from .shares.access import open_share
 from .specs import routes as experiments
 from .sweeps import routes as sweeps
 from .tables import migrations
@@ -75,7 +75,7 @@ def create_app(services: Services) -> FastAPI:
         authenticator=app.state.authenticator,
         open_share=partial(open_share, services),
     )
-    app.add_middleware(SecurityHeaders, share_header=HEADER)
+    app.add_middleware(SecurityHeaders, share_header=SHARE_HEADER)
     app.add_middleware(CountRequests, metrics=app.state.metrics)
     router = APIRouter(prefix="/api/v1", responses=api.PROBLEMS)
     for package in ROUTES:
@@ -83,7 +83,7 @@ def create_app(services: Services) -> FastAPI:
     router.include_router(api.fallback, dependencies=[MAY_READ])
     app.include_router(router)
     app.include_router(health.outside)
-    for public in (share_page.router, page.router):
+    for public in (share_page.router, static_files.router):
         app.include_router(public, dependencies=[PUBLIC])
     return app
 

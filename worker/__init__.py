@@ -1,1 +1,1 @@
-"""Takes runs from the queue and carries them out; the renderer of creatures too."""
+"""The worker: computes queued runs, and makes renderings and audits of creatures."""

@@ -1,11 +1,11 @@
-"""Make audits, beside the renderer: they take minutes, and replays must not wait for them.
+"""The auditor: makes audits in a process of its own, so that replays need not wait for them.
 
-The engine is imported with the first audit; until then this process needs little memory.
+The first audit imports the engine; until then this process needs little memory.
 """
 
 from operator import attrgetter
 
-from .process import log_to_stderr
+from .process_setup import log_to_stderr
 from .renderer import serve
 
 if __name__ == "__main__":

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import psutil
 
-from . import nvidia, processor
+from . import cpu, nvidia
 
-FRACTION = "XLA_PYTHON_CLIENT_MEM_FRACTION"
-TAKEN = 0.75
-"""The part of a GPU's memory that JAX takes if it has the GPU alone."""
+MEMORY_FRACTION = "XLA_PYTHON_CLIENT_MEM_FRACTION"
+DEFAULT_FRACTION = 0.75
+"""Fraction of a GPU's memory that JAX allocates by default."""
 
 
 @dataclass(frozen=True)
@@ -27,28 +27,29 @@ class Device:
 
 
 def find(index: int, workers: int = 1) -> Device:
-    """Return the device of the worker with this number: a GPU of its own if there are any.
+    """Return the device of the worker with this number: a GPU, if there is any.
 
-    More workers than GPUs share them and their memory. Without a GPU each worker has its part
-    of the processor's threads; no result depends on their number.
+    If there are more workers than GPUs, they share the GPUs and their memory. Without a GPU,
+    the workers divide the CPU threads; no result depends on the number of threads.
     """
     gpus = nvidia.visible()
     if not gpus:
-        threads = processor.share(processor.threads(), index, workers)
-        name = f"{processor.model()} ({len(threads)} threads)"
+        threads = cpu.share(cpu.threads(), index, workers)
+        name = f"{cpu.model()} ({len(threads)} threads)"
         return Device(name, memory(), {}, threads=tuple(threads))
     gpu = gpus[index % len(gpus)]
     sharing = max(1, len(range(index % len(gpus), workers, len(gpus))))
     environment = {"CUDA_VISIBLE_DEVICES": gpu.uuid}
     if sharing == 1:
         return Device(gpu.name, gpu.memory_bytes, environment, gpu.uuid)
-    environment[FRACTION] = os.environ.get(FRACTION, f"{TAKEN / sharing:.3f}")
+    fraction = f"{DEFAULT_FRACTION / sharing:.3f}"
+    environment[MEMORY_FRACTION] = os.environ.get(MEMORY_FRACTION, fraction)
     name = f"{gpu.name} (shared by {sharing} workers)"
     return Device(name, gpu.memory_bytes // sharing, environment, gpu.uuid)
 
 
 def memory() -> int:
-    """Bytes of physical memory, or the control group's limit if that is less."""
+    """Return the bytes of physical memory, or the control group's limit if that is less."""
     physical = psutil.virtual_memory().total
     limit = Path("/sys/fs/cgroup/memory.max")
     if limit.exists() and (text := limit.read_text().strip()).isdigit():

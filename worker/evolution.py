@@ -21,11 +21,11 @@ def carry_out(attempt: Attempt) -> None:
     """Compute until the run is done or has to stop."""
     prepare()
     load(attempt.services.settings)
-    attempt.use(device_kind())
+    attempt.record_device(device_kind())
     try:
         compute(attempt)
     except Missing as error:
-        attempt.set_aside(str(error))
+        attempt.pause_until_resumed(str(error))
     except Broken as error:
         attempt.refuse(str(error))
     except ValidationError as error:  # Only a worker can validate what plug-ins declare.
@@ -33,7 +33,7 @@ def carry_out(attempt: Attempt) -> None:
 
 
 def _message(error: Mapping[str, Any]) -> str:
-    """Return the field and what is wrong with it."""
+    """Return the name of the field and its error."""
     words = str(error["msg"]).removeprefix("Value error, ")
     return ": ".join(filter(None, (field_path(error["loc"]), words)))
 

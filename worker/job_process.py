@@ -10,25 +10,27 @@ from server.core.processes import die_with_parent
 from server.services.services import connect
 from server.settings import Settings
 
-from . import process
+from . import process_setup
 
 NICE = 10
-"""People wait for the page and for replays; nobody waits for the next block."""
+"""Niceness of a job, so that the page and replays respond first."""
 
 
 def main(run_id: str, worker: str, parent: str) -> None:
     """Carry out a run; die with the supervisor."""
     die_with_parent(int(parent), signal.SIGKILL)
-    process.listen()
+    process_setup.listen()
     os.nice(NICE)
-    with claimed(connect(Settings()), UUID(run_id), worker, process.stop_requested) as attempt:
+    with claimed(
+        connect(Settings()), UUID(run_id), worker, process_setup.stop_requested
+    ) as attempt:
         if attempt:
-            # Imported here, so that an error of the engine or its device is kept on the run.
+            # Imported here, so that errors of the engine or its device are recorded.
             from .evolution import carry_out
 
             carry_out(attempt)
 
 
 if __name__ == "__main__":
-    process.log_to_stderr()
+    process_setup.log_to_stderr()
     main(*sys.argv[1:])

@@ -27,6 +27,6 @@ def prepared() -> None:
 def render(creature: str, kind: str = REPLAY) -> None:
     """Make and keep a rendering of a creature."""
     prepared()
-    from .pictures import make
+    from .renderings import make
 
     renderings.save(services(), creature, kind, make(services(), creature, kind))

@@ -15,7 +15,7 @@ from rq.queue import Queue
 from rq.worker import BaseWorker
 from sqlalchemy.exc import SQLAlchemyError
 
-from .process import stop_requested
+from .process_setup import stop_requested
 
 DEQUEUE_SECONDS = 1
 """Longest time before an idle worker notices a request to stop."""
@@ -28,7 +28,7 @@ log = logging.getLogger(__name__)
 def serve(worker: BaseWorker, queues: Callable[[], list[Queue]] | None = None) -> None:
     """Carry out jobs until the process has to stop; `queues` returns the queues to read now."""
     while not stop_requested():
-        with surviving():
+        with logging_outages():
             if queues:
                 worker.queues = queues()
             take_one(worker)
@@ -50,8 +50,8 @@ def take_one(worker: BaseWorker) -> None:
 
 
 @contextmanager
-def surviving() -> Iterator[None]:
-    """Log errors of Redis and the database: SQL knows the runs, and later work catches up."""
+def logging_outages() -> Iterator[None]:
+    """Log errors of Redis and the database, and go on: SQL holds the state of all runs."""
     try:
         yield
     except (RedisError, SQLAlchemyError) as error:

@@ -15,13 +15,13 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Gpu:
-    """A card, or a part of one that MIG has cut off, which is a device like any other."""
+    """A card, or a MIG instance of one, which is a device like any other."""
 
     uuid: str
     name: str
     memory_bytes: int
     card: str
-    """UUID of the card that it is, or is a part of."""
+    """UUID of the card."""
 
 
 def visible() -> list[Gpu]:
@@ -53,7 +53,7 @@ def measured(uuid: str) -> tuple[int | None, float | None]:
 
 
 def _allowed(names: str, cards: list[Gpu], found: list[Gpu]) -> list[Gpu]:
-    """Numbers of cards or the beginnings of UUIDs; as in CUDA, all before the first unknown."""
+    """Return GPUs by number or start of UUID; like CUDA, stop at the first unknown one."""
     chosen: list[Gpu] = []
     for name in (part.strip() for part in names.split(",")):
         if name.isdigit() and int(name) < len(cards):
@@ -68,7 +68,7 @@ def _allowed(names: str, cards: list[Gpu], found: list[Gpu]) -> list[Gpu]:
 
 
 def _card_and_parts(index: int) -> list[Gpu]:
-    """Return a card and its parts, if MIG has divided it; nothing if the card fails."""
+    """Return a card and its MIG instances; nothing if the card fails."""
     try:
         handle = pynvml.nvmlDeviceGetHandleByIndex(index)
         card = _gpu(handle)
@@ -88,10 +88,10 @@ def _gpu(handle: Any, card: str | None = None) -> Gpu:
     return Gpu(uuid, pynvml.nvmlDeviceGetName(handle), size, card or uuid)
 
 
-def _known(ask: Callable[[], T]) -> T | None:
-    """Return an answer; None if the GPU does not support the question."""
+def _known(query: Callable[[], T]) -> T | None:
+    """Return the result of a query; None if the GPU does not support it."""
     try:
-        return ask()
+        return query()
     except NVMLError:
         return None
 

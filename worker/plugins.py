@@ -1,7 +1,7 @@
-"""Plug-ins of a worker: listed in a process of their own, then loaded where they are needed.
+"""Plug-ins of a worker: list them in a separate process, and load them in jobs.
 
-A module may do anything when it is imported: load JAX, which a supervisor does without, or end
-the process. `python -m worker.plugins` prints the list as JSON.
+Importing a module may load JAX, which the supervisor must not, or end the process.
+`python -m worker.plugins` prints the list as JSON.
 """
 
 import json
@@ -71,7 +71,7 @@ def list_plugins(settings: Settings) -> PluginReport:
     except subprocess.TimeoutExpired:
         reason = f"it was not imported within {IMPORT_SECONDS:g} s"
     except (subprocess.CalledProcessError, ValueError, IndexError) as error:
-        reason = f"the process that imported it ended badly ({error})"
+        reason = f"the process that imported it failed ({error})"
     log.warning("No plug-ins: %s", reason)
     return PluginReport(unloaded=tuple({"module": one, "reason": reason} for one in named))
 

@@ -16,20 +16,22 @@ from server.settings import Settings
 
 from . import loop
 from .jobs import prepared
-from .process import listen, log_to_stderr
+from .process_setup import listen, log_to_stderr
 
-SILENCE = 120
-"""Seconds after which an idle renderer counts as dead."""
+WORKER_TTL = 120
+"""Seconds without a report after which Redis forgets a renderer."""
 RETRIED = "retried"
 """Marks a job that is tried a second time."""
 
 
 def retry_interrupted(jobs: Jobs, queue: Queue) -> None:
-    """Requeue, once, the jobs during which a renderer died."""
+    """Requeue once each job during which a renderer died."""
     for job_id in queue.started_job_registry.get_job_ids(cleanup=False):
         job = jobs.find(job_id)
         if job and job.meta.get(RETRIED):
-            jobs.give_up(job, "it has ended the renderer twice, perhaps for want of memory")
+            jobs.give_up(
+                job, "it ended the renderer twice; it may need more memory than there is"
+            )
         elif job:
             jobs.render(*job.args, meta={RETRIED: True})
 
@@ -44,10 +46,10 @@ def serve(
     before()
     services = connect(Settings())
     queue = queue_of(services.jobs)
-    with loop.surviving():
+    with loop.logging_outages():
         retry_interrupted(services.jobs, queue)
     unique = f"{name}-{socket.gethostname()}-{uuid4().hex[:8]}"
-    loop.serve(SimpleWorker([queue], unique, serializer=JSONSerializer, worker_ttl=SILENCE))
+    loop.serve(SimpleWorker([queue], unique, serializer=JSONSerializer, worker_ttl=WORKER_TTL))
     services.close()
 
 

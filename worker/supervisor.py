@@ -1,4 +1,4 @@
-"""A worker: takes runs from the queue and carries out each in its own process; no JAX."""
+"""The supervisor: takes runs from the queue and computes each in a process of its own."""
 
 import logging
 import os
@@ -21,29 +21,29 @@ from server.services import services
 from server.services.services import Services
 from server.settings import Settings
 
-from . import device, loop, processor
+from . import cpu, device, loop
+from .heartbeats import HEARTBEATS_PER_LEASE, Heartbeats
 from .plugins import PluginWatcher
-from .process import listen, log_to_stderr, stop_requested
-from .pulse import BEATS, Pulse
+from .process_setup import listen, log_to_stderr, stop_requested
 
 SHORTEST_LEASE = 2
-"""Redis counts in seconds."""
-PATIENCE = 18.0
-"""Seconds in which a job has to end on request; less than this process itself has."""
+"""Shortest lease in Redis, in seconds."""
+STOP_SECONDS = 18.0
+"""Seconds that a job has to stop on request; fewer than this process itself has."""
 STOP_CHECK_SECONDS = 1.0
-"""Longest time between two checks of a job that has to end."""
+"""Longest time between two checks of a job that must stop."""
 
 log = logging.getLogger(__name__)
 
 
 class Supervisor(BaseWorker):
-    """RQ's worker with its two hooks: how a job is carried out, and how long it may be silent.
+    """An RQ worker that runs each job in a process and sets the lifetime of its heartbeats.
 
-    SQL records how a run ends, so Redis only forgets the job.
+    SQL records the end of a run, so the job is only deleted from Redis.
     """
 
     services: Services
-    pulse: Pulse
+    heartbeats: Heartbeats
     lease: int
     environment: dict[str, str]
     job: subprocess.Popen[bytes] | None = None
@@ -61,11 +61,11 @@ class Supervisor(BaseWorker):
                 self.start(job.id)
                 self.monitor(job)
         finally:
-            self.pulse.release()
-            with loop.surviving():
+            self.heartbeats.release()
+            with loop.logging_outages():
                 self.services.jobs.forget(job.id)
-            with loop.surviving():
-                error = None if self.killed else "the job's process died without a word"
+            with loop.logging_outages():
+                error = None if self.killed else "the process of the job died unexpectedly"
                 job_ended(self.services, run_id, self.name, error)
 
     def start(self, run_id: str) -> None:
@@ -82,11 +82,11 @@ class Supervisor(BaseWorker):
     def monitor(self, job: Job) -> None:
         """Wait for the job's process, and keep its lease in Redis alive."""
         assert self.job
-        self.pulse.watch(UUID(job.id), self.job.kill)
+        self.heartbeats.watch(UUID(job.id), self.job.kill)
         while (code := self._wait(self.job)) is None:
-            with loop.surviving():
+            with loop.logging_outages():
                 self.maintain_heartbeats(job)
-            if self.stop_asked_at and time.monotonic() - self.stop_asked_at > PATIENCE:
+            if self.stop_asked_at and time.monotonic() - self.stop_asked_at > STOP_SECONDS:
                 self.killed = True  # One block takes too long.
                 self.job.kill()
         self.job = None
@@ -95,7 +95,9 @@ class Supervisor(BaseWorker):
 
     def _wait(self, job: subprocess.Popen[bytes]) -> int | None:
         with suppress(subprocess.TimeoutExpired):
-            return job.wait(STOP_CHECK_SECONDS if self.stop_asked_at else self.lease / BEATS)
+            return job.wait(
+                STOP_CHECK_SECONDS if self.stop_asked_at else self.lease / HEARTBEATS_PER_LEASE
+            )
         return None
 
     def stop_job(self) -> None:
@@ -111,14 +113,12 @@ class Supervisor(BaseWorker):
 def runnable_queues(shared: Services, plugin_versions: set[str]) -> list[Queue]:
     """Return the queues of runs that these plug-ins can carry out, longest waiting first."""
     if not plugin_versions:
-        return shared.jobs.evolving
+        return shared.jobs.run_queues
     with shared.sessions.read() as session:
         queued = in_order(session)
     able = [run for run in queued if plugin_versions.issuperset(run.plugin_versions or ())]
-    queues = [
-        shared.jobs.evolving_with(run.plugin_versions, run.sweep is not None) for run in able
-    ]
-    return list({queue.name: queue for queue in (*queues, *shared.jobs.evolving)}.values())
+    queues = [shared.jobs.run_queue(run.plugin_versions, run.sweep is not None) for run in able]
+    return list({queue.name: queue for queue in (*queues, *shared.jobs.run_queues)}.values())
 
 
 def supervise(settings: Settings, index: int) -> None:
@@ -127,20 +127,22 @@ def supervise(settings: Settings, index: int) -> None:
     name = f"{socket.gethostname()}-{os.getpid()}"
     found = device.find(index, settings.workers)
     if found.threads:
-        processor.keep_to(found.threads)
+        cpu.pin(found.threads)
     lease = max(SHORTEST_LEASE, round(settings.lease))
-    worker = Supervisor(shared.jobs.evolving, name, worker_ttl=lease, serializer=JSONSerializer)
+    worker = Supervisor(
+        shared.jobs.run_queues, name, worker_ttl=lease, serializer=JSONSerializer
+    )
     worker.services, worker.lease, worker.environment = shared, lease, found.environment
-    plugins = PluginWatcher(settings, settings.lease / BEATS)
-    worker.pulse = Pulse(shared.sessions, name, found, settings.lease, plugins)
+    plugins = PluginWatcher(settings, settings.lease / HEARTBEATS_PER_LEASE)
+    worker.heartbeats = Heartbeats(shared.sessions, name, found, settings.lease, plugins)
     listen(worker.stop_job, interrupt=True)
     log.info("Worker %s on %s", name, found.name)
-    worker.pulse.start()
+    worker.heartbeats.start()
     plugins.start()
     loop.serve(worker, lambda: runnable_queues(shared, plugins.report.plugin_versions))
     plugins.end()
     with suppress(SQLAlchemyError):
-        worker.pulse.end()
+        worker.heartbeats.end()
     shared.close()
 
 

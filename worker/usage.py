@@ -1,4 +1,4 @@
-"""How busy a worker's device is, whoever uses it."""
+"""Memory use and load of a worker's device, by all programs."""
 
 import logging
 import os
@@ -12,22 +12,22 @@ import psutil
 from . import nvidia
 from .device import Device
 
-GROUP = Path("/sys/fs/cgroup")
+CGROUP = Path("/sys/fs/cgroup")
 
 log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
 class Usage:
-    """None for what is unknown."""
+    """Memory in use and load; None if unknown."""
 
     memory_bytes: int | None = None
     load: float | None = None
-    """1 is fully."""
+    """1 is fully busy."""
 
 
 class Gauge(threading.Thread):
-    """Measures again and again, in a thread of its own: a slow answer delays nobody."""
+    """Measures periodically in its own thread: a slow measurement delays no heartbeat."""
 
     def __init__(self, measure: Callable[[], Usage], interval: float):
         super().__init__(name="gauge", daemon=True)
@@ -49,21 +49,21 @@ class Gauge(threading.Thread):
 
 
 def usage(device: Device) -> Usage:
-    """Measure the GPU, else the machine: its load is the average over a minute, a core."""
+    """Measure the GPU, else the machine: its load is the average over a minute, per core."""
     if device.gpu is not None:
         return Usage(*nvidia.measured(device.gpu))
     return Usage(memory_in_use(), psutil.getloadavg()[0] / (os.cpu_count() or 1))
 
 
 def memory_in_use() -> int | None:
-    """Bytes in use: of the control group if that has a limit, else of the machine."""
-    limit = GROUP / "memory.max"
+    """Return the bytes in use by the control group, if it has a limit, else by the machine."""
+    limit = CGROUP / "memory.max"
     if not limit.exists() or limit.read_text().strip() == "max":
         memory = psutil.virtual_memory()
         return memory.total - memory.available
     try:
-        rows = map(str.split, (GROUP / "memory.stat").read_text().splitlines())
+        rows = map(str.split, (CGROUP / "memory.stat").read_text().splitlines())
         cached = next((int(row[1]) for row in rows if row[0] == "inactive_file"), 0)
-        return max(0, int((GROUP / "memory.current").read_text()) - cached)
+        return max(0, int((CGROUP / "memory.current").read_text()) - cached)
     except (OSError, ValueError):  # Control groups of version 1 have other files.
         return None

@@ -14,19 +14,19 @@ COLUMNS = (Elite.cell, Elite.generation, Elite.fitness, Elite.descriptors, Elite
 def all_time(run: Run, names: Sequence[str] = ()) -> Select[*tuple[Any, ...]]:
     """Select a run's elites, also those that were replaced, with measures by name."""
     columns = [measures.column(name) for name in names]
-    statement = select(*COLUMNS, *columns).where(until_now(run))
+    statement = select(*COLUMNS, *columns).where(recorded_in(run))
     return statement.join(Creature, Creature.sha256 == Elite.creature) if names else statement
 
 
-def until_now(run: Run) -> ColumnElement[bool]:
-    """The run of a share ends at the shared generation, although the real one may go on."""
+def recorded_in(run: Run) -> ColumnElement[bool]:
+    """Return the condition for elites up to the run's generation, where a shared run ends."""
     return and_(Elite.run_id == run.id, Elite.generation <= run.generation)
 
 
 def at(
     run: Run, generation: int, names: Sequence[str] = (), after: int = -1
 ) -> Select[*tuple[Any, ...]]:
-    """Select each cell's elite as of a generation, if it entered `after` another one."""
+    """Select each cell's elite as of a generation, if it entered after generation `after`."""
     last = (
         select(Elite.cell, func.max(Elite.generation).label("generation"))
         .where(Elite.run_id == run.id, Elite.generation.between(after + 1, generation))

@@ -14,7 +14,7 @@ from microcosmos.archive import export
 
 from ..attempts.checkpoints import last_checkpoint
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED
-from ..auth.capability import SharedViewDep
+from ..auth.share_access import ShareAccessDep
 from ..core.errors import ProblemError, invalid_field
 from ..runs.deps import RunDep
 from ..services.deps import ServicesDep, SessionDep
@@ -88,7 +88,7 @@ def read_centroids(run: RunDep, session: SessionDep, services: ServicesDep) -> C
 
 
 def _refuse_long_history(session: Session, run: Run) -> None:
-    counted = select(func.count()).select_from(Elite).where(elites.until_now(run))
+    counted = select(func.count()).select_from(Elite).where(elites.recorded_in(run))
     entries = session.execute(counted).scalar_one()
     if entries > HISTORY_ENTRIES:
         detail = (
@@ -136,7 +136,7 @@ def _refuse_table(run: Run) -> None:
 def download_archive(
     request: Request,
     run: RunDep,
-    share: SharedViewDep,
+    share: ShareAccessDep,
     session: SessionDep,
     services: ServicesDep,
 ) -> Response:
@@ -150,7 +150,7 @@ def download_archive(
     "/archive.csv", response_class=Response, responses=table, dependencies=[MAY_READ_SHARED]
 )
 def download_archive_csv(
-    run: RunDep, share: SharedViewDep, session: SessionDep, services: ServicesDep
+    run: RunDep, share: ShareAccessDep, session: SessionDep, services: ServicesDep
 ) -> Response:
     """Return the archive of the last checkpoint in the columns of pyribs."""
     _refuse_table(run)

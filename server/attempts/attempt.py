@@ -1,4 +1,4 @@
-"""An attempt at a run: what a worker reads and writes while it computes."""
+"""An attempt at a run: the reads and writes of its worker."""
 
 import logging
 import math
@@ -18,7 +18,7 @@ from ..core.database import clock
 from ..creatures import initial
 from ..runs import log
 from ..runs.announce import announce
-from ..runs.lifecycle import change, hand_back, release
+from ..runs.lifecycle import change, fail_attempt, stop_attempt
 from ..services.services import Services
 from ..storage.artifacts import checkpoint_path
 from ..tables import (
@@ -32,7 +32,7 @@ from ..tables import (
     Run,
 )
 from . import recording
-from .checkpoints import fall_back, newest_sound, point_at
+from .checkpoints import add_checkpoint, fall_back, newest_sound
 from .retry import retried
 
 logger = logging.getLogger(__name__)
@@ -49,7 +49,7 @@ class ClaimLost(Exception):
 
 @dataclass
 class Attempt:
-    """Each write proves in its own transaction that the attempt is current, or `ClaimLost`."""
+    """An attempt at a run; each write raises `ClaimLost` unless the attempt is current."""
 
     services: Services
     run_id: UUID
@@ -63,19 +63,19 @@ class Attempt:
     """The run may continue on another kind of device than the one that started it."""
     stop_requested: Callable[[], bool] = lambda: False
     """Tells whether the worker has to stop."""
-    patience: float = 0.0
-    """Seconds that a write waits for a database that is away."""
+    outage_seconds: float = 0.0
+    """Seconds that a write waits while the database is away."""
     requested_state: str | None = None
     """`paused` or `cancelled`, if a person has requested it."""
     checked_at: float = field(default_factory=time.monotonic)
     announced_at: float = 0.0
 
     def __post_init__(self) -> None:
-        # The first generation is saved at once: its file says where the cells of a CVT are.
+        # Save the first generation at once: its file holds the centroids of a CVT.
         self.saved_at = time.monotonic() if self.generation else -math.inf
 
-    def use(self, device: str) -> None:
-        """Record the kind of device that computes."""
+    def record_device(self, device: str) -> None:
+        """Record the kind of device that computes the run."""
         self._update(f"Computing on {device}.", device=device)
 
     @retried
@@ -175,7 +175,7 @@ class Attempt:
                     "`generation` of a checkpoint must be recorded, that is at most "
                     f"{run.generation}; got {generation}"
                 )
-            superfluous = point_at(session, self.run_id, generation, stored)
+            superfluous = add_checkpoint(session, self.run_id, generation, stored)
             if generation > run.checkpoint_generation:
                 run.checkpoint_generation = generation
                 run.attempts_without_checkpoint = 0
@@ -222,14 +222,16 @@ class Attempt:
         self._update(f"Stopped after generation {self.generation}.", **_paused())
 
     def wait_for_override(self, reason: str) -> None:
-        """Pause until a person allows this kind of device, where bits may differ."""
-        text = f"{reason} To go on here, resume the run; its archive will say so."
+        """Pause until a person allows this kind of device, whose results may differ in bits."""
+        text = (
+            f"{reason} Resume the run to continue on this device; its archive will record that."
+        )
         self._update(
             text, "warning", **_paused(), warning=text, device_override=OVERRIDE_NEEDED
         )
 
-    def set_aside(self, reason: str) -> None:
-        """Pause until a person brings the plug-in or file that this worker lacks."""
+    def pause_until_resumed(self, reason: str) -> None:
+        """Pause until a person adds the missing plug-in or file and resumes the run."""
         text = f"{reason.rstrip('.')}. Then resume the run."
         self._update(text, "warning", **_paused(), warning=text)
 
@@ -237,13 +239,13 @@ class Attempt:
     def requeue(self) -> None:
         """Return the run to the queue, as on SIGTERM: this is not a failed attempt."""
         with self._current() as (session, _):
-            hand_back(session, self.run_id)
+            stop_attempt(session, self.run_id)
         announce(self.services, self.run_id)
 
     def fail(self, error: str) -> None:
-        """Keep the traceback and requeue the run, unless this was the last attempt."""
+        """Record the traceback, and requeue the run unless this was its last attempt."""
         with self.services.sessions.write.begin() as session:
-            if not release(session, self.run_id, Run.attempt == self.number, error=error):
+            if not fail_attempt(session, self.run_id, Run.attempt == self.number, error=error):
                 raise ClaimLost(f"run {self.run_id}, attempt {self.number}")
         announce(self.services, self.run_id)
 
@@ -255,7 +257,7 @@ class Attempt:
         kind: str | None = None,
         **values: Any,
     ) -> None:
-        """Change the run and log why, and its status if the attempt ends."""
+        """Change the run and log the reason; log its status if the attempt ends."""
         with self._current(**values) as (session, run):
             if text is not None:
                 log.note(session, run, text, level, kind)
@@ -284,7 +286,7 @@ def _ended(status: str) -> dict[str, Any]:
 
 
 def _paused() -> dict[str, Any]:
-    """Paused, unless a person has requested to cancel meanwhile."""
+    """Return the values of a paused run, or of a cancelled one if that was requested."""
     return {
         "status": func.coalesce(Run.requested_state, PAUSED),
         "finished_at": case((Run.requested_state == CANCELLED, clock()), else_=None),

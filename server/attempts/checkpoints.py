@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 
 from ..creatures.storage import creatures_of, mark_garbage
 from ..services.services import Services
-from ..storage.artifacts import Stored, superfluous
+from ..storage.artifacts import StoredFile, superfluous
 from ..tables import CHECKPOINT, Artifact, Elite, Generation, Result, Run
 
 
@@ -56,7 +56,9 @@ def newest_sound(
     return None, None, []
 
 
-def point_at(session: Session, run_id: UUID, generation: int, stored: Stored) -> list[str]:
+def add_checkpoint(
+    session: Session, run_id: UUID, generation: int, stored: StoredFile
+) -> list[str]:
     """Make a written file the newest checkpoint; return the paths of superfluous files."""
     last = last_checkpoint(session, run_id)
     if last and last.path == stored.path:

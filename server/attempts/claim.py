@@ -1,4 +1,4 @@
-"""Claim a run: start an attempt, and keep its failures on the run."""
+"""Claim a run: start an attempt, and record its failure on the run."""
 
 import logging
 import traceback
@@ -11,15 +11,16 @@ from sqlalchemy import func, or_
 from ..core.database import clock
 from ..runs import log
 from ..runs.announce import announce
-from ..runs.lifecycle import change, lost, release
+from ..runs.lifecycle import change, fail_attempt
 from ..services.services import Services
 from ..tables import OVERRIDE_ALLOWED, QUEUED, RUNNING, Run, Worker
 from ..workers import plugins
 from .attempt import Attempt, ClaimLost
 from .checkpoints import CheckpointUnavailable, rewind
+from .leases import expired
 
 DATABASE_SECONDS = 600.0
-"""Seconds that a computed generation waits for a database that is away."""
+"""Seconds that a computed generation waits while the database is away."""
 
 logger = logging.getLogger(__name__)
 
@@ -27,15 +28,15 @@ logger = logging.getLogger(__name__)
 def claim(services: Services, run_id: UUID, worker: str) -> Attempt | None:
     """Start an attempt at a queued run; None if this worker cannot have the run.
 
-    A run that this worker already had, or whose worker is silent, counts as queued: its last
-    attempt is over. What was written beyond the checkpoint is deleted.
+    A run that this worker already had, or whose lease has expired, counts as queued. Rows that
+    were recorded after its checkpoint are deleted.
     """
     with services.sessions.write.begin() as session:
         run = session.get(Run, run_id)
         if run and not plugins.fit(session.get(Worker, worker), run.plugin_versions):
             return None  # The run waits in another queue.
-        over = or_(Run.worker == worker, lost(session, services.settings.lease))
-        release(session, run_id, over, error="the worker stopped reporting")
+        over = or_(Run.worker == worker, expired(session, services.settings.lease))
+        fail_attempt(session, run_id, over, error="the worker stopped reporting")
         started = {
             "status": RUNNING,
             "attempt": Run.attempt + 1,
@@ -68,15 +69,15 @@ def claim(services: Services, run_id: UUID, worker: str) -> Attempt | None:
 def claimed(
     services: Services, run_id: UUID, worker: str, stop_requested: Callable[[], bool]
 ) -> Iterator[Attempt | None]:
-    """Yield an attempt that waits for an absent database, or None if there is none to have.
+    """Yield an attempt that waits while the database is away, or None if it cannot be claimed.
 
-    An error inside is kept on the run; an attempt that has lost its run ends silently.
+    An error inside is recorded on the run. An attempt that has lost its claim ends silently.
     """
     attempt = claim(services, run_id, worker)
     if attempt is None:
         yield None
         return
-    attempt.stop_requested, attempt.patience = stop_requested, DATABASE_SECONDS
+    attempt.stop_requested, attempt.outage_seconds = stop_requested, DATABASE_SECONDS
     try:
         yield attempt
     except ClaimLost as error:
@@ -84,7 +85,7 @@ def claimed(
     except CheckpointUnavailable as error:
         logger.error("Run %s: %s", run_id, error)
         with suppress(ClaimLost):
-            attempt.set_aside(str(error))
+            attempt.pause_until_resumed(str(error))
     except Exception:
         logger.exception("Run %s failed", run_id)
         with suppress(ClaimLost):

@@ -1,12 +1,15 @@
-"""Leases: renew them, and take runs back from jobs that ended."""
+"""Leases: renew one, test whether it has expired, and end it with its job."""
 
-from typing import Literal
+from typing import Any, Literal
 from uuid import UUID
 
-from ..core.database import Sessions, clock
+from sqlalchemy import or_
+from sqlalchemy.orm import Session
+
+from ..core.database import Sessions, ago, clock
 from ..queue.order import requeue
 from ..runs.announce import announce
-from ..runs.lifecycle import change, hand_back, release
+from ..runs.lifecycle import change, fail_attempt, stop_attempt
 from ..services.services import Services
 from ..tables import QUEUED, RUNNING, Run
 
@@ -16,8 +19,8 @@ Lease = Literal["held", "waiting", "over", "lost"]
 def heartbeat(sessions: Sessions, run_id: UUID, worker: str) -> Lease:
     """Renew a worker's lease on a run, and return the lease's state.
 
-    `waiting`: not claimed yet. `over`: nobody computes it any more, the job is about to end.
-    `lost`: another worker has it, so the job has to be killed.
+    `waiting`: no worker has claimed the run yet. `over`: no attempt is active any more.
+    `lost`: another worker has the run, so the job must be killed.
     """
     with sessions.write.begin() as session:
         mine = (Run.status == RUNNING, Run.worker == worker)
@@ -29,14 +32,19 @@ def heartbeat(sessions: Sessions, run_id: UUID, worker: str) -> Lease:
         return "waiting" if run and run.status == QUEUED else "over"
 
 
+def expired(session: Session, lease: float) -> Any:
+    """Return the condition that a run has had no heartbeat for as long as a lease."""
+    return or_(Run.heartbeat_at.is_(None), Run.heartbeat_at < ago(session, lease))
+
+
 def job_ended(services: Services, run_id: UUID, worker: str, error: str | None = None) -> None:
-    """Take a run back from a job that died, or without an `error` was killed by its worker."""
+    """End the attempt of a job that died, or that its worker killed (without an `error`)."""
     mine = Run.worker == worker
     with services.sessions.write.begin() as session:
         if error:
-            run = release(session, run_id, mine, error=error)
+            run = fail_attempt(session, run_id, mine, error=error)
         else:
-            run = hand_back(session, run_id, mine)
+            run = stop_attempt(session, run_id, mine)
     if run:
         announce(services, run_id)
     requeue(services.sessions, services.jobs, run_id)

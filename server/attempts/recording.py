@@ -72,7 +72,7 @@ def rows_of(report: Report, seconds: float) -> Rows:
 
 
 def plain(values: Mapping[str, Any] | None) -> dict[str, Any] | None:
-    """Return flat values for JSON: None for numbers that are not finite."""
+    """Replace numbers that are not finite by None, for JSON."""
     if values is None:
         return None
     return {
@@ -83,7 +83,7 @@ def plain(values: Mapping[str, Any] | None) -> dict[str, Any] | None:
 
 def write(session: Session, run_id: UUID, rows: Rows) -> None:
     session.execute(insert(Generation), [{"run_id": run_id, **rows.curve}])
-    # In one order, so that two runs with the same creatures cannot wait for each other.
+    # Sorted, so that two runs with the same creatures cannot deadlock.
     found = sorted(rows.creatures, key=itemgetter("sha256"))
     insert_and_lock(session, found)
     link(session, [row["sha256"] for row in found])

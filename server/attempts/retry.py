@@ -1,4 +1,4 @@
-"""Repeat database calls of an attempt while the database is away."""
+"""Retry database calls of an attempt while the database is away."""
 
 import logging
 import time
@@ -15,11 +15,11 @@ log = logging.getLogger(__name__)
 
 
 def retried(method: F) -> F:
-    """Repeat a method for at most the attempt's `patience`, unless its worker has to stop."""
+    """Retry a method for `outage_seconds` of its attempt, unless its worker must stop."""
 
     @wraps(method)
     def repeat(attempt: Any, *args: Any, **kwargs: Any) -> Any:
-        deadline = time.monotonic() + attempt.patience
+        deadline = time.monotonic() + attempt.outage_seconds
         while True:
             try:
                 return method(attempt, *args, **kwargs)

@@ -40,7 +40,7 @@ async def public() -> None:
 
 
 MAY_READ_SHARED = Security(authorize, scopes=[SHARE])
-"""Also for the holder of a share, within what it shows."""
+"""The holder of a share may read too, but only what the share shows."""
 MAY_READ = Security(authorize, scopes=[READ])
 MAY_WRITE = Security(authorize, scopes=[WRITE])
 MAY_ADMINISTER = Security(authorize, scopes=[ADMIN])
@@ -55,7 +55,7 @@ def authorize_owner(
 ) -> None:
     """Raise `ProblemError` unless the principal owns the row or is an admin.
 
-    A missing row is left to the route, which says that it is missing.
+    If the row is missing, do nothing: the route answers that it is missing.
     """
     if principal.may(ADMIN):
         return

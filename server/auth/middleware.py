@@ -13,9 +13,9 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from ..core.errors import ProblemError, answer, unavailable
 from ..settings import LOOPBACK
 from .authenticate import Authenticator, Credentials
-from .capability import HEADER, SharedView
 from .cookies import remember, remembered
 from .principal import SHARE_HOLDER
+from .share_access import SHARE_HEADER, ShareAccess
 
 SAFE = ("GET", "HEAD")
 METRICS = "/metrics"
@@ -35,7 +35,7 @@ class PrincipalMiddleware:
         self,
         app: ASGIApp,
         authenticator: Authenticator,
-        open_share: Callable[[str], SharedView],
+        open_share: Callable[[str], ShareAccess],
     ):
         self.app, self.authenticator, self.open_share = app, authenticator, open_share
         self.needs_token = authenticator.services.settings.needs_token
@@ -52,7 +52,7 @@ class PrincipalMiddleware:
         await app(scope, receive, send)
 
     async def _identified(self, request: HTTPConnection) -> Response | None:
-        """Find the principal; return an answer where the application is not to answer."""
+        """Find the principal; return an answer if the application must not answer itself."""
         if not self.needs_token:
             _refuse_foreign_host(request.headers)
             _refuse_foreign_origin(request.headers)
@@ -60,7 +60,7 @@ class PrincipalMiddleware:
         request.state.principal = request.state.share = None
         if not path.startswith("/api/") and path != METRICS:
             return await self._page(request)
-        if slug := request.headers.get(HEADER):
+        if slug := request.headers.get(SHARE_HEADER):
             request.state.share = await run_in_threadpool(self.open_share, slug)
             request.state.principal = SHARE_HOLDER
             return None

@@ -5,7 +5,7 @@ from uuid import UUID
 
 from fastapi import APIRouter, Request, Response
 
-from ..core.uploads import json_route
+from ..core.json_body import json_route
 from ..services.deps import ServicesDep, SessionDep
 from . import tokens
 from .authenticate import Authenticator, Credentials
@@ -15,9 +15,9 @@ from .middleware import address
 from .principal import Principal, Scope
 from .schemas import PrincipalRead, SignIn, TokenCreate, TokenCreated, TokenRead
 
-BYTES = 1 << 12
+BODY_BYTES = 1 << 12
 
-router = APIRouter(tags=["tokens"], route_class=json_route(BYTES))
+router = APIRouter(tags=["tokens"], route_class=json_route(BODY_BYTES))
 
 
 @router.get("/tokens/current")

@@ -26,8 +26,8 @@ from ..tables.base import refuse_past
 from .principal import ADMIN, Principal, Scope
 
 PREFIX = "mc_"
-"""Prefix of every secret, by which people and scanners of leaks recognise it."""
-BYTES = 32
+"""Prefix of every secret, so that people and secret scanners recognise it."""
+SECRET_BYTES = 32
 PREVIEW_LENGTH = len(PREFIX) + 6
 """Characters of a secret that the table keeps, so that its holder can recognise it."""
 LAST_USED_INTERVAL = timedelta(minutes=5)
@@ -40,7 +40,7 @@ log = logging.getLogger(__name__)
 
 
 class UnknownToken(ProblemError):
-    """This server never had the token: somebody may be guessing."""
+    """The token never existed here; somebody may be guessing."""
 
     def __init__(self) -> None:
         detail = "This server does not know the token."
@@ -56,7 +56,7 @@ class NewToken:
 
 
 def hashed(secret: str) -> str:
-    """Return the hash of a secret. Its 256 random bits need no salt and no slow hash."""
+    """Return the hash of a secret. A secret of 256 random bits needs no salt or slow hash."""
     return sha256(secret.encode(errors="surrogatepass")).hexdigest()
 
 
@@ -64,7 +64,7 @@ def create(
     services: Services, name: str, scope: Scope, expires_at: datetime | None = None
 ) -> NewToken:
     """Create a token; raise `ProblemError` if a live token has the name."""
-    secret = PREFIX + secrets.token_urlsafe(BYTES)
+    secret = PREFIX + secrets.token_urlsafe(SECRET_BYTES)
     try:
         with services.sessions.write.begin() as session:
             refuse_past(session, expires_at)

@@ -1,1 +1,1 @@
-"""The ground of the server: database sessions, errors as problem details, HTTP helpers."""
+"""Database sessions, errors as problem details, and HTTP helpers for all packages."""

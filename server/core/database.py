@@ -84,8 +84,8 @@ def _insert(session: Session, table: Any) -> Any:
 class Sessions:
     """Sessions that read, and sessions that write: `with sessions.write.begin() as session:`.
 
-    On SQLite a writer takes the lock at its start: a reader that turns into a writer is refused
-    where another has written meanwhile.
+    On SQLite a writer takes the lock at its start: SQLite refuses a write from a reader if
+    another session has written since.
     """
 
     def __init__(self, engine: Engine):

@@ -1,4 +1,4 @@
-"""Errors, answered as problems (RFC 9457): the field, what is needed, what came."""
+"""Errors as problem details (RFC 9457): the field, the allowed values, the received value."""
 
 import logging
 import re
@@ -21,9 +21,9 @@ from .schemas import FieldError, Problem
 log = logging.getLogger(__name__)
 MOST_ERRORS = 50
 """Limit on the errors in one answer: a document may have one for each of its values."""
-RETRY = {"Retry-After": "2"}
+RETRY_AFTER = {"Retry-After": "2"}
 MEDIA_TYPE = "application/problem+json"
-NAMED = re.compile(r"`([a-z_0-9.]+)` (?:must|needs|was)")
+FIELD_IN_MESSAGE = re.compile(r"`([a-z_0-9.]+)` (?:must|needs|was)")
 
 
 class ProblemError(Exception):
@@ -94,7 +94,7 @@ def unavailable(error: SQLAlchemyError | RedisError) -> JSONResponse:
     name = "Redis" if isinstance(error, RedisError) else "The database"
     log.error("%s did not answer: %s", name, error)
     detail = f"{name} does not answer; try again."
-    return answer(Problem(title="Unavailable", status=503, detail=detail), RETRY)
+    return answer(Problem(title="Unavailable", status=503, detail=detail), RETRY_AFTER)
 
 
 def invalid(error: ValidationError) -> Problem:
@@ -119,7 +119,7 @@ def invalid_input(errors: list[FieldError]) -> Problem:
 
 
 def field_errors(error: ValidationError) -> list[FieldError]:
-    """Return the errors of a document by field, in plain words."""
+    """Return the errors of a document by field."""
     return _fields(error.errors(include_url=False))
 
 
@@ -129,7 +129,7 @@ def _fields(errors: Sequence[Mapping[str, Any]]) -> list[FieldError]:
 
 
 def _without_echoes(errors: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Return the errors without those that repeat the error of an item as a lack of items."""
+    """Drop the error "too short" of a list if one of its items has an error."""
 
     def echoes(error: Mapping[str, Any]) -> bool:
         place = error["loc"]
@@ -141,8 +141,8 @@ def _without_echoes(errors: Sequence[Mapping[str, Any]]) -> list[Mapping[str, An
 
 def _field_error(error: Mapping[str, Any], path: str) -> FieldError:
     message = str(error["msg"]).removeprefix("Value error, ")
-    if error["type"] == "value_error":  # Our own words: they name the field and what came.
-        named = NAMED.search(message)
+    if error["type"] == "value_error":  # Our own messages name the field and its value.
+        named = FIELD_IN_MESSAGE.search(message)
         field = ".".join(filter(None, [path, named[1] if named else ""]))
         return FieldError(field=field, message=message)
     needed = message.removeprefix("Input should be ")
@@ -162,7 +162,7 @@ def _needs(field: str, needed: str, got: Any) -> FieldError:
 
 
 def brief(value: Any) -> Any:
-    """Return a value as JSON can hold it, long ones shortened."""
+    """Return a value that JSON can hold; shorten long texts."""
     if value is None or isinstance(value, bool | int | float):
         return value if abs(value or 0) < 1e308 else str(value)
     text = value if isinstance(value, str) else repr(value)

@@ -20,7 +20,7 @@ def die_with_parent(parent: int, sent: signal.Signals) -> None:
     """Have the kernel send this process a signal when its parent dies, where it can (Linux)."""
     if sys.platform == "linux":
         _libc.prctl(PR_SET_PDEATHSIG, int(sent))
-    if os.getppid() != parent:  # It died before the kernel was told.
+    if os.getppid() != parent:  # The parent died before the call.
         os.kill(os.getpid(), sent)
 
 
@@ -32,10 +32,10 @@ def spawn(
     keep: Sequence[int] = (),
     stdin: int = subprocess.DEVNULL,
 ) -> subprocess.Popen[bytes]:
-    """Start a process in a group of its own, so that a terminal's Ctrl-C reaches only us.
+    """Start a process in a group of its own, which Ctrl-C does not reach.
 
-    It is sent SIGTERM when we die, however we die. `keep` names file descriptors to inherit.
-    Only for a process that has a single thread.
+    The kernel sends it SIGTERM when this process dies. `keep` names file descriptors to
+    inherit. Call it only from a process with a single thread.
     """
     parent = os.getpid()
     log.parent.mkdir(parents=True, exist_ok=True)
@@ -61,8 +61,8 @@ def tail(log: Path, lines: int = 5) -> str:
         return "\n".join(file.read().decode(errors="replace").splitlines()[-lines:])
 
 
-def ending(code: int) -> str:
-    """Return an exit status in words."""
+def exit_reason(code: int) -> str:
+    """Describe an exit status."""
     return f"signal {signal.Signals(-code).name}" if code < 0 else f"exit status {code}"
 
 
@@ -72,7 +72,7 @@ def on_stop_signal(stop: Callable[[], object]) -> Iterator[None]:
 
     Uvicorn itself waits for open connections first, which event streams keep open.
     """
-    if current_thread() is not main_thread():  # Signals do not come here.
+    if current_thread() is not main_thread():  # Only the main thread handles signals.
         yield
         return
     before = {number: signal.getsignal(number) for number in STOP_SIGNALS}

@@ -11,11 +11,11 @@ POLICY = (
     "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
     "object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
 )
-"""No other site may show the page in a frame: where no token is needed, it could make visitors
-click on what they do not see."""
+"""No other site may show the page in a frame: without tokens, it could trick visitors into
+clicking on hidden buttons."""
 SLUG = re.compile(r"(?<=/s/)[^/]+|(?<=/shares/)[^/]+")
 SLUG_PREVIEW = 4
-"""Characters of a slug in the log, by which requests for the same share are recognised."""
+"""Characters of a slug in the log, to recognise requests for the same share."""
 
 
 class SecurityHeaders:

@@ -6,7 +6,7 @@ from typing import Annotated
 from fastapi import Depends, Path
 from sqlalchemy.orm import Session
 
-from ..auth.capability import SharedView, SharedViewDep
+from ..auth.share_access import ShareAccess, ShareAccessDep
 from ..core.errors import ProblemError
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import Creature
@@ -14,7 +14,7 @@ from ..tables import Creature
 Sha = Annotated[str, Path(pattern="^[0-9a-f]{64}$")]
 
 
-def find_creature(session: Session, sha: str, share: SharedView | None = None) -> Creature:
+def find_creature(session: Session, sha: str, share: ShareAccess | None = None) -> Creature:
     """Return the row; raise `ProblemError` where it is missing or not in the share."""
     if share:
         share.refuse_unless_holds(session, sha)
@@ -24,7 +24,7 @@ def find_creature(session: Session, sha: str, share: SharedView | None = None) -
     return found
 
 
-def creature(sha: Sha, session: SessionDep, share: SharedViewDep) -> Creature:
+def creature(sha: Sha, session: SessionDep, share: ShareAccessDep) -> Creature:
     return find_creature(session, sha, share)
 
 
@@ -36,7 +36,7 @@ class Identity:
     json: bytes
 
 
-def identity(sha: Sha, services: ServicesDep, share: SharedViewDep) -> Identity:
+def identity(sha: Sha, services: ServicesDep, share: ShareAccessDep) -> Identity:
     with services.sessions.read() as session:
         return Identity(sha, find_creature(session, sha, share).identity)
 

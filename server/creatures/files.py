@@ -5,7 +5,7 @@ from typing import Any
 from microcosmos.archive import creature_h5, pedigree
 from microcosmos.archive.creature import CreatureError
 
-from ..core import uploads
+from ..core import json_body
 from ..core.errors import ProblemError
 
 HDF5 = b"\x89HDF\r\n\x1a\n"
@@ -14,12 +14,12 @@ HDF5 = b"\x89HDF\r\n\x1a\n"
 def creature_file(body: bytes) -> dict[str, Any]:
     """Return the checked creature file, with the files of its `ancestors`."""
     if not body.startswith(HDF5):
-        return pedigree.document(*pedigree.split(uploads.mapping(uploads.parse(body))))
+        return pedigree.document(*pedigree.split(json_body.mapping(json_body.parse(body))))
     try:
         file = creature_h5.load(body)
     except CreatureError:
         raise
     except ValueError as error:
         raise ProblemError(422, "Not a creature file", f"{error}.") from error
-    uploads.refuse_unkeepable(file)
+    json_body.refuse_unstorable(file)
     return pedigree.document(file, [])

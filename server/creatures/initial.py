@@ -1,4 +1,4 @@
-"""Initial creatures of a run: check that they fit its spec, and keep them while it exists."""
+"""Initial creatures of a run: check that they fit its spec, and record them."""
 
 from collections.abc import Container, Sequence
 from typing import Any
@@ -35,8 +35,8 @@ def check(session: Session, spec: Spec) -> None:
         genes_of(spec, [rows[name] for name in spec.search.initial])
 
 
-def keep(session: Session, runs: Sequence[tuple[Spec, Sequence[UUID]]]) -> None:
-    """Note the initial creatures of new runs, given by spec, so that nothing deletes them.
+def record(session: Session, runs: Sequence[tuple[Spec, Sequence[UUID]]]) -> None:
+    """Record the initial creatures of new runs, given by spec, so that none is deleted.
 
     Raise `CreatureError` if one is gone.
     """
@@ -70,7 +70,7 @@ def _lock(session: Session, names: Sequence[str]) -> set[str]:
 
 
 def _refuse_missing(spec: Spec, existing: Container[str]) -> None:
-    """A refinement contains its creature, a search only names creatures."""
+    """Raise `CreatureError` if a search names a missing creature."""
     missing = [name for name in initial_of(spec) if name not in existing]
     if missing and isinstance(spec, Evolution):
         needed = "names of creatures of this server (import it first)"

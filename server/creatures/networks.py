@@ -1,4 +1,4 @@
-"""Write the network of a creature in forms for other programs and for people."""
+"""Write a creature's network as SVG, Graphviz, Python or TensorNEAT."""
 
 import json
 from collections.abc import Callable
@@ -35,8 +35,8 @@ FORMS: dict[str, tuple[str, str, Callable[[Network], str | bytes]]] = {
 """Media type, description and writer of each form, by the ending of the file."""
 
 
-def written(identity: bytes, form: str) -> bytes:
-    """Return the network in a form. Only for the sandbox, since it runs code of the network."""
+def write(identity: bytes, form: str) -> bytes:
+    """Return the network in a form. Call it only in the sandbox: it evaluates the network."""
     network = network_of(json.loads(identity))
     try:
         data = FORMS[form][2](network)

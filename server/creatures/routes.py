@@ -10,9 +10,9 @@ from fastapi.responses import JSONResponse, Response
 from microcosmos.archive import creature, creature_h5
 
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE
-from ..auth.capability import SharedViewDep
-from ..core.page import IMMUTABLE
-from ..core.uploads import limited
+from ..auth.share_access import ShareAccessDep
+from ..core.json_body import limited
+from ..core.static_files import IMMUTABLE
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import Creature
 from . import lineage, networks
@@ -49,7 +49,7 @@ def read_creature(
     request: Request,
     row: CreatureDep,
     session: SessionDep,
-    share: SharedViewDep,
+    share: ShareAccessDep,
     download: bool = False,
     ancestors: bool = False,
 ) -> Response:
@@ -76,7 +76,7 @@ def attachment(row: Creature, ending: str) -> dict[str, str]:
     responses={200: {"content": {H5: {}}}},
     dependencies=[MAY_READ_SHARED],
 )
-def read_creature_h5(row: CreatureDep, share: SharedViewDep) -> Response:
+def read_creature_h5(row: CreatureDep, share: ShareAccessDep) -> Response:
     """Return the creature file as HDF5, with its body and genes as arrays."""
     headers = {"Cache-Control": "no-cache", **attachment(row, "h5")}
     file = creatures.document(row)

@@ -11,12 +11,12 @@ from functools import cache
 from threading import Lock
 from typing import Any
 
-from ..core.errors import RETRY, ProblemError
+from ..core.errors import RETRY_AFTER, ProblemError
 from ..core.schemas import Problem
-from .sandbox_process import LENGTH, PROBLEM, RESULT, SECONDS
+from .sandbox_process import CPU_SECONDS, LENGTH, PROBLEM, RESULT
 
 START_SECONDS = 30.0
-"""Time for the process to start on a busy machine. One request has `SECONDS`."""
+"""Time for the process to start on a busy machine. One request has `CPU_SECONDS`."""
 END_SECONDS = 0.2
 """Time within which the end of a killed process is noticed."""
 SINGLE = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "HDF5_PLUGIN_PRELOAD": "::"}
@@ -48,7 +48,7 @@ class Sandbox:
             raise ProblemError.of(Problem.model_validate_json(content))
         if status != RESULT:
             self._refuse_gone()
-            detail = f"{action} took more than {SECONDS:g} seconds or too much memory."
+            detail = f"{action} took more than {CPU_SECONDS:g} seconds or too much memory."
             raise ProblemError(422, "Unreadable", detail)
         return content
 
@@ -69,7 +69,7 @@ class Sandbox:
             if self._process:
                 self._process.wait(END_SECONDS)
             detail = "The sandbox of the server does not answer; try again."
-            raise ProblemError(503, "Unavailable", detail, headers=RETRY)
+            raise ProblemError(503, "Unavailable", detail, headers=RETRY_AFTER)
 
     def _connection(self) -> socket.socket:
         """Return a connection to a new child process for one request."""

@@ -1,9 +1,9 @@
 """The sandbox process: handle each request in a child that can open, write and keep nothing.
 
 `python -m server.creatures.sandbox_process` waits for connections on its standard input and
-forks for each.
-A request names a task: `creature` reads a file, the form of a network writes it. The child may
-use `MEMORY` beyond what it began with, `SECONDS` of time, and no file: the kernel opens none.
+forks for each. A request names a task: `creature` to read a file, or a form in which to write a
+network. The child may use `MEMORY` beyond its initial memory, `CPU_SECONDS` of time, and no
+file.
 """
 
 import json
@@ -30,9 +30,9 @@ from .files import HDF5, creature_file
 from .probe import example
 
 MEMORY = 256 << 20
-SECONDS = 1.5
+CPU_SECONDS = 1.5
 """Limit on CPU time; time that the process only waits does not count."""
-ALL_SECONDS = 5.0
+WALL_SECONDS = 5.0
 """Limit on wall time."""
 LENGTH = struct.Struct("<Q")
 RESULT, PROBLEM = b"result", b"problem"
@@ -82,7 +82,7 @@ def answer(request: bytes) -> bytes:
     try:
         if task == b"creature":
             return RESULT + b"\n" + json.dumps(creature_file(body)).encode()
-        return RESULT + b"\n" + networks.written(body, task.decode())
+        return RESULT + b"\n" + networks.write(body, task.decode())
     except ProblemError as error:
         problem = error.problem
     except CreatureError as error:
@@ -107,15 +107,18 @@ def restrict() -> None:
     room = pages * resource.getpagesize() + MEMORY
     for kind, most in (
         (resource.RLIMIT_AS, room),
-        (resource.RLIMIT_CPU, ceil(time.process_time() + SECONDS) + 1),  # If all else fails.
+        (
+            resource.RLIMIT_CPU,
+            ceil(time.process_time() + CPU_SECONDS) + 1,
+        ),  # If all else fails.
         (resource.RLIMIT_FSIZE, 0),
         (resource.RLIMIT_CORE, 0),
         (resource.RLIMIT_NOFILE, 0),
     ):
         resource.setrlimit(kind, (most, most))
     # By default these signals end the process, even inside a library.
-    signal.setitimer(signal.ITIMER_PROF, SECONDS)
-    signal.setitimer(signal.ITIMER_REAL, ALL_SECONDS)
+    signal.setitimer(signal.ITIMER_PROF, CPU_SECONDS)
+    signal.setitimer(signal.ITIMER_REAL, WALL_SECONDS)
 
 
 if __name__ == "__main__":

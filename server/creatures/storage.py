@@ -112,7 +112,7 @@ def with_ancestors(session: Session, row: Creature) -> dict[str, Any]:
 
 
 def add_all(session: Session, files: Sequence[dict[str, Any]]) -> None:
-    """Import several, in one order, so that two requests cannot deadlock."""
+    """Import several, sorted, so that two requests cannot deadlock."""
     for file in sorted(files, key=itemgetter("sha256")):
         add(session, file)
 

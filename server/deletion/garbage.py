@@ -25,7 +25,7 @@ CREATURES_PER_TRANSACTION = 200
 def in_use(session: Session, names: Collection[str]) -> set[str]:
     """Return those of the creatures that are in use. Each kind of use has a line here.
 
-    A parent of a kept creature is in use, so that lineage has no holes.
+    A parent of a kept creature is in use, so that lineage stays complete.
     """
     uses = (
         select(Elite.creature).where(Elite.creature.in_(names)),
@@ -51,7 +51,7 @@ def collect(session: Session) -> bool:
     checked = {row.creature: row.run_id for row in session.scalars(rows)}
     if not checked:
         return False
-    # A new use of one waits from here on, and then finds that it is gone.
+    # Transactions that would use one wait for this lock, and then find it deleted.
     locked = select(Creature).where(Creature.sha256.in_(checked)).order_by(Creature.sha256)
     found = {row.sha256: row.parents for row in session.scalars(locked.with_for_update())}
     gone = sorted(found.keys() - in_use(session, found))

@@ -32,7 +32,7 @@ from ..tables import (
 from .garbage import collect, discard
 
 STEPS = 200
-"""Transactions in one pass: the reconciler has other work too."""
+"""Limit on the transactions in one pass, since the reconciler has other work too."""
 ROWS_PER_TRANSACTION = 500
 
 log = logging.getLogger(__name__)

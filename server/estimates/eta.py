@@ -15,9 +15,9 @@ from ..specs.stored import parsed
 from ..tables import Generation, Run, Worker
 from .schemas import MeasuredSpeed
 
-RECENT = 40
+MAX_RECENT_RUNS = 40
 """Number of runs of an experiment to read, the newest."""
-SIMILAR = 5
+MAX_SIMILAR_RUNS = 5
 """Number of runs that count: those whose generations are most like the new one's."""
 
 
@@ -66,7 +66,7 @@ def speed_of(session: Session, spec: Spec, live: Sequence[Worker]) -> Speed | No
 def speeds_of(
     session: Session, specs: Sequence[Spec], live: Sequence[Worker]
 ) -> list[Speed | None]:
-    """Return the same for several specs of one experiment, with one query."""
+    """Return the speeds for several specs of one experiment, with one query."""
     models = {model_of(worker.device) for worker in live}
     recent = _recent(session, specs[0].experiment)
     measured = {kind: _measured(recent, kind) for kind in {_kind(spec) for spec in specs}}
@@ -81,7 +81,9 @@ def _similar(measured: Sequence[Measured], spec: Spec, models: Collection[str]) 
     if not same:
         return None
     cell_steps = estimate(spec).cell_steps / spec.generations
-    nearest = sorted(same, key=lambda one: abs(log(one.cell_steps / cell_steps)))[:SIMILAR]
+    nearest = sorted(same, key=lambda one: abs(log(one.cell_steps / cell_steps)))[
+        :MAX_SIMILAR_RUNS
+    ]
     return Speed(
         device=_name(nearest[0].device, models),
         rates=tuple(one.rate for one in nearest),
@@ -109,13 +111,13 @@ def _recent(session: Session, experiment: str) -> Sequence[Row[Run, float]]:
         .where(Run.experiment == experiment, Run.generation > 1)
         .where(Run.seconds > Generation.seconds, Run.device.is_not(None))
         .order_by(Run.created_at.desc())
-        .limit(RECENT)
+        .limit(MAX_RECENT_RUNS)
     )
     return session.execute(statement).all()
 
 
 def _measured(recent: Sequence[Row[Run, float]], kind: Hashable) -> list[Measured]:
-    """Return the speeds of runs of a kind, the newest first."""
+    """Return the speeds of runs of a kind, newest first."""
     found = []
     for run, first in recent:
         earlier = parsed(run.spec)

@@ -84,7 +84,7 @@ def reason(run: Run, place: int, queue: QueueState) -> str:
     queue = replace(queue, alive=fit)
     before = queue.before(place)
     if before < 0:
-        return "A worker is about to begin."
+        return "A worker is about to start it."
     needed, largest = needed_bytes(run), max(worker.memory_bytes for worker in queue.alive)
     if needed is not None and needed > largest:
         return f"Needs {size(needed)}; the largest live worker has {size(largest)}."

@@ -21,7 +21,7 @@ class MeasuredSpeed(Wire):
 
 class QueueAhead(Wire):
     runs_ahead: int
-    """Queued runs that go first, without those that a worker is about to begin."""
+    """Queued runs that go first, without those that a worker is about to start."""
     workers: int
     idle_workers: int
 
@@ -48,6 +48,6 @@ class QueuedRun(RunBrief):
 
 class QueueRead(Wire):
     total: int
-    """All queued runs, also those that a worker is about to begin."""
+    """All queued runs, also those that a worker is about to start."""
     items: list[QueuedRun]
     """The first ones, in the order in which workers take them."""

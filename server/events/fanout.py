@@ -61,29 +61,29 @@ class Fanout:
         self.stream = stream
         self.read_up_to = "0-0"
         self.listeners: set[Listener] = set()
-        self.reached = False
+        self.connected = False
         self.closed = False
 
     async def start(self) -> None:
         """Find the end of the stream; `run` does it later if Redis does not answer."""
         with suppress(RedisError):
             self.read_up_to = await self._newest()
-            self.reached = True
+            self.connected = True
 
     async def run(self) -> None:
         """Hand on new events. After an outage, have all listeners fetch everything again."""
         while not self.closed:
             try:
-                if not self.reached:
+                if not self.connected:
                     self.read_up_to = await self._newest()
-                    self._hand_on(Entry(self.read_up_to, "reset"))
-                    self.reached = True
+                    self._broadcast(Entry(self.read_up_to, "reset"))
+                    self.connected = True
                 for entry in await self._next():
                     self.read_up_to = entry.id
-                    self._hand_on(entry)
+                    self._broadcast(entry)
             except RedisError as error:
                 log.warning("no events until Redis answers: %s", error)
-                self.reached = False
+                self.connected = False
                 await asyncio.sleep(1)
 
     @contextmanager
@@ -118,7 +118,7 @@ class Fanout:
                 yield entry.sent()
 
     def close(self) -> None:
-        """End all streams. Clients come back with the last id that they received."""
+        """End all streams. Clients reconnect with the last id that they received."""
         self.closed = True
         for listener in self.listeners:
             listener.put(None)
@@ -133,7 +133,7 @@ class Fanout:
             if listener.token in tokens:
                 listener.put(None)
 
-    def _hand_on(self, entry: Entry) -> None:
+    def _broadcast(self, entry: Entry) -> None:
         for listener in self.listeners:
             listener.put(entry)
 

@@ -1,4 +1,4 @@
-"""Extend a finished run: it ends as if it had had all generations from the start."""
+"""Extend a finished run: the result is the same as with all generations from the start."""
 
 from sqlalchemy.orm import Session
 
@@ -34,7 +34,7 @@ def longer(run: Run, more: int) -> Spec:
 
 def extend(session: Session, run: Run, spec: Spec) -> Run:
     """Queue a run again, to continue from its last checkpoint."""
-    # Of two concurrent extensions the second would compute a wrong total.
+    # The second of two concurrent extensions would set a wrong total.
     unchanged = (NOT_IN_BIN, Run.status == FINISHED, Run.generations == run.generations)
     changed = change(
         session,

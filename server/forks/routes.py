@@ -5,13 +5,13 @@ from uuid import UUID
 from fastapi import APIRouter, Response
 
 from ..auth.authorize import Writer
-from ..core.uploads import json_route
+from ..core.json_body import json_route
 from ..creatures.initial import initial_of
 from ..queue.order import requeue
 from ..runs.commands import SPEC_BYTES, IdempotencyKey, changed, submitted
 from ..runs.deps import OwnRunId, find_run
 from ..runs.schemas import Extension, Fork, RunRead
-from ..runs.submission import Request, earlier_run, refuse_too_large, submit
+from ..runs.submission import IdempotentRequest, earlier_run, refuse_too_large, submit
 from ..services.deps import ServicesDep
 from ..specs import parsing
 from . import extending, forking
@@ -21,7 +21,7 @@ router = APIRouter(prefix="/runs/{run_id}", tags=["runs"], route_class=json_rout
 
 @router.post("/extend", status_code=202)
 def extend_run(run_id: OwnRunId, services: ServicesDep, sent: Extension) -> RunRead:
-    """Add generations to a finished run; it ends as if it had had them from the start."""
+    """Add generations to a finished run; the result is the same as with all from the start."""
     with services.sessions.read() as session:
         run = find_run(session, run_id)
     spec = extending.longer(run, sent.generations)
@@ -45,7 +45,7 @@ def fork_run(
     The same key with the same request gives the same run, even if the archive has changed.
     """
     body = {"fork": str(run_id), **sent.model_dump(mode="json")}
-    request = Request(body, idempotency_key, principal.token)
+    request = IdempotentRequest(body, idempotency_key, principal.token)
     if known := earlier_run(services, response, request):
         return known
     with services.sessions.read() as session, parsing.parsing(services) as parse:

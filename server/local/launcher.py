@@ -31,7 +31,7 @@ class StartError(RuntimeError):
 
 
 @dataclass(frozen=True)
-class Place:
+class DataFolder:
     """A data folder, locked for this process, and the environment of its processes."""
 
     settings: Settings
@@ -48,7 +48,7 @@ class Place:
         return lambda: spawn(command, self.environment, self.log(name))
 
 
-def occupy(settings: Settings) -> Place:
+def lock_data_folder(settings: Settings) -> DataFolder:
     """Lock the data folder for as long as this process lives."""
     folder = settings.data.resolve()
     private(folder)
@@ -67,10 +67,10 @@ def occupy(settings: Settings) -> Place:
         **os.environ,
         "MICROCOSMOS_DATA": str(folder),
     }
-    return Place(settings, folder, environment, lock)
+    return DataFolder(settings, folder, environment, lock)
 
 
-def refuse_taken(host: str, port: int) -> None:
+def refuse_port_in_use(host: str, port: int) -> None:
     with socket(AF_INET6 if ":" in host else AF_INET) as probe:
         probe.setsockopt(SOL_SOCKET, SO_REUSEADDR, 1)
         try:
@@ -82,22 +82,22 @@ def refuse_taken(host: str, port: int) -> None:
             ) from None
 
 
-def start(place: Place, tree: Tree) -> None:
+def start(data: DataFolder, tree: Tree) -> None:
     """Start all processes, first those that others depend on."""
-    settings = start_redis(place, tree)
+    settings = start_redis(data, tree)
     if settings.needs_token:
         prepare_database(settings)  # The server refuses to start without a token.
-    # The server migrates the database, too; we can do it at the same time.
-    tree.children.append(Child("server", place.module("server", "server.main")))
+    # The server migrates the database too; both may do it at once.
+    tree.children.append(Child("server", data.module("server", "server.main")))
     if not settings.needs_token:
         prepare_database(settings)
     for index in range(settings.workers):
         name = f"worker-{index}"
-        tree.children.append(Child(name, place.module(name, "worker.supervisor", str(index))))
+        tree.children.append(Child(name, data.module(name, "worker.supervisor", str(index))))
     for name in ("renderer", "auditor"):
-        tree.children.append(Child(name, place.module(name, f"worker.{name}")))
+        tree.children.append(Child(name, data.module(name, f"worker.{name}")))
     for child in tree.children:
-        say(child.name, f"process {child.process.pid}, log in {place.log(child.name)}")
+        say(child.name, f"process {child.process.pid}, log in {data.log(child.name)}")
 
 
 def prepare_database(settings: Settings) -> None:
@@ -123,22 +123,22 @@ def prepare_database(settings: Settings) -> None:
     shared.close()
 
 
-def start_redis(place: Place, tree: Tree) -> Settings:
+def start_redis(data: DataFolder, tree: Tree) -> Settings:
     """Start a Redis, unless the settings name one; return the settings with its address."""
-    if "redis_url" in place.settings.model_fields_set:
+    if "redis_url" in data.settings.model_fields_set:
         say("redis", "the one that MICROCOSMOS_REDIS_URL names")
-        return place.settings
-    redis, log = redis_embedded.prepare(place.folder / "redis"), place.log("redis")
+        return data.settings
+    redis, log = redis_embedded.prepare(data.folder / "redis"), data.log("redis")
     child = Child("redis", lambda: redis.start(log))
     tree.services.append(child)
     redis.wait(child.process, log)
-    place.environment["MICROCOSMOS_REDIS_URL"] = redis.url
+    data.environment["MICROCOSMOS_REDIS_URL"] = redis.url
     say("redis", f"{redis.binary} on 127.0.0.1:{redis.port}")
-    return place.settings.model_copy(update={"redis_url": redis.url})
+    return data.settings.model_copy(update={"redis_url": redis.url})
 
 
 def main() -> None:
-    """Run until Ctrl-C; all processes end with this one, and nothing is lost."""
+    """Run until Ctrl-C; all processes end with this one."""
     try:
         settings = Settings()
     except ValueError as error:
@@ -147,10 +147,10 @@ def main() -> None:
     tree = Tree()
     tree.listen()
     try:
-        place = occupy(settings)
-        refuse_taken(settings.host, settings.port)
+        data = lock_data_folder(settings)
+        refuse_port_in_use(settings.host, settings.port)
         say("starting", address)
-        start(place, tree)
+        start(data, tree)
         tree.watch(lambda: answers(settings.port, "/healthz", settings.host))
         if not tree.stop_requested:
             say("ready", f"{address} (Ctrl-C ends it)")

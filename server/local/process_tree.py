@@ -8,13 +8,13 @@ from contextlib import suppress
 from subprocess import Popen
 from types import FrameType
 
-from ..core.processes import ending
+from ..core.processes import exit_reason
 
 BACKOFF, LONGEST_BACKOFF = 0.5, 30.0
-STEADY = 60.0
+STABLE_SECONDS = 60.0
 """Seconds of life after which the delay of a restart is the shortest again."""
 GRACE = 25.0
-"""Seconds in which processes have to end; workers checkpoint meanwhile."""
+"""Seconds that processes have to end; workers checkpoint meanwhile."""
 POLL_SECONDS = 0.05
 
 Start = Callable[[], Popen[bytes]]
@@ -26,7 +26,7 @@ def say(subject: str, text: str) -> None:
 
 
 class Child:
-    """A process that is restarted when it dies, after ever longer delays."""
+    """A process that is restarted when it dies, with increasing delays."""
 
     def __init__(self, name: str, start: Start):
         self.name = name
@@ -45,9 +45,9 @@ class Child:
         if code is None:
             return
         if self._due is None:
-            self._delay = BACKOFF if now - self._started > STEADY else self._delay
+            self._delay = BACKOFF if now - self._started > STABLE_SECONDS else self._delay
             self._due = now + self._delay
-            say(self.name, f"died ({ending(code)}); restarting it in {self._delay:g} s")
+            say(self.name, f"died ({exit_reason(code)}); restarting it in {self._delay:g} s")
         elif now >= self._due:
             self._due, self._delay = None, min(2 * self._delay, LONGEST_BACKOFF)
             self._begin()
@@ -61,7 +61,7 @@ class Child:
 
 
 class Tree:
-    """`children`, and `services` that they depend on, which end last."""
+    """`children`, and the `services` that they depend on; services end last."""
 
     def __init__(self) -> None:
         self.services: list[Child] = []

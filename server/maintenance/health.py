@@ -1,4 +1,4 @@
-"""Health report: what the server finds out about its database, disk, Redis and queues."""
+"""Health report: the state of the database, disk, Redis, queues and workers."""
 
 import shutil
 import time

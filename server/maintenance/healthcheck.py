@@ -73,7 +73,7 @@ def fault(settings: Settings, part: str) -> str:
 
 
 def remedy(mark: Path, init: int = 1) -> None:
-    """End a container's program that has failed for long.
+    """End a container's program that has failed for minutes.
 
     `mark` is as old as the first failure; `init` is the container's first process.
     """

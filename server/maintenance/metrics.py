@@ -26,7 +26,7 @@ from ..tables import RUNNING, STATUSES, Run
 from ..workers import registry
 
 BUCKETS = (0.005, 0.02, 0.05, 0.1, 0.25, 1.0, 5.0)
-"""Seconds of requests."""
+"""Upper bounds of the histogram of request times, in seconds."""
 METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")
 
 disable_created_metrics()
@@ -66,7 +66,7 @@ class Metrics(Collector):
 
 
 class CountRequests:
-    """Middleware: count requests by route, since paths with ids in them are without number."""
+    """Middleware: count requests by route, since there is no limit on paths with ids."""
 
     def __init__(self, app: ASGIApp, metrics: Metrics):
         self.app, self.metrics = app, metrics

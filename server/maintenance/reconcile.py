@@ -1,6 +1,6 @@
-"""The reconciler: repair runs without a worker or without a job, and delete what has expired.
+"""The reconciler: repair runs that lack a worker or a job, and delete expired rows.
 
-The server reconciles every few seconds, so Redis may be emptied at any time.
+The server runs it every few seconds, so Redis may be emptied at any time.
 """
 
 import logging
@@ -12,11 +12,12 @@ from redis import RedisError
 from sqlalchemy import delete, select
 from sqlalchemy.exc import SQLAlchemyError
 
+from ..attempts import leases
 from ..core.database import ago
 from ..deletion.purge import purge
 from ..queue.order import in_order
 from ..runs.announce import announce
-from ..runs.lifecycle import lost, release, yield_up
+from ..runs.lifecycle import end_attempt, fail_attempt
 from ..runs.log import note
 from ..services.services import Services
 from ..tables import CANCELLED, QUEUED, RUNNING, Run, Sweep, Worker
@@ -38,7 +39,7 @@ def reconciling(services: Services) -> Iterator[None]:
                 reconcile(services)
             except (RedisError, SQLAlchemyError) as error:
                 log.warning("will reconcile again: %s", error)
-            except Exception:  # Without this thread lost runs would stay lost.
+            except Exception:  # Without this thread nothing would requeue lost runs.
                 log.exception("will reconcile again")
             if ended.wait(services.settings.reconcile_interval):
                 return
@@ -53,9 +54,9 @@ def reconciling(services: Services) -> Iterator[None]:
 
 
 def reconcile(services: Services) -> None:
-    """Make one pass."""
+    """Do all periodic work once."""
     cancel_overdue(services)
-    take_back_lost(services)
+    requeue_expired(services)
     services.jobs.clean()
     enqueue_missing(services)
     forget_workers(services)
@@ -64,7 +65,7 @@ def reconcile(services: Services) -> None:
 
 
 def cancel_overdue(services: Services) -> None:
-    """Cancel runs whose workers did not obey in time. Their supervisors kill the jobs."""
+    """Cancel runs whose workers did not stop in time. Their supervisors kill the jobs."""
     grace = services.settings.grace
     with services.sessions.read() as session:
         overdue = (
@@ -75,7 +76,7 @@ def cancel_overdue(services: Services) -> None:
         found = list(session.scalars(select(Run.id).where(*overdue)))
     for run_id in found:
         with services.sessions.write.begin() as session:
-            ended = yield_up(session, run_id, *overdue)
+            ended = end_attempt(session, run_id, *overdue)
             if ended:
                 text = f"Cancelled: its worker did not stop within {grace:g} s."
                 note(session, ended, text, "warning")
@@ -83,16 +84,16 @@ def cancel_overdue(services: Services) -> None:
             announce(services, run_id)
 
 
-def take_back_lost(services: Services) -> None:
-    """Queue runs again whose worker has not reported within a lease."""
+def requeue_expired(services: Services) -> None:
+    """End the attempts whose lease has expired, and queue their runs again."""
     lease = services.settings.lease
     with services.sessions.read() as session:
-        silent = (Run.status == RUNNING, lost(session, lease))
-        found = session.execute(select(Run.id, Run.worker).where(*silent)).all()
+        expired = (Run.status == RUNNING, leases.expired(session, lease))
+        found = session.execute(select(Run.id, Run.worker).where(*expired)).all()
     for run_id, worker in found:
         with services.sessions.write.begin() as session:
             error = f"worker {worker} has not reported for {lease:g} s"
-            run = release(session, run_id, *silent, error=error)
+            run = fail_attempt(session, run_id, *expired, error=error)
         if run:
             announce(services, run_id)
             services.jobs.enqueue([run] if run.status == QUEUED else [])
@@ -102,7 +103,7 @@ def enqueue_missing(services: Services) -> None:
     """Enqueue queued runs that have no job, in their order."""
     with services.sessions.read() as session:
         queued = in_order(session)
-    known = services.jobs.runs_at_hand() if queued else set()
+    known = services.jobs.runs_with_job() if queued else set()
     services.jobs.enqueue(run for run in queued if str(run.id) not in known)
 
 

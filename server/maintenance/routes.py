@@ -7,7 +7,7 @@ from fastapi.responses import PlainTextResponse
 from prometheus_client.exposition import CONTENT_TYPE_PLAIN_0_0_4
 
 from ..auth.authorize import MAY_ADMINISTER, MAY_READ, PUBLIC
-from ..core import page
+from ..core import static_files
 from ..core.schemas import Wire
 from ..services.deps import ServicesDep, SessionDep
 from . import health
@@ -37,7 +37,7 @@ def read_health(services: ServicesDep) -> health.HealthReport:
 
 @outside.get("/healthz", dependencies=[PUBLIC])
 def alive() -> Health:
-    return Health(help=page.HELP.is_dir())
+    return Health(help=static_files.DOCUMENTATION.is_dir())
 
 
 @outside.get("/readyz", responses={503: {"model": Readiness}}, dependencies=[PUBLIC])

@@ -1,4 +1,4 @@
-"""Job queues: messages that a run or a rendering is to be computed. The truth is in SQL."""
+"""Job queues in Redis: requests to compute runs and renderings. SQL holds their state."""
 
 import logging
 import re
@@ -22,20 +22,20 @@ from ..tables import AUDIT, MEASUREMENT, REPLAY
 
 log = logging.getLogger(__name__)
 
-EVOLVE = "worker.job_process.main"
-RENDER = "worker.jobs.render"
+RUN_JOB = "worker.job_process.main"
+RENDER_JOB = "worker.jobs.render"
 PLUGINS = "-plugins-"
 """Between the name of a queue and the hash of the plug-ins that its workers must have."""
 TIMEOUTS = {AUDIT: 3600, MEASUREMENT: 3600}
 RENDER_SECONDS = 600
 """Time limit of the renderings that `TIMEOUTS` does not name."""
 FAILURE_SECONDS = 60
-"""Redis keeps a failed rendering so long; then it may be tried again."""
+"""Seconds that Redis keeps a failed rendering; then it may be tried again."""
 NAMES = ("runs", "sweeps", "renderings", "audits")
 
 
 def open_redis(url: str) -> Redis:
-    """Return a client that soon gives up on a Redis that does not answer."""
+    """Return a client that stops waiting after a few seconds if Redis does not answer."""
     retry = Retry(ExponentialBackoff(cap=0.5), 2)
     return Redis.from_url(url, socket_timeout=5, socket_connect_timeout=2, retry=retry)
 
@@ -51,10 +51,10 @@ class Jobs:
         )
 
     @property
-    def evolving(self) -> list[Queue]:
+    def run_queues(self) -> list[Queue]:
         """Queues of runs that every worker can compute, in the order in which workers look.
 
-        Sweeps have a queue of their own, so that a hundred runs hold up nobody's single run.
+        Sweeps have a queue of their own, so that a hundred runs do not delay a single run.
         """
         return [self.runs, self.sweeps]
 
@@ -66,7 +66,7 @@ class Jobs:
         """
         names: dict[Queue, list[str]] = {}
         for run in runs:
-            queue = self.evolving_with(run.plugin_versions, run.sweep is not None)
+            queue = self.run_queue(run.plugin_versions, run.sweep is not None)
             names.setdefault(queue, []).append(str(run.id))
         try:
             for queue, some in names.items():
@@ -80,7 +80,7 @@ class Jobs:
                 self._forget(job)
         data = [
             Queue.prepare_data(
-                EVOLVE, (name,), job_id=name, timeout=-1, result_ttl=0, failure_ttl=3600
+                RUN_JOB, (name,), job_id=name, timeout=-1, result_ttl=0, failure_ttl=3600
             )
             for name in names
         ]
@@ -104,7 +104,7 @@ class Jobs:
         self.forget(job_id)
         queue = self.audits if kind in TIMEOUTS else self.renderings
         queue.enqueue(
-            RENDER,
+            RENDER_JOB,
             creature,
             kind,
             job_id=job_id,
@@ -116,7 +116,7 @@ class Jobs:
         )
 
     def give_up(self, job: Job, reason: str) -> None:
-        """Count a job as failed whose worker cannot report any more."""
+        """Mark a job as failed whose worker has died."""
         self._forget(job)
         job.set_status(JobStatus.FAILED)
         with self.redis.pipeline() as pipeline:
@@ -125,7 +125,7 @@ class Jobs:
             pipeline.execute()
 
     def rendering_id(self, creature: str, kind: str = REPLAY) -> str:
-        """All installations know the same creatures, but each has its own jobs."""
+        """Return the id of a job; the prefix separates installations that share a Redis."""
         return f"{self.slug}{kind.replace('.', '-')}-{creature}"
 
     def find(self, job_id: str) -> Job | None:
@@ -140,8 +140,8 @@ class Jobs:
     def _forget(self, job: Job) -> None:
         """Remove a job with every trace of its executions.
 
-        RQ's own way raises where a worker died: the data of an execution expires before the
-        entry that leads to it.
+        RQ's own method raises if a worker died: the data of an execution expires before its
+        entry in the registry.
         """
         executions = job.execution_registry
         for execution in executions.get_execution_ids():
@@ -150,7 +150,7 @@ class Jobs:
         with suppress(InvalidJobOperation):  # A job that ends now deletes itself.
             job.delete()
 
-    def evolving_with(self, plugin_versions: Sequence[str] | None, of_sweep: bool) -> Queue:
+    def run_queue(self, plugin_versions: Sequence[str] | None, of_sweep: bool) -> Queue:
         """Return the queue of runs that need these plug-ins: workers that have them listen."""
         queue = self.sweeps if of_sweep else self.runs
         if not plugin_versions:
@@ -158,24 +158,24 @@ class Jobs:
         name = sha256("".join(sorted(plugin_versions)).encode()).hexdigest()[:16]
         return self._queue(f"{queue.name}{PLUGINS}{name}")
 
-    def evolving_anywhere(self) -> list[Queue]:
+    def all_run_queues(self) -> list[Queue]:
         """Return all queues of runs that Redis knows."""
         found = [as_text(name) for name in self.redis.smembers(Queue.redis_queues_keys)]  # pyright: ignore
         names = [name.removeprefix(Queue.redis_queue_namespace_prefix) for name in found]
-        ours = tuple(queue.name + PLUGINS for queue in self.evolving)
+        ours = tuple(queue.name + PLUGINS for queue in self.run_queues)
         special = sorted(name for name in names if name.startswith(ours))
-        return [*self.evolving, *map(self._queue, special)]
+        return [*self.run_queues, *map(self._queue, special)]
 
     def _all(self) -> list[Queue]:
-        return [*self.evolving_anywhere(), self.renderings, self.audits]
+        return [*self.all_run_queues(), self.renderings, self.audits]
 
     def _queue(self, name: str) -> Queue:
         return Queue(name, connection=self.redis, serializer=JSONSerializer)
 
-    def runs_at_hand(self) -> set[str]:
+    def runs_with_job(self) -> set[str]:
         """Return the ids of runs that wait in a queue or that a worker has taken."""
         found: set[str] = set()
-        for queue in self.evolving_anywhere():
+        for queue in self.all_run_queues():
             started = queue.started_job_registry.get_job_ids(cleanup=False)
             found |= {*queue.get_job_ids(), *started}
         return found

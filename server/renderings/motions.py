@@ -1,4 +1,4 @@
-"""The motion within a replay, without the fluid: small enough for a wall of creatures."""
+"""The motion within a replay, without the fluid: small enough for a gallery of creatures."""
 
 import json
 import struct
@@ -8,7 +8,7 @@ from ..tables import Artifact
 
 FORMAT = "microcosmos-motion/1"
 FRAMES = 96
-"""Limit on frames; a wall shows no more."""
+"""Limit on frames; a gallery shows no more."""
 COPIED = ("creature", "steps", "nodes", "edges", "member", "size")
 LENGTH = struct.Struct("<I")
 POSITION = 2 * 4

@@ -7,36 +7,36 @@ from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE
-from ..auth.capability import SharedViewDep
+from ..auth.share_access import ShareAccessDep
 from ..core.errors import ProblemError
 from ..creatures.deps import CreatureDep
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import AUDIT, MEASUREMENT, PREVIEW, REPLAY
 from . import storage
-from .reading import MEDIA_TYPES, ON_REQUEST, WORDS, existing, existing_motion, order
+from .responses import MEDIA_TYPES, NOUNS, ON_REQUEST, existing, existing_motion, order
 from .schemas import Measurement, Rendering
 
 router = APIRouter(prefix="/creatures/{sha}", tags=["creatures"])
 Answers = dict[int | str, dict[str, Any]]
-UNDERWAY: Answers = {202: {"model": Rendering}}
-NEVER: Answers = {204: {"description": "Nobody has ordered this measurement"}}
+PENDING: Answers = {202: {"model": Rendering}}
+NOT_ORDERED: Answers = {204: {"description": "Nobody has ordered this measurement"}}
 
 
 def _reader(kind: str) -> Callable[..., Response]:
     def read(
         request: Request,
         row: CreatureDep,
-        share: SharedViewDep,
+        share: ShareAccessDep,
         session: SessionDep,
         services: ServicesDep,
     ) -> Response:
         found = existing(request, row, session, services, kind)
         if found is None and share and kind != REPLAY:
-            raise ProblemError(404, "Not found", f"The share has no {WORDS[kind]} of it.")
+            raise ProblemError(404, "Not found", f"The share has no {NOUNS[kind]} of it.")
         return found or order(services, row.sha256, kind, anonymous=share is not None)
 
     read.__name__ = f"read_{kind.replace('.', '_')}"
-    read.__doc__ = f"Return the {WORDS.get(kind, kind)}, or 202 while it is computed."
+    read.__doc__ = f"Return the {NOUNS.get(kind, kind)}, or 202 while it is computed."
     return read
 
 
@@ -44,7 +44,7 @@ for kind in ON_REQUEST:
     router.get(
         f"/{kind}",
         response_class=Response,
-        responses={200: {"content": {MEDIA_TYPES[kind]: {}}}, **UNDERWAY},
+        responses={200: {"content": {MEDIA_TYPES[kind]: {}}}, **PENDING},
         dependencies=[MAY_READ if kind in (AUDIT, PREVIEW) else MAY_READ_SHARED],
     )(_reader(kind))
 
@@ -52,13 +52,13 @@ for kind in ON_REQUEST:
 @router.get(
     "/motion",
     response_class=Response,
-    responses={200: {"content": {"application/octet-stream": {}}}, **UNDERWAY},
+    responses={200: {"content": {"application/octet-stream": {}}}, **PENDING},
     dependencies=[MAY_READ_SHARED],
 )
 def read_motion(
     request: Request,
     row: CreatureDep,
-    share: SharedViewDep,
+    share: ShareAccessDep,
     session: SessionDep,
     services: ServicesDep,
 ) -> Response:
@@ -81,13 +81,13 @@ def measure(row: CreatureDep, services: ServicesDep) -> Rendering:
 
 @router.get(
     "/measurement",
-    responses={200: {"model": Measurement}, **UNDERWAY, **NEVER},
+    responses={200: {"model": Measurement}, **PENDING, **NOT_ORDERED},
     dependencies=[MAY_READ_SHARED],
 )
 def read_measurement(
     request: Request,
     row: CreatureDep,
-    share: SharedViewDep,
+    share: ShareAccessDep,
     session: SessionDep,
     services: ServicesDep,
 ) -> Response:

@@ -13,15 +13,15 @@ from microcosmos.viz.replay_file import REPLAY_VERSION
 from ..core.database import insert_missing
 from ..creatures import storage as creatures
 from ..services.services import Services
-from ..storage.artifacts import Stored, rendering_path
+from ..storage.artifacts import StoredFile, rendering_path
 from ..tables import REPLAY, Artifact, Creature
 
 REFUSAL = re.compile(r"^[\w.]*(?:CreatureError|Missing|Broken): ")
-"""Prefix of the engine's own errors, whose words suffice; others keep the name of the class."""
+"""Prefix of the engine's own errors, whose message suffices; others keep the class name."""
 VERSIONS = {REPLAY: REPLAY_VERSION}
 """Versions of formats that have changed: a rendering in an earlier one does not count."""
 ANONYMOUS_LIMIT = 8
-"""With so many renderings in the queue, anonymous orders are put off."""
+"""Length of the queue from which anonymous orders are not accepted for now."""
 UNDERWAY = (JobStatus.QUEUED, JobStatus.STARTED, JobStatus.DEFERRED, JobStatus.SCHEDULED)
 
 
@@ -43,7 +43,7 @@ def order(
 ) -> None:
     """Order a rendering, once; raise `RenderingFailed` if the last try failed.
 
-    An `anonymous` order waits behind all others, and is put off where many wait already.
+    An `anonymous` order goes last, and is not accepted while many wait.
     """
     job = services.jobs.find(services.jobs.rendering_id(creature, kind))
     status = job.get_status(refresh=False) if job else None
@@ -92,7 +92,7 @@ def existing(services: Services, creature: str, kind: str) -> bytes | None:
     """Return a rendering if it exists and is sound."""
     with services.sessions.read() as session:
         row = find(session, creature, kind)
-    return services.artifacts.sound(Stored(row.path, row.size, row.sha256)) if row else None
+    return services.artifacts.sound(StoredFile(row.path, row.size, row.sha256)) if row else None
 
 
 def creature(services: Services, name: str) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 
 from ..tables import Generation
 
-COUNTED = "diverged: "
+COUNT_PREFIX = "diverged: "
 """Prefix of names whose numbers count evaluations of their generation alone."""
 
 
@@ -45,7 +45,7 @@ def _joined(before: dict[str, float], later: dict[str, float]) -> dict[str, floa
     added = {
         name: before.get(name, 0) + value
         for name, value in later.items()
-        if name.startswith(COUNTED)
+        if name.startswith(COUNT_PREFIX)
     }
     return before | later | added
 

@@ -8,7 +8,7 @@ from fastapi import Depends
 from sqlalchemy.orm import Session
 
 from ..auth.authorize import Writer, authorize_owner
-from ..auth.capability import SharedViewDep
+from ..auth.share_access import ShareAccessDep
 from ..core.errors import ProblemError
 from ..services.deps import ServicesDep, SessionDep
 from ..tables import Run
@@ -29,11 +29,11 @@ def in_the_bin(run_id: UUID, until: datetime) -> str:
     return f"Run {run_id} is in the bin until {moment}; restore it to use it again."
 
 
-def run(run_id: UUID, session: SessionDep, share: SharedViewDep) -> Run:
+def run(run_id: UUID, session: SessionDep, share: ShareAccessDep) -> Run:
     return share.run(session, run_id) if share else find_run(session, run_id)
 
 
-def any_run(run_id: UUID, session: SessionDep, share: SharedViewDep) -> Run:
+def any_run(run_id: UUID, session: SessionDep, share: ShareAccessDep) -> Run:
     return share.run(session, run_id) if share else find_run(session, run_id, deleted=True)
 
 

@@ -1,4 +1,4 @@
-"""The journal of a run: what happened to it, written in the transactions that change it."""
+"""The log of a run: entries that are written in the transactions that change the run."""
 
 from typing import Literal
 from uuid import UUID
@@ -13,7 +13,7 @@ from ..tables import CANCELLED, FAILED, FINISHED, PAUSED, QUEUED, RUNNING, LogEn
 Level = Literal["info", "warning", "error"]
 
 SAVED, UNSAVED = "saved", "unsaved"
-"""Kinds of entries that come again and again: of these only the first and the last stay."""
+"""Kinds of frequent entries: each attempt keeps only the first and the last of a kind."""
 
 STATUS_TEXTS = {
     QUEUED: "Queued for another attempt.",
@@ -28,7 +28,7 @@ STATUS_TEXTS = {
 def note(
     session: Session, run: Run, text: str, level: Level = "info", kind: str | None = None
 ) -> None:
-    """Write an entry; of a `kind`, those between the first and this one of an attempt go."""
+    """Write an entry. Of a `kind`, an attempt keeps only the first entry and this one."""
     entry = LogEntry(run_id=run.id, attempt=run.attempt, level=level, kind=kind, text=text)
     session.add(entry)
     session.flush()
@@ -38,37 +38,40 @@ def note(
     first = session.scalars(
         select(LogEntry.id).where(*alike).order_by(LogEntry.id).limit(1)
     ).one()
-    # The new one was written before: its number is higher than any that was ever read.
+    # Insert before deleting: the new id is then higher than any that a client has read.
     session.execute(delete(LogEntry).where(*alike, LogEntry.id.not_in((first, entry.id))))
 
 
 def note_status(session: Session, run: Run) -> None:
-    """Say where a run stands after an attempt has ended."""
+    """Log the status of a run after an attempt has ended."""
     note(session, run, STATUS_TEXTS[run.status])
 
 
 def note_start(session: Session, run: Run, before: int) -> None:
-    """Say where an attempt begins, and what was recorded `before` it beyond that."""
+    """Log the start of an attempt, and the recorded generations that it discards.
+
+    `before` is the last generation that was recorded before it.
+    """
     last = run.checkpoint_generation
     place = f"from the checkpoint of generation {last}" if last else "from the beginning"
     note(session, run, f"Attempt {run.attempt} begins on worker {run.worker}, {place}.")
     if before > last:
-        lost = (
+        discarded = (
             f"generations {last + 1} to {before}"
             if before > last + 1
             else f"generation {before}"
         )
-        note(session, run, f"Went back: what was recorded of {lost} is dropped.", "warning")
+        note(session, run, f"Discarded {discarded}, recorded after the checkpoint.", "warning")
 
 
 def note_checkpoint(session: Session, run: Run, generation: int, count: int) -> None:
-    """Say that a checkpoint of so many bytes was written."""
+    """Log a written checkpoint of so many bytes."""
     text = f"Checkpoint of generation {generation} written, {size(count)}."
     note(session, run, text, kind=SAVED)
 
 
 def read(session: Session, run_id: UUID, after: int | None, limit: int) -> list[LogEntry]:
-    """In the order in which they were written: those after one, else the last ones."""
+    """Return the entries that follow an id, or the last ones, oldest first."""
     mine = select(LogEntry).where(LogEntry.run_id == run_id).limit(limit)
     if after is not None:
         return list(session.scalars(mine.where(LogEntry.id > after).order_by(LogEntry.id)))

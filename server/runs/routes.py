@@ -11,7 +11,7 @@ from microcosmos.spec import EXPERIMENTS, Spec, drawing, estimate
 
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, Writer
 from ..core.errors import invalid_field
-from ..core.uploads import json_route
+from ..core.json_body import json_route
 from ..estimates import position
 from ..estimates.eta import speed_of
 from ..estimates.schemas import EstimateRead
@@ -25,7 +25,7 @@ from .commands import SPEC_BYTES, IdempotencyKey, changed, submitted
 from .deps import AnyRunDep, OwnRunId
 from .overview import read_run, read_runs
 from .schemas import NAME_LENGTH, RunChange, RunPage, RunRead
-from .submission import Request, earlier_run, memory_limit, refuse_too_large, submit
+from .submission import IdempotentRequest, earlier_run, memory_limit, refuse_too_large, submit
 
 router = APIRouter(prefix="/runs", tags=["runs"], route_class=json_route(SPEC_BYTES))
 
@@ -55,7 +55,7 @@ def create_run(
     name: NameQuery = None,
 ) -> RunRead:
     """Queue a run. The same key with the same spec gives the same run, with 200."""
-    request = Request(spec.model_dump(mode="json"), idempotency_key, principal.token)
+    request = IdempotentRequest(spec.model_dump(mode="json"), idempotency_key, principal.token)
     if known := earlier_run(services, response, request):
         return known
     refuse_too_large(services, spec)

@@ -39,7 +39,7 @@ TOO_LARGE = "Not enough memory"
 
 
 @dataclass(frozen=True)
-class OneCell:
+class OneCellArchive:
     """The smallest archive, with the fields that an estimate reads."""
 
     cells: int = 1
@@ -76,7 +76,7 @@ def too_large(spec: Spec, limit: int) -> FieldError | None:
 
 
 def largest_field(spec: Spec) -> str:
-    """Return the field whose least value would save the most memory."""
+    """Return the field that would save the most memory at its least value."""
     fields = MEMORY_FIELDS[spec.experiment]
     if len(fields) == 1:
         return fields[0]
@@ -86,13 +86,13 @@ def largest_field(spec: Spec) -> str:
 def _least(spec: Any, field: str) -> Spec:
     part, _, name = field.partition(".")
     if not name:
-        return spec.model_copy(update={part: OneCell()})
+        return spec.model_copy(update={part: OneCellArchive()})
     changed = getattr(spec, part).model_copy(update={name: 1})
     return spec.model_copy(update={part: changed})
 
 
 @dataclass(frozen=True)
-class Request:
+class IdempotentRequest:
     """A request that creates runs. With a key, the same body again creates nothing."""
 
     body: Any
@@ -101,14 +101,14 @@ class Request:
 
     @property
     def stored_key(self) -> str | None:
-        """Owners do not share keys, since two may choose the same."""
+        """The key with its owner, since two owners may choose the same key."""
         if self.key is None or self.owner is None:
             return self.key
         return sha256(f"{self.owner} {self.key}".encode()).hexdigest()
 
     @property
     def digest(self) -> str:
-        """Specs may have integers that canonical JSON does not have, so this is plain JSON."""
+        """The hash of the body as plain JSON; canonical JSON lacks large integers."""
         return sha256(json.dumps(self.body, sort_keys=True).encode()).hexdigest()
 
     def earlier(self, services: Services) -> Idempotency | None:
@@ -122,7 +122,9 @@ class Request:
         return known
 
 
-def earlier_run(services: Services, response: Response, request: Request) -> RunRead | None:
+def earlier_run(
+    services: Services, response: Response, request: IdempotentRequest
+) -> RunRead | None:
     """Answer a request with the run that its key created, if there is one."""
     known = request.earlier(services)
     return submitted(response, current(services, known.run_id), new=False) if known else None
@@ -138,7 +140,10 @@ class Draft:
 
 
 def create_runs(
-    services: Services, drafts: Sequence[Draft], request: Request, sweep: Sweep | None = None
+    services: Services,
+    drafts: Sequence[Draft],
+    request: IdempotentRequest,
+    sweep: Sweep | None = None,
 ) -> Sequence[Run] | Idempotency:
     """Create and enqueue all runs or none; or return what the request's key created earlier."""
     try:
@@ -191,19 +196,19 @@ def _insert(
             text += f"; run {place} of a sweep of {len(runs)}"
         session.add(LogEntry(run_id=run.id, attempt=0, level="info", text=f"{text}."))
         by_spec.setdefault(id(draft.spec), (draft.spec, []))[1].append(run.id)
-    initial.keep(session, list(by_spec.values()))
+    initial.record(session, list(by_spec.values()))
     return runs
 
 
 def submit(
-    services: Services, spec: Spec, request: Request | None = None, **columns: Any
+    services: Services, spec: Spec, request: IdempotentRequest | None = None, **columns: Any
 ) -> tuple[RunRead, bool]:
     """Create and enqueue a run; return it and whether it is new."""
     document = spec.model_dump(mode="json")
     with services.sessions.read() as session:
         initial.check(session, spec)
     drafts = [Draft(spec, document, columns)]
-    created = create_runs(services, drafts, request or Request(document))
+    created = create_runs(services, drafts, request or IdempotentRequest(document))
     if isinstance(created, Idempotency):
         return current(services, created.run_id), False
     return announced(services, created[0].id), True

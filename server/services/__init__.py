@@ -1,1 +1,1 @@
-"""Services that server and workers share, put together from settings."""
+"""Services that server and workers share, created from settings."""

@@ -7,7 +7,7 @@ from microcosmos.archive import export
 
 from ..core.database import insert_missing
 from ..services.services import Services
-from ..storage.artifacts import Stored
+from ..storage.artifacts import StoredFile
 from ..tables import CHECKPOINT, PUBLISHED, Artifact, Share
 
 
@@ -15,7 +15,7 @@ def path(share: Share) -> str:
     return f"shares/{share.slug}.h5"
 
 
-def keep(services: Services, share: Share) -> None:
+def copy_checkpoint(services: Services, share: Share) -> None:
     """Copy the checkpoint of the shared generation, if there is one.
 
     The file may be large, so it is written outside any transaction.
@@ -24,7 +24,9 @@ def keep(services: Services, share: Share) -> None:
         checkpoint = None if find(session, share) else _checkpoint(session, share)
     if checkpoint is None:
         return
-    data = services.artifacts.sound(Stored(checkpoint.path, checkpoint.size, checkpoint.sha256))
+    data = services.artifacts.sound(
+        StoredFile(checkpoint.path, checkpoint.size, checkpoint.sha256)
+    )
     if data is None:
         return
     licensed = export.licensed(data, share.licence, share.credit)

@@ -1,4 +1,4 @@
-"""The page of a share, with the tags by which other sites show a preview of it."""
+"""The page of a share, with the tags from which other sites make a preview."""
 
 from html import escape
 from typing import Any
@@ -7,7 +7,7 @@ from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse, Response
 from sqlalchemy.orm import Session
 
-from ..core import page
+from ..core import static_files
 from ..core.errors import ProblemError
 from ..services.deps import SessionDep
 from ..tables import Creature, Share
@@ -23,11 +23,11 @@ router = APIRouter(include_in_schema=False)
 @router.get("/s/{slug}/{rest:path}")
 def read_share_page(request: Request, slug: str, session: SessionDep) -> Response:
     """Return the page itself, which explains a missing, expired or revoked share."""
-    if not (page.BUILT / "index.html").is_file():
-        return HTMLResponse(page.MISSING, 503)
-    index = (page.BUILT / "index.html").read_text()
+    if not (static_files.BUILT / "index.html").is_file():
+        return HTMLResponse(static_files.MISSING, 503)
+    index = (static_files.BUILT / "index.html").read_text()
     try:
-        share = publishing.opened(session, slug)
+        share = publishing.find_live(session, slug)
     except ProblemError as error:
         return HTMLResponse(index, error.problem.status)
     request.state.listed = share.listed

@@ -77,7 +77,7 @@ def _best(session: Session, run: Run, generation: int) -> str:
 
 
 def publish(session: Session, sent: ShareCreate, principal: Principal) -> tuple[Share, bool]:
-    """Return the share and whether it is new: a live one with the same content is reused."""
+    """Return the share and whether it is new: reuse a live one with the same content."""
     refuse_past(session, sent.expires_at)
     of = subject(session, sent, principal)
     new = Share(
@@ -115,11 +115,11 @@ def state(session: Session, share: Share) -> ShareState:
 
 
 def find(session: Session, slug: str) -> Share | None:
-    """Return the share of a slug, if there is one; a database may not take other texts."""
+    """Return the share of a slug, if there is one; some databases refuse other texts."""
     return session.get(Share, slug) if SLUG.fullmatch(slug) else None
 
 
-def opened(session: Session, slug: str) -> Share:
+def find_live(session: Session, slug: str) -> Share:
     """Return a live share; raise `ProblemError` 404 or 410."""
     share = find(session, slug)
     if share is None:
@@ -144,7 +144,7 @@ def holds(session: Session, share: Share, creature: str) -> bool:
     return session.scalars(known).first() is not None
 
 
-def frozen(session: Session, share: Share) -> Run:
+def run_as_shared(session: Session, share: Share) -> Run:
     """Return the run as it was when it was shared, without its owner's notes.
 
     The object belongs to no session, so nothing of it is ever written.

@@ -13,10 +13,10 @@ from ..auth.authorize import PUBLIC, Reader, Writer, authorize_owner
 from ..auth.principal import ADMIN
 from ..core.database import now
 from ..core.errors import ProblemError
+from ..core.json_body import json_route
 from ..core.paging import MOMENT, Order
-from ..core.uploads import json_route
 from ..creatures.deps import find_creature
-from ..renderings import reading
+from ..renderings import responses
 from ..renderings import storage as renderings
 from ..renderings.schemas import Rendering
 from ..services.deps import ServicesDep, SessionDep
@@ -48,7 +48,7 @@ def publish(
         share, new = publishing.publish(session, sent, principal)
         read = share_read(request, session, share)
     if share.run_id:
-        archive_files.keep(services, share)
+        archive_files.copy_checkpoint(services, share)
     _order_preview(services, share.cover)
     response.status_code = 201 if new else 200
     response.headers["Location"] = f"/api/v1/shares/{share.slug}"
@@ -66,7 +66,7 @@ def _order_preview(services: Services, cover: str) -> None:
 
 
 def share(request: Request, slug: Slug, session: SessionDep) -> Share:
-    found = publishing.opened(session, slug)
+    found = publishing.find_live(session, slug)
     request.state.listed = found.listed
     return found
 
@@ -94,8 +94,8 @@ def read_preview(
 ) -> Response:
     """Return a picture of the creature, or of the best of the archive; 202 while it is made."""
     cover = find_creature(session, share.cover)
-    found = reading.existing(request, cover, session, services, PREVIEW)
-    return found or reading.order(services, share.cover, PREVIEW, anonymous=True)
+    found = responses.existing(request, cover, session, services, PREVIEW)
+    return found or responses.order(services, share.cover, PREVIEW, anonymous=True)
 
 
 Limit = Annotated[int, Query(ge=1, le=200)]

@@ -10,7 +10,7 @@ from microcosmos.spec import PluginUse, Spec, plugins_in
 from ..core.errors import ProblemError
 from ..core.schemas import FieldError
 from ..services.services import Services
-from ..workers.plugins import HELP, KnownPlugins
+from ..workers.plugins import INSTALL_HINT, KnownPlugins
 
 Parse = Callable[[Mapping[str, Any]], Spec]
 
@@ -42,6 +42,6 @@ def _parse(plugins: KnownPlugins, document: Mapping[str, Any]) -> Spec:
 
 def _unknown(plugins: KnownPlugins, one: PluginUse) -> FieldError:
     versions = sorted({d.source[:12] for d in plugins.known if d.name == one.name})
-    have = f"workers have {', '.join(versions)}" if versions else HELP
+    have = f"workers have {', '.join(versions)}" if versions else INSTALL_HINT
     message = f"no worker has {one.name!r} in version {one.version.source[:12]}; {have}"
     return FieldError(field=one.path, message=message, got=one.version.source)

@@ -10,7 +10,7 @@ from microcosmos.spec import PluginControl
 
 Schema = dict[str, Any]
 Hosts = Callable[[str], list[str]]
-"""From a version to the names of the workers that have it."""
+"""Maps a version to the names of the workers that have it."""
 
 
 def with_plugins(schema: Schema, offered: Sequence[Declaration], hosts: Hosts) -> Schema:

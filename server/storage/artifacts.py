@@ -1,4 +1,4 @@
-"""Files behind fsspec: checkpoints and renderings, whole or not there at all."""
+"""Files behind fsspec: checkpoints and renderings, each complete or absent."""
 
 import hashlib
 import os
@@ -16,7 +16,7 @@ KEEP_LAST, KEEP_EVERY = 3, 10
 
 
 @dataclass(frozen=True)
-class Stored:
+class StoredFile:
     """A file that is completely written."""
 
     path: str
@@ -30,31 +30,31 @@ class Artifacts:
     def __init__(self, url: str):
         self.files, self.root = fsspec.core.url_to_fs(url)
 
-    def write(self, path: str, data: bytes) -> Stored:
+    def write(self, path: str, data: bytes) -> StoredFile:
         """Write to a temporary file, then rename: after an `OSError` the old file stays.
 
         On a local disk, file and folder have reached the disk when this returns.
         """
         target = self._full(path)
-        beside = f"{target}.{uuid4().hex}.part"
+        temporary = f"{target}.{uuid4().hex}.part"
         self.files.makedirs(self.files._parent(target), exist_ok=True)
         try:
-            with self.files.open(beside, "wb") as file:
+            with self.files.open(temporary, "wb") as file:
                 file.write(data)
                 file.flush()
                 if self.local:
                     os.fsync(file.fileno())
-            self._rename(beside, target)
+            self._rename(temporary, target)
         except BaseException:
             with suppress(OSError):
-                self.files.rm_file(beside)
+                self.files.rm_file(temporary)
             raise
-        return Stored(path, len(data), hashlib.sha256(data).hexdigest())
+        return StoredFile(path, len(data), hashlib.sha256(data).hexdigest())
 
     def read(self, path: str) -> bytes:
         return self.files.cat_file(self._full(path))
 
-    def sound(self, stored: Stored) -> bytes | None:
+    def sound(self, stored: StoredFile) -> bytes | None:
         """Return the content, or None if the file is missing or has changed."""
         try:
             data = self.read(stored.path)
@@ -80,11 +80,11 @@ class Artifacts:
         with suppress(FileNotFoundError):
             self.files.rm(self._full(path), recursive=True)
 
-    def _rename(self, beside: str, target: str) -> None:
+    def _rename(self, temporary: str, target: str) -> None:
         if not self.local:
-            self.files.mv(beside, target)
+            self.files.mv(temporary, target)
             return
-        Path(beside).replace(target)
+        Path(temporary).replace(target)
         folder = os.open(Path(target).parent, os.O_RDONLY)
         try:
             os.fsync(folder)

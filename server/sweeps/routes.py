@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session
 from microcosmos.spec import estimate
 
 from ..auth.authorize import MAY_READ, Writer
-from ..core.uploads import json_route
+from ..core.json_body import json_route
 from ..deletion import bin
 from ..estimates import position
 from ..estimates.eta import speeds_of
@@ -132,7 +132,7 @@ def change_sweep(
 def read_summary(sweep: SweepDep, session: SessionDep, points: Points = None) -> SweepSummary:
     """Return median and spread of each case, by generation and at the common generation.
 
-    `points` limits the generations, which are evenly spaced; so do very many runs.
+    `points` limits the number of generations, evenly spaced; very many runs reduce it too.
     """
     return summary.summary(session, sweep, points)
 

@@ -2,23 +2,25 @@
 
 from uuid import UUID
 
-from ..runs.submission import Draft, Request, create_runs
+from ..runs.submission import Draft, IdempotentRequest, create_runs
 from ..services.services import Services
 from ..tables import Idempotency, Sweep
 from .commands import announce
 from .plan import Plan, refuse_initial
 
 
-def request_of(plan: Plan, key: str | None = None, owner: UUID | None = None) -> Request:
+def request_of(
+    plan: Plan, key: str | None = None, owner: UUID | None = None
+) -> IdempotentRequest:
     """Return the request for a plan; grids with another order of fields differ."""
     spec = plan.spec.model_dump(mode="json")
-    return Request(
+    return IdempotentRequest(
         {"sweep": [plan.name, spec, plan.seeds, list(plan.grid.items())]}, key, owner
     )
 
 
 def submit_sweep(
-    services: Services, plan: Plan, request: Request | None = None
+    services: Services, plan: Plan, request: IdempotentRequest | None = None
 ) -> tuple[UUID, bool]:
     """Create the sweep and enqueue its runs; return its id and whether it is new."""
     with services.sessions.read() as session:

@@ -50,7 +50,7 @@ class Recorded:
 
 
 def recorded(session: Session, sweep: Sweep, points: int | None) -> Recorded:
-    """Read all generations, or about so many, and fewer where all would be too much."""
+    """Read all generations, or about `points` of them; fewer for very many runs."""
     columns = [getattr(Run, name) for name in RUN_COLUMNS]
     mine = select(*columns).where(Run.sweep == sweep.id, NOT_IN_BIN).order_by(Run.sweep_index)
     runs = session.execute(mine).all()
@@ -179,8 +179,8 @@ def _final(values: Iterable[float | None]) -> Final:
 def common_generation(runs: Sequence[Row]) -> int | None:
     """Return the last generation that every started run has reached; None before the first.
 
-    A finished run counts as complete, so it holds nobody back. Failed and cancelled runs do
-    not count where others go on or have finished.
+    A finished run counts as complete, so it does not limit the generation. Failed and
+    cancelled runs count only if no other run is active or finished.
     """
     started = [run for run in runs if run.generation > 0]
     active = [run for run in started if run.status not in (FINISHED, FAILED, CANCELLED)]
@@ -193,7 +193,7 @@ def common_generation(runs: Sequence[Row]) -> int | None:
 def figures_at(
     session: Session, runs: Sequence[Row], generation: int | None, has_archive: bool
 ) -> dict[UUID, dict[str, float]]:
-    """Return the figures of each run at a generation; of a shorter finished run its last ones.
+    """Return the figures of each run at a generation; the last ones of a shorter finished run.
 
     Runs whose result is a table add the numbers of their newest summary until then.
     """

@@ -1,4 +1,4 @@
-"""Tables of runs and sweeps, their log, and the keys of requests that may come twice."""
+"""Tables of runs and sweeps, their log, and idempotency keys."""
 
 from datetime import datetime
 from typing import Any, Literal
@@ -19,7 +19,7 @@ OVERRIDE_NEEDED, OVERRIDE_ALLOWED = "needed", "allowed"
 
 
 class Run(Owned, Base):
-    """The execution of a spec; the truth about its state."""
+    """The execution of a spec, with its authoritative state."""
 
     __tablename__ = "runs"
     __table_args__ = (
@@ -119,7 +119,7 @@ class Idempotency(Base):
 
 
 class LogEntry(Base):
-    """A line of a run's log; append-only, except for kinds that come again and again."""
+    """A line of a run's log; append-only, except for frequent kinds."""
 
     __tablename__ = "log_entries"
     __table_args__ = (Index(None, "run_id", "id"),)

@@ -17,7 +17,7 @@ from ..services.services import Services
 from ..tables import Plugin, Worker
 from . import registry
 
-HELP = "install it on one: docs/plugins.md"
+INSTALL_HINT = "install it on one: docs/plugins.md"
 
 
 class KnownPlugins:
@@ -78,7 +78,7 @@ class KnownPlugins:
             if one.kind == kind
         ]
         have = f"; workers have {', '.join(offered)}" if offered else ""
-        return f"no worker has {name!r} as a {kind}{have}; {HELP}"
+        return f"no worker has {name!r} as a {kind}{have}; {INSTALL_HINT}"
 
 
 def needed_versions(document: Any) -> list[str] | None:

@@ -53,7 +53,7 @@ class Written:
         held = claim(self.services, self.id, worker)
         assert held is not None
         self.attempt = held
-        held.use("cpu, a processor")
+        held.record_device("cpu, a processor")
 
     def go_on(self, first: int, last: int) -> None:
         for generation in range(first, last + 1):

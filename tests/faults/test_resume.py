@@ -150,7 +150,7 @@ def test_a_run_changes_device_only_when_resumed_by_a_person(installation, spec):
     place.environment["XLA_FLAGS"] = "--xla_cpu_enable_fast_math=false"  # Another kind.
     place.start()
     waiting = place.wait(run, "paused")
-    assert "To go on here, resume the run" in waiting["warning"]
+    assert "Resume the run to continue" in waiting["warning"]
     place.ask(run, "resume")
     place.wait(run, "finished")
     _, attributes = file.load(place.archive(run))

@@ -9,7 +9,7 @@ import time
 import httpx
 import pytest
 
-from server.core import page
+from server.core import static_files
 
 
 def test_a_server_is_ready_with_redis_and_alive_without(address, serve):
@@ -42,7 +42,7 @@ def built(tmp_path, monkeypatch):
     (folder / "index.html").write_text("<title>the page</title>")
     (folder / "assets" / "a1b2.js").write_text("script")
     (tmp_path / "secret").write_text("secret")
-    monkeypatch.setattr(page, "BUILT", folder)
+    monkeypatch.setattr(static_files, "BUILT", folder)
 
 
 def test_paths_outside_the_api_are_the_page_and_impossible_ones_missing(built, address):
@@ -67,7 +67,7 @@ def test_assets_are_compressed_on_request_and_cached_for_ever(built, address):
 def test_the_documentation_is_served_and_announced_where_it_was_built(
     address, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr(page, "HELP", tmp_path / "site")
+    monkeypatch.setattr(static_files, "DOCUMENTATION", tmp_path / "site")
     assert httpx.get(f"{address}/healthz").json()["help"] is False
     assert "make docs" in httpx.get(f"{address}/help/").json()["detail"]
     (tmp_path / "site").mkdir()
@@ -83,7 +83,7 @@ def test_the_documentation_is_served_and_announced_where_it_was_built(
 
 
 def test_a_missing_page_says_how_to_build_it(address, tmp_path, monkeypatch):
-    monkeypatch.setattr(page, "BUILT", tmp_path / "nowhere")
+    monkeypatch.setattr(static_files, "BUILT", tmp_path / "nowhere")
     answer = httpx.get(f"{address}/")
     assert answer.status_code == 503
     assert "<code>make</code>" in answer.text

@@ -30,7 +30,7 @@ from server.main import SHUTDOWN_SECONDS
 from server.maintenance.healthcheck import KILL_AFTER, PARTS, TERMINATE_AFTER
 from server.settings import Settings
 from server.tables.migrations import __main__ as migrate
-from worker.supervisor import PATIENCE
+from worker.supervisor import STOP_SECONDS
 
 ROOT = Path(__file__).parents[2]
 HEALTH = "server.maintenance.healthcheck"
@@ -153,12 +153,12 @@ def test_migrations_are_tried_again(ours, monkeypatch, capsys):
             raise error
 
     monkeypatch.setattr(migrate, "upgrade", upgrade)
-    monkeypatch.setattr(migrate, "PAUSE", 0)
+    monkeypatch.setattr(migrate, "RETRY_SECONDS", 0)
     monkeypatch.setattr(migrate, "connect", MagicMock())
     migrate.main()
     assert "does not answer yet: starting up" in capsys.readouterr().out
     asked = iter([OperationalError("", {}, Exception("gone"))])
-    monkeypatch.setattr(migrate, "PATIENCE", -1)
+    monkeypatch.setattr(migrate, "WAIT_SECONDS", -1)
     with pytest.raises(OperationalError, match="gone"):
         migrate.main()
 
@@ -182,7 +182,7 @@ def test_our_containers_have_few_rights_and_wait_for_others(ours):
 def test_containers_have_longer_to_stop_than_their_programs(ours):
     for name, one in ours.items():
         if "worker.supervisor" in one["command"]:
-            assert seconds(one["stop_grace_period"]) >= PATIENCE + 15, name
+            assert seconds(one["stop_grace_period"]) >= STOP_SECONDS + 15, name
     assert seconds(ours["server"]["stop_grace_period"]) > SHUTDOWN_SECONDS
 
 

@@ -30,8 +30,8 @@ from server.creatures import storage as creatures
 from server.renderings import storage as renderings
 from server.settings import Settings
 from server.tables import REPLAY
-from worker.device import TAKEN
-from worker.supervisor import PATIENCE
+from worker.device import DEFAULT_FRACTION
+from worker.supervisor import STOP_SECONDS
 
 EXAMPLES = int(os.environ.get("EXAMPLES", "4"))
 """Requests to each operation, right ones and wrong ones; `EXAMPLES=500` looks longer."""
@@ -165,6 +165,6 @@ def test_documented_sizes_match_the_estimates(row):
 
 
 def test_documented_times_and_shares_match_the_code():
-    assert f"{PATIENCE:g} s" in TEXT
-    assert f"{TAKEN:g} divided by their number" in TEXT
-    assert f"have {TAKEN / 2:g} of its memory" in TEXT
+    assert f"{STOP_SECONDS:g} s" in TEXT
+    assert f"{DEFAULT_FRACTION:g} divided by their number" in TEXT
+    assert f"have {DEFAULT_FRACTION / 2:g} of its memory" in TEXT

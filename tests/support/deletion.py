@@ -7,7 +7,7 @@ from sqlalchemy import func, select, update
 from microcosmos.spec import parse
 from server.attempts.claim import claim
 from server.maintenance.reconcile import reconcile
-from server.runs.submission import Request, submit
+from server.runs.submission import IdempotentRequest, submit
 from server.tables import Base, Run
 
 
@@ -36,7 +36,7 @@ def finish(services, run_id, *reports, files=True):
 
 def another(services, spec, seed, key=None):
     seeded = {**spec, "seed": seed}
-    return submit(services, parse(seeded), Request(seeded, key))[0].id
+    return submit(services, parse(seeded), IdempotentRequest(seeded, key))[0].id
 
 
 def let_time_pass(services, run_id):

@@ -42,7 +42,7 @@ class Installation:
 
 def empty_redis(services: Services) -> None:
     """Delete all our keys."""
-    for queue in (*services.jobs.evolving, services.jobs.renderings, services.jobs.audits):
+    for queue in (*services.jobs.run_queues, services.jobs.renderings, services.jobs.audits):
         queue.delete(delete_jobs=True)
     pattern = f"*{services.settings.redis_prefix[:-1]}*"
     if keys := list(services.redis.scan_iter(pattern, count=1000)):

@@ -8,9 +8,9 @@ from threading import Event
 import pytest
 
 from server.workers import registry
-from worker import device, processor, usage
+from worker import cpu, device, usage
 from worker.device import Device, memory
-from worker.pulse import Pulse
+from worker.heartbeats import Heartbeats
 from worker.usage import Usage
 
 TWO = {
@@ -25,7 +25,7 @@ DIVIDED = {
 
 @pytest.fixture
 def driver(nvml, monkeypatch):
-    for name in ("JAX_PLATFORMS", "CUDA_VISIBLE_DEVICES", device.FRACTION):
+    for name in ("JAX_PLATFORMS", "CUDA_VISIBLE_DEVICES", device.MEMORY_FRACTION):
         monkeypatch.delenv(name, raising=False)
     return nvml
 
@@ -48,15 +48,15 @@ def test_more_workers_than_gpus_share_them_and_their_memory(driver):
     assert first.memory_bytes == (143771 << 20) // 2
     assert first.environment == {
         "CUDA_VISIBLE_DEVICES": "GPU-aaaa1111",
-        device.FRACTION: "0.375",
+        device.MEMORY_FRACTION: "0.375",
     }
-    assert device.FRACTION not in second.environment
+    assert device.MEMORY_FRACTION not in second.environment
 
 
 def test_a_given_memory_fraction_stays(driver, monkeypatch):
     driver(TWO)
-    monkeypatch.setenv(device.FRACTION, "0.2")
-    assert device.find(0, 4).environment[device.FRACTION] == "0.2"
+    monkeypatch.setenv(device.MEMORY_FRACTION, "0.2")
+    assert device.find(0, 4).environment[device.MEMORY_FRACTION] == "0.2"
 
 
 @pytest.mark.parametrize(
@@ -93,17 +93,17 @@ def test_the_processor_is_used_without_a_gpu(driver, cards):
     found = device.find(0)
     assert found.memory_bytes > 1 << 20
     assert found.environment == {}
-    assert set(found.threads) == set(processor.threads())
+    assert set(found.threads) == set(cpu.threads())
     assert found.name.endswith(f"({len(found.threads)} threads)")
 
 
 def test_threads_are_given_out_evenly_and_shared_if_there_are_too_few():
     for threads, workers in ((8, 1), (8, 2), (8, 3), (7, 7)):
         given = [10 + i for i in range(threads)]
-        shares = [processor.share(given, i, workers) for i in range(workers)]
+        shares = [cpu.share(given, i, workers) for i in range(workers)]
         assert [thread for share in shares for thread in share] == given
         assert max(map(len, shares)) - min(map(len, shares)) <= 1
-    assert [processor.share([4, 5], i, 5) for i in range(5)] == [[4], [5], [4], [5], [4]]
+    assert [cpu.share([4, 5], i, 5) for i in range(5)] == [[4], [5], [4], [5], [4]]
 
 
 def test_threads_of_a_core_are_neighbours(tmp_path, monkeypatch):
@@ -113,26 +113,26 @@ def test_threads_of_a_core_are_neighbours(tmp_path, monkeypatch):
         topology.mkdir(parents=True)
         (topology / "physical_package_id").write_text(f"{thread % 2}\n")
         (topology / "core_id").write_text(f"{thread // 2 % 2}\n")
-    monkeypatch.setattr(processor, "TOPOLOGY", tmp_path)
+    monkeypatch.setattr(cpu, "TOPOLOGY", tmp_path)
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: set(range(8)), raising=False)
-    assert processor.threads() == [0, 4, 2, 6, 1, 5, 3, 7]
+    assert cpu.threads() == [0, 4, 2, 6, 1, 5, 3, 7]
 
 
 def test_a_machine_without_processor_information_works(tmp_path, monkeypatch):
-    monkeypatch.setattr(processor, "INFORMATION", tmp_path / "none")
+    monkeypatch.setattr(cpu, "CPUINFO", tmp_path / "none")
     monkeypatch.delattr(os, "sched_getaffinity", raising=False)
     monkeypatch.delattr(os, "sched_setaffinity", raising=False)
-    assert processor.model()
-    assert processor.threads() == list(range(os.cpu_count()))
-    processor.keep_to([0])
+    assert cpu.model()
+    assert cpu.threads() == list(range(os.cpu_count()))
+    cpu.pin([0])
 
 
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="the system has no affinity")
 def test_child_processes_keep_to_the_workers_threads():
-    one = processor.threads()[-1]
+    one = cpu.threads()[-1]
     program = (
-        "import subprocess, sys; from worker import processor\n"
-        "processor.keep_to([int(sys.argv[1])])\n"
+        "import subprocess, sys; from worker import cpu\n"
+        "cpu.pin([int(sys.argv[1])])\n"
         "ask = 'import os; print(*os.sched_getaffinity(0))'\n"
         "subprocess.run([sys.executable, '-c', ask], check=True)"
     )
@@ -156,7 +156,7 @@ def test_in_a_container_its_own_memory_is_told(tmp_path, monkeypatch, current, e
     (tmp_path / "memory.max").write_text("2000")
     (tmp_path / "memory.current").write_text(current)
     (tmp_path / "memory.stat").write_text("inactive_file 10\n")
-    monkeypatch.setattr(usage, "GROUP", tmp_path)
+    monkeypatch.setattr(usage, "CGROUP", tmp_path)
     found = usage.usage(Device("cpu", 1, {}))
     assert (found.memory_bytes, found.load is None) == (expected, False)
 
@@ -179,9 +179,11 @@ def test_a_gpu_reports_its_own_usage_and_none_for_the_rest(nvml, cards, used, lo
 
 
 def test_a_heartbeat_reports_the_latest_usage(services):
-    pulse = Pulse(services.sessions, "worker", Device("gpu", 8 << 30, {}, "0"), lease=20)
-    pulse.gauge.last = Usage(5, 0.25)
-    pulse.beat()
+    heartbeat = Heartbeats(
+        services.sessions, "worker", Device("gpu", 8 << 30, {}, "0"), lease=20
+    )
+    heartbeat.gauge.last = Usage(5, 0.25)
+    heartbeat.beat()
     with services.sessions.read() as session:
         (found,) = registry.live(session, 20)
     assert (found.kind, found.memory_used_bytes, found.load) == ("gpu", 5, 0.25)

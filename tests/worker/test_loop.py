@@ -17,9 +17,9 @@ from server.local import process_tree
 from server.renderings.storage import RenderingFailed, order
 from server.tables import CANCELLED, Run, Worker
 from server.workers import registry
-from worker import loop, process, renderer, supervisor
+from worker import loop, process_setup, renderer, supervisor
 from worker.device import Device
-from worker.pulse import PATIENCE, Pulse
+from worker.heartbeats import HEARTBEATS_AFTER_END, Heartbeats
 from worker.renderer import retry_interrupted
 from worker.supervisor import Supervisor
 
@@ -57,7 +57,7 @@ def test_an_error_of_redis_does_not_end_it(worker, monkeypatch):
 
     def turn(worker):
         turns.append(worker)
-        monkeypatch.setattr(process, "_stop_requested", len(turns) > 2)
+        monkeypatch.setattr(process_setup, "_stop_requested", len(turns) > 2)
         raise redis.ResponseError("MISCONF Errors writing to the AOF file")
 
     monkeypatch.setattr(loop, "take_one", turn)
@@ -119,7 +119,7 @@ def test_a_long_rendering_counts_as_alive_for_all_its_time(services, begin):
     assert ends - time.time() > job.timeout
 
 
-ENGINE_FREE = ("supervisor", "pulse", "loop", "job_process")
+ENGINE_FREE = ("supervisor", "heartbeats", "loop", "job_process")
 
 
 def test_the_supervisor_never_loads_jax_and_starts_in_any_folder(tmp_path):
@@ -133,7 +133,7 @@ def busy(services):
     """A supervisor whose job can be replaced by another process."""
     worker = Supervisor([services.jobs.runs], "worker", serializer=JSONSerializer)
     worker.services, worker.lease, worker.environment = services, 20, {}
-    worker.pulse = Pulse(services.sessions, "worker", Device("a device", 1, {}), 20.0)
+    worker.heartbeats = Heartbeats(services.sessions, "worker", Device("a device", 1, {}), 20.0)
     worker.register_birth()
     return worker
 
@@ -151,7 +151,7 @@ def test_a_job_that_ignores_the_stop_is_killed_at_no_cost(
         claim(services, run_id, busy.name)
         busy.stop_job()
 
-    monkeypatch.setattr(supervisor, "PATIENCE", 0.0)
+    monkeypatch.setattr(supervisor, "STOP_SECONDS", 0.0)
     monkeypatch.setattr(supervisor, "STOP_CHECK_SECONDS", 0.05)
     monkeypatch.setattr(busy, "start", start)
     busy.execute_job(services.jobs.find(str(run_id)), services.jobs.runs)
@@ -160,12 +160,12 @@ def test_a_job_that_ignores_the_stop_is_killed_at_no_cost(
 
 
 def test_a_job_is_stopped_before_its_supervisor_is_killed():
-    assert supervisor.PATIENCE + 2 * supervisor.STOP_CHECK_SECONDS < process_tree.GRACE
+    assert supervisor.STOP_SECONDS + 2 * supervisor.STOP_CHECK_SECONDS < process_tree.GRACE
 
 
 @pytest.fixture
-def pulse(services):
-    return Pulse(services.sessions, "worker", Device("some device", 8 << 30, {}), lease=20)
+def heartbeat(services):
+    return Heartbeats(services.sessions, "worker", Device("some device", 8 << 30, {}), lease=20)
 
 
 @pytest.fixture
@@ -179,11 +179,11 @@ def change(services, **values):
 
 
 @pytest.fixture
-def watched(services, pulse, run_id, killed):
-    """The pulse of a worker that computes the run; `killed` lists runs whose job it kills."""
+def watched(services, heartbeat, run_id, killed):
+    """Heartbeats of a worker that computes the run; `killed` lists runs whose job they kill."""
     claim(services, run_id, "worker")
-    pulse.watch(run_id, lambda: killed.append(run_id))
-    return pulse
+    heartbeat.watch(run_id, lambda: killed.append(run_id))
+    return heartbeat
 
 
 def test_a_heartbeat_renews_the_lease_and_reports_device_memory_and_run(
@@ -209,22 +209,22 @@ def test_the_job_of_a_lost_run_is_killed(services, watched, run_id, killed):
 def test_a_job_that_outlives_its_run_is_killed(services, watched, run_id, killed):
     watched.beat()
     change(services, status=CANCELLED, worker=None)
-    for _ in range(PATIENCE):
+    for _ in range(HEARTBEATS_AFTER_END):
         watched.beat()
     assert not killed
     watched.beat()
     assert killed == [run_id]
 
 
-def test_a_job_that_has_not_claimed_its_run_yet_is_left_alone(pulse, run_id, killed):
-    pulse.watch(run_id, lambda: killed.append(run_id))
-    for _ in range(PATIENCE + 2):
-        pulse.beat()
+def test_a_job_that_has_not_claimed_its_run_yet_is_left_alone(heartbeat, run_id, killed):
+    heartbeat.watch(run_id, lambda: killed.append(run_id))
+    for _ in range(HEARTBEATS_AFTER_END + 2):
+        heartbeat.beat()
     assert not killed
 
 
-def test_an_ended_worker_is_not_listed(services, pulse):
-    pulse.start()
-    pulse.end()
+def test_an_ended_worker_is_not_listed(services, heartbeat):
+    heartbeat.start()
+    heartbeat.end()
     with services.sessions.read() as session:
         assert not session.scalars(select(Worker)).all()

@@ -48,7 +48,7 @@ def test_a_worker_reports_its_plug_ins_and_failed_modules(settings):
 def test_a_module_that_ends_its_process_or_never_ends_is_given_up(settings, monkeypatch):
     found = plugins.list_plugins(settings(mine=GOOD, bad="import os; os._exit(3)"))
     assert found.plugins == ()
-    assert all("ended badly" in one["reason"] for one in found.unloaded)
+    assert all("failed (" in one["reason"] for one in found.unloaded)
     monkeypatch.setattr(plugins, "IMPORT_SECONDS", 0.1)
     (failed,) = plugins.list_plugins(settings(slow="while True: pass")).unloaded
     assert "not imported within 0.1 s" in failed["reason"]
@@ -91,10 +91,10 @@ for spec in json.loads(sys.argv[1]):
     attempt = SimpleNamespace(
         spec=spec,
         services=SimpleNamespace(settings=Settings()),
-        use=lambda device: None,
+        record_device=lambda device: None,
         restore=lambda: None,
         initial=lambda: [],
-        set_aside=lambda text: said.update(aside=text),
+        pause_until_resumed=lambda text: said.update(aside=text),
         refuse=lambda text: said.update(refused=text),
     )
     carry_out(attempt)
@@ -102,7 +102,7 @@ print(json.dumps(said))
 """
 
 
-def test_a_run_on_the_wrong_worker_is_set_aside_or_refused(settings):
+def test_a_run_on_the_wrong_worker_is_paused_or_refused(settings):
     wrong = GOOD.replace("...", "return 3")
     chosen = settings(mine=wrong)
     (stick,) = plugins.list_plugins(chosen).plugins

@@ -8,13 +8,13 @@ from ...core.database import connect
 from ...settings import Settings
 from . import upgrade
 
-PATIENCE, PAUSE = 60.0, 2.0
-"""Seconds in which a database that does not answer is asked again, and between two attempts."""
+WAIT_SECONDS, RETRY_SECONDS = 60.0, 2.0
+"""Seconds to wait for a database that does not answer, and between two attempts."""
 
 
 def main() -> None:
     sessions = connect(Settings().database)
-    until = time.monotonic() + PATIENCE
+    until = time.monotonic() + WAIT_SECONDS
     while True:
         try:
             upgrade(sessions)
@@ -23,7 +23,7 @@ def main() -> None:
             if time.monotonic() > until:
                 raise
             print(f"The database does not answer yet: {error.orig}", flush=True)
-            time.sleep(PAUSE)
+            time.sleep(RETRY_SECONDS)
     sessions.engine.dispose()
 
 

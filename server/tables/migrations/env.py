@@ -9,7 +9,7 @@ from server.tables import Base
 
 
 def plain(kind: str, item: Any, _: Any) -> str | Literal[False]:
-    """A migration must not change with our own column types: it says what they are made of."""
+    """Write our column types as their base types: a migration must not change with them."""
     return f"sa.{item.impl!r}" if kind == "type" and isinstance(item, TypeDecorator) else False
 
 

@@ -184,7 +184,7 @@ def test_a_generation_waits_for_a_database_that_is_away(services, run_id, row, r
 
 def test_a_stopping_worker_does_not_wait_for_the_database(services, run_id, report, away):
     held = claim(services, run_id, "worker")
-    held.patience, held.stop_requested = 60.0, lambda: True
+    held.outage_seconds, held.stop_requested = 60.0, lambda: True
     away(1)
     with pytest.raises(OperationalError):
         held.record(report(1), 1.0)

@@ -116,7 +116,7 @@ def test_resuming_a_waiting_run_allows_another_device(services, run_id):
     with services.sessions.write.begin() as session:
         run = session.get_one(Run, run_id)
         assert run.status == "paused"
-        assert run.warning.startswith("it began elsewhere To go on here, resume the run")
+        assert run.warning.startswith("it began elsewhere Resume the run to continue")
         lifecycle.resume(session, run)
     assert claim(services, run_id, "second").other_device
 

@@ -16,7 +16,7 @@ from server.auth.authorize import authorize, public
 from server.auth.principal import ADMIN, READ, SHARE, WRITE
 from server.creatures import storage as creatures
 from server.runs.deps import own_run
-from server.runs.submission import Request, submit
+from server.runs.submission import IdempotentRequest, submit
 from server.services.services import connect
 from server.settings import Settings
 from server.shares import publishing
@@ -157,7 +157,9 @@ def parameters(services, secrets, spec, identity):
     owner = tokens.principal_of(services, secrets["owner"])
 
     def run() -> str:
-        return str(submit(services, parse(spec), Request(spec, owner=owner.token))[0].id)
+        return str(
+            submit(services, parse(spec), IdempotentRequest(spec, owner=owner.token))[0].id
+        )
 
     def sweep() -> str:
         planned = plan(SweepCreate(spec=spec), parse)

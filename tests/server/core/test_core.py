@@ -7,7 +7,7 @@ import pytest
 
 from server import main as alone
 from server.core import database
-from server.core.uploads import parse
+from server.core.json_body import parse
 from server.local import launcher
 from server.settings import Settings
 
@@ -36,7 +36,7 @@ def open_database(folder):
 
 def test_a_new_data_folder_is_private(tmp_path, monkeypatch):
     ways = {
-        "all": lambda folder: launcher.occupy(Settings(data=folder)),
+        "all": lambda folder: launcher.lock_data_folder(Settings(data=folder)),
         "alone": lambda folder: begin_alone(folder, monkeypatch),
         "database": open_database,
     }
@@ -48,11 +48,11 @@ def test_a_new_data_folder_is_private(tmp_path, monkeypatch):
 
 def test_an_open_data_folder_stays_open_with_a_warning(tmp_path, capsys):
     (tmp_path / "data").mkdir()
-    launcher.occupy(Settings(data=tmp_path / "data"))
+    launcher.lock_data_folder(Settings(data=tmp_path / "data"))
     assert mode(tmp_path / "data") == 0o755
     assert capsys.readouterr().out == ""
     (tmp_path / "other").mkdir()
-    launcher.occupy(Settings(data=tmp_path / "other", auth="required"))
+    launcher.lock_data_folder(Settings(data=tmp_path / "other", auth="required"))
     assert f"other users can look into {tmp_path / 'other'}" in capsys.readouterr().out
 
 

@@ -133,7 +133,7 @@ def test_a_replay_is_ordered_once_and_served_when_it_is_made(api, services, know
 
 
 def test_a_rendering_that_failed_says_why(api, services, known, monkeypatch):
-    monkeypatch.setattr(jobs, "RENDER", "math.sqrt")
+    monkeypatch.setattr(jobs, "RENDER_JOB", "math.sqrt")
     assert api.get(f"creatures/{known}/replay").status_code == 202
     worker = SimpleWorker(
         [services.jobs.renderings], connection=services.redis, serializer=JSONSerializer

@@ -19,7 +19,7 @@ def measured(services, report):
     def run(document, seconds, first=10.0, device=DEVICE, generations=5):
         made, _ = submit(services, parse(document))
         attempt = claim(services, made.id, "worker")
-        attempt.use(device)
+        attempt.record_device(device)
         for generation in range(1, generations + 1):
             attempt.record(report(generation), first if generation == 1 else seconds)
         return made.id

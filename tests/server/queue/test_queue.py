@@ -31,7 +31,7 @@ def test_a_job_that_ends_while_it_is_replaced_leaves_the_new_request(
 
     monkeypatch.setattr(Job, "fetch_many", found_too_late)
     requeue(services.sessions, jobs, run_id)
-    assert str(run_id) in jobs.runs_at_hand()
+    assert str(run_id) in jobs.runs_with_job()
     assert jobs.find(str(run_id)) is not None
 
 

@@ -35,7 +35,7 @@ def ask(services, run_id, wish):
 
 def test_the_log_of_a_finished_run_is_complete(services, run_id, report, log):
     attempt = claim(services, run_id, "worker 1")
-    attempt.use("cpu: a processor")
+    attempt.record_device("cpu: a processor")
     attempt.record(report(1), 1.0)
     attempt.save(1, b"the archive")
     attempt.finish()
@@ -70,10 +70,10 @@ def test_a_failed_attempt_logs_its_traceback_and_the_next_its_start(
     attempt.fail("Traceback:\nZeroDivisionError: twice nothing")
     claim(services, run_id, "another")
     assert log()[-4:] == [
-        ("error", 1, "Attempt 1 ended badly: Traceback:\nZeroDivisionError: twice nothing"),
+        ("error", 1, "Attempt 1 failed: Traceback:\nZeroDivisionError: twice nothing"),
         ("info", 1, "Queued for another attempt."),
         ("info", 2, "Attempt 2 begins on worker another, from the checkpoint of generation 1."),
-        ("warning", 2, "Went back: what was recorded of generations 2 to 3 is dropped."),
+        ("warning", 2, "Discarded generations 2 to 3, recorded after the checkpoint."),
     ]
 
 
@@ -83,7 +83,7 @@ def test_the_log_names_stopped_workers_dead_jobs_and_the_last_attempt(services, 
     assert texts[-2:] == ["Worker stopped after generation 0.", "Queued for another attempt."]
     claim(services, run_id, "worker")
     leases.job_ended(services, run_id, "worker", "killed by signal 9")
-    assert ("error", 2, "Attempt 2 ended badly: killed by signal 9") in log()
+    assert ("error", 2, "Attempt 2 failed: killed by signal 9") in log()
     for _ in range(lifecycle.ATTEMPTS - 1):
         claim(services, run_id, "worker").fail("no luck")
     assert log()[-1] == ("error", 4, "Failed: 3 attempts without a new checkpoint.")
@@ -97,7 +97,7 @@ def test_the_log_has_requests_and_their_completion(run_id, api, texts, attempt, 
     api.post(f"runs/{run_id}/resume")
     api.post(f"runs/{run_id}/cancel")
     assert texts()[-5:] == [
-        "Asked to pause.",
+        "Pause requested.",
         "Stopped after generation 1.",
         "Paused.",
         "Resumed: queued again.",

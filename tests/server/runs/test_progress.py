@@ -61,7 +61,7 @@ def test_forbidden_actions_are_conflicts_with_a_reason(api, services, run_id):
 
 def test_progress_is_what_was_recorded(api, run_id, attempt, record):
     assert api.get(f"runs/{run_id}").json()["evaluations_per_second"] is None
-    attempt.use("a device")
+    attempt.record_device("a device")
     record(1, seconds=20.0)
     with_compilation = api.get(f"runs/{run_id}").json()["evaluations_per_second"]
     assert with_compilation == 16 / 20

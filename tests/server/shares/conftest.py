@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from server.auth.capability import HEADER
+from server.auth.share_access import SHARE_HEADER
 
 
 @pytest.fixture
@@ -15,4 +15,4 @@ def file(file) -> dict[str, Any]:
 
 @pytest.fixture
 def through(api):
-    return lambda slug, path, **asked: api.get(path, headers={HEADER: slug}, **asked)
+    return lambda slug, path, **asked: api.get(path, headers={SHARE_HEADER: slug}, **asked)

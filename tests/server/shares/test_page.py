@@ -5,7 +5,7 @@ import re
 import httpx
 import pytest
 
-from server.core import page
+from server.core import static_files
 
 INDEX = "<!doctype html><html><head><title>Microcosmos</title>\n</head><body></body></html>"
 HOSTILE = """</title><script>alert("x")</script>'&"""
@@ -15,7 +15,7 @@ HOSTILE = """</title><script>alert("x")</script>'&"""
 def built(tmp_path, monkeypatch):
     (tmp_path / "dist").mkdir()
     (tmp_path / "dist" / "index.html").write_text(INDEX)
-    monkeypatch.setattr(page, "BUILT", tmp_path / "dist")
+    monkeypatch.setattr(static_files, "BUILT", tmp_path / "dist")
 
 
 def test_the_page_of_a_share_has_previews_for_other_sites(api, address, built, known):

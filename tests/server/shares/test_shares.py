@@ -9,7 +9,7 @@ from answers import detail, fields
 from pydantic import SecretStr
 
 from microcosmos.archive import creature
-from server.auth.capability import HEADER
+from server.auth.share_access import SHARE_HEADER
 from server.renderings import storage as renderings
 from server.tables import PREVIEW, Share
 
@@ -84,7 +84,9 @@ def test_a_share_shows_its_creature_and_no_other(api, through, shared, known, ot
         assert through(slug, f"creatures/{other}{path}").status_code == 404, path
     for path in (f"creatures/{known}/children", f"creatures/{known}/audit", "runs", "workers"):
         assert through(slug, path).status_code == 403, path
-    assert api.post(f"creatures/{known}/measure", headers={HEADER: slug}).status_code == 403
+    assert (
+        api.post(f"creatures/{known}/measure", headers={SHARE_HEADER: slug}).status_code == 403
+    )
     assert api.get(f"shares/{'A' * 32}").status_code == 404
     assert through("A" * 32, f"creatures/{known}").status_code == 404
 
@@ -94,7 +96,7 @@ def test_caches_keep_the_answers_of_a_share_apart(api, through, shared, known):
         api.get(f"creatures/{known}"),
         through(shared["slug"], f"creatures/{known}"),
     ):
-        assert HEADER in answer.headers["vary"]
+        assert SHARE_HEADER in answer.headers["vary"]
     assert answer.headers["cache-control"] == "no-cache"
 
 
@@ -163,7 +165,7 @@ def test_anonymous_requests_read_shares_and_nothing_else(serve, services, identi
         slug = client.post(f"{api}/shares", json=asked, headers=bearer).json()["slug"]
         for path in (f"shares/{slug}", "commons"):
             assert client.get(f"{api}/{path}").status_code == 200, path
-        holder = {HEADER: slug}
+        holder = {SHARE_HEADER: slug}
         assert client.get(f"{api}/creatures/{known}", headers=holder).status_code == 200
         assert client.get(f"{api}/shares", headers=holder).status_code == 403
         assert client.post(f"{api}/shares", json=asked, headers=holder).status_code == 403

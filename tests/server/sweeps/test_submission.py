@@ -132,7 +132,7 @@ def test_a_write_that_fails_half_way_leaves_nothing(services, post, monkeypatch)
     def fail(*_):
         raise RuntimeError("half way")
 
-    monkeypatch.setattr(initial, "keep", fail)
+    monkeypatch.setattr(initial, "record", fail)
     assert post(seeds=3).status_code == 500
     with services.sessions.read() as session:
         assert not session.scalars(select(Run.id)).all()

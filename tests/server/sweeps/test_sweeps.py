@@ -17,7 +17,7 @@ def test_single_runs_are_taken_before_those_of_a_sweep(runs_of, api, services, s
     ids = runs_of(six)
     with services.sessions.read() as session:
         assert [str(one.id) for one in in_order(session)] == [single, *ids]
-    assert [queue.get_job_ids() for queue in services.jobs.evolving] == [[single], ids]
+    assert [queue.get_job_ids() for queue in services.jobs.run_queues] == [[single], ids]
     assert api.post("runs/estimate", json=spec).json()["queue"]["runs_ahead"] == 1
     both = api.post("sweeps/estimate", json={"spec": spec}).json()["queue"]["runs_ahead"]
     assert both == 7

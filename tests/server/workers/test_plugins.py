@@ -171,7 +171,7 @@ def test_the_job_is_queued_for_its_plug_in_version(api, services, have, mine, sp
     first = api.post("runs", json=mine).json()["id"]
     second = api.post("runs", json=spec).json()["id"]
     assert services.jobs.runs.get_job_ids() == [second]
-    assert services.jobs.runs_at_hand() == {first, second}
+    assert services.jobs.runs_with_job() == {first, second}
     jobs = [queue.get_job_ids() for queue in runnable_queues(services, {A})]
     assert jobs == [[first], [second], []], "who came first is taken first, sweeps last"
     for plugin_versions in (set(), {B}):
@@ -206,7 +206,7 @@ def test_a_run_refused_by_its_worker_fails_at_once_with_the_reason(api, services
 
 
 def test_a_run_set_aside_continues_when_resumed(api, services, run_id):
-    claim(services, run_id, "worker").set_aside("mine.py is not what it was.")
+    claim(services, run_id, "worker").pause_until_resumed("mine.py is not what it was.")
     told = api.get(f"runs/{run_id}").json()
     assert (told["status"], told["warning"]) == (
         "paused",

@@ -118,7 +118,7 @@ def test_a_queued_run_names_busy_workers_and_its_position(api, services, spec, a
 def test_a_run_that_a_worker_has_taken_is_about_to_begin(api, spec, alive, waiting):
     ids = [api.post("runs", json={**spec, "seed": i}).json()["id"] for i in range(2)]
     alive("worker", "busy")
-    assert waiting(ids[0]) == "A worker is about to begin."
+    assert waiting(ids[0]) == "A worker is about to start it."
     assert waiting(ids[1]) == "Waits for a worker: the only one is busy; this run is next."
     ahead = {"runs_ahead": 1, "workers": 1, "idle_workers": 0}
     assert api.post("runs/estimate", json=spec).json()["queue"] == ahead

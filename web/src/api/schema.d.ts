@@ -669,7 +669,7 @@ export interface paths {
         put?: never;
         /**
          * Extend Run
-         * @description Add generations to a finished run; it ends as if it had had them from the start.
+         * @description Add generations to a finished run; the result is the same as with all from the start.
          */
         post: operations["extend_run_api_v1_runs__run_id__extend_post"];
         delete?: never;
@@ -1151,7 +1151,7 @@ export interface paths {
          * Read Summary
          * @description Return median and spread of each case, by generation and at the common generation.
          *
-         *     `points` limits the generations, which are evenly spaced; so do very many runs.
+         *     `points` limits the number of generations, evenly spaced; very many runs reduce it too.
          */
         get: operations["read_summary_api_v1_sweeps__sweep_id__summary_get"];
         put?: never;

@@ -27,8 +27,8 @@ describe("a log", () => {
   });
 
   it("tells of a traceback the line that says what went wrong", () => {
-    const text = "Attempt 1 ended badly: Traceback:\n  File x\nValueError: no";
-    expect(summaryOf(text)[0]).toBe("Attempt 1 ended badly: ValueError: no");
+    const text = "Attempt 1 failed: Traceback:\n  File x\nValueError: no";
+    expect(summaryOf(text)[0]).toBe("Attempt 1 failed: ValueError: no");
     expect(summaryOf(text).slice(1)).toEqual(text.split("\n"));
     expect(summaryOf("Finished.")).toEqual(["Finished."]);
   });

@@ -1,24 +1,24 @@
-"""The processor of this machine: its model, and the threads of each worker."""
+"""The CPU of this machine: its model, and the threads of each worker."""
 
 import os
 import platform
 from collections.abc import Sequence
 from pathlib import Path
 
-INFORMATION = Path("/proc/cpuinfo")
+CPUINFO = Path("/proc/cpuinfo")
 TOPOLOGY = Path("/sys/devices/system/cpu")
 
 
 def model() -> str:
     """Return the processor's model, else its instruction set."""
-    lines = INFORMATION.read_text().splitlines() if INFORMATION.exists() else []
+    lines = CPUINFO.read_text().splitlines() if CPUINFO.exists() else []
     fields = (line.partition(":") for line in lines)
     named = (value.strip() for name, _, value in fields if name.strip() == "model name")
     return next(named, "") or platform.processor() or platform.machine()
 
 
 def threads() -> list[int]:
-    """Return the threads that we may use, neighbours on a core or a socket side by side."""
+    """Return the threads that this process may use, ordered by socket and core."""
     if not hasattr(os, "sched_getaffinity"):
         return list(range(os.cpu_count() or 1))
     return sorted(os.sched_getaffinity(0), key=_place)
@@ -31,8 +31,8 @@ def share(given: Sequence[int], index: int, workers: int) -> list[int]:
     return list(given[index * len(given) // workers : (index + 1) * len(given) // workers])
 
 
-def keep_to(chosen: Sequence[int]) -> None:
-    """Restrict this process and its children to these threads, where the system can."""
+def pin(chosen: Sequence[int]) -> None:
+    """Restrict this process and its children to these threads, if the system supports it."""
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, chosen)
 

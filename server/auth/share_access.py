@@ -1,4 +1,4 @@
-"""A share as a capability: what its holder may read on the ordinary routes."""
+"""Read access of a share's holder to the ordinary routes."""
 
 from typing import Annotated, Any, Protocol
 from uuid import UUID
@@ -8,11 +8,11 @@ from sqlalchemy.orm import Session
 
 from ..tables import Artifact, Run
 
-HEADER = "Microcosmos-Share"
-"""The header that names a share. Caches keep the answers of each share apart."""
+SHARE_HEADER = "Microcosmos-Share"
+"""The header that names a share. Answers vary by it, so caches keep them apart."""
 
 
-class SharedView(Protocol):
+class ShareAccess(Protocol):
     """Read access to what a share shows. The package `shares` implements it."""
 
     @property
@@ -21,7 +21,7 @@ class SharedView(Protocol):
         ...
 
     def run(self, session: Session, run_id: UUID) -> Run:
-        """Return the run as it was; raise `ProblemError` if the share does not hold it."""
+        """Return the run as shared; raise `ProblemError` if the share does not hold it."""
         ...
 
     def refuse_unless_holds(self, session: Session, creature: str) -> None:
@@ -33,13 +33,13 @@ class SharedView(Protocol):
         ...
 
     def archive(self, session: Session) -> Artifact:
-        """Return the archive file as it was; raise `ProblemError` if there is none."""
+        """Return the archive file as it was shared; raise `ProblemError` if there is none."""
         ...
 
 
-async def shared_view(request: Request) -> SharedView | None:
+async def share_access(request: Request) -> ShareAccess | None:
     """Return the view of the share of the request, if it names one."""
     return request.state.share
 
 
-SharedViewDep = Annotated[SharedView | None, Depends(shared_view)]
+ShareAccessDep = Annotated[ShareAccess | None, Depends(share_access)]

@@ -1,4 +1,4 @@
-"""Heartbeats of a worker and of the run that it carries out, in a thread of their own."""
+"""Heartbeats of a worker and of its run, sent by a thread of their own."""
 
 import logging
 import threading
@@ -18,10 +18,10 @@ from .device import Device
 from .plugins import PluginReport, PluginWatcher
 from .usage import Gauge, usage
 
-BEATS = 4
-"""Heartbeats in a lease."""
-PATIENCE = 2
-"""Heartbeats that a job may go on after the end of its run, before it is killed."""
+HEARTBEATS_PER_LEASE = 4
+"""Number of heartbeats within a lease."""
+HEARTBEATS_AFTER_END = 2
+"""Heartbeats between the end of a run and killing its job."""
 
 log = logging.getLogger(__name__)
 
@@ -36,8 +36,8 @@ class Watch:
     over: int = 0
 
 
-class Pulse(threading.Thread):
-    """Writes heartbeats to SQL alone, so that a lost Redis cannot make a live run look dead."""
+class Heartbeats(threading.Thread):
+    """Writes heartbeats to SQL only, so that no lease expires while Redis is away."""
 
     def __init__(
         self,
@@ -47,10 +47,10 @@ class Pulse(threading.Thread):
         lease: float,
         plugins: PluginWatcher | None = None,
     ):
-        super().__init__(name="pulse", daemon=True)
+        super().__init__(name="heartbeat", daemon=True)
         self._sessions, self._worker, self._device = sessions, worker, device
         self._plugins = plugins
-        self._interval = lease / BEATS
+        self._interval = lease / HEARTBEATS_PER_LEASE
         self.gauge = Gauge(partial(usage, device), self._interval)
         self._ended = threading.Event()
         self._due = threading.Event()
@@ -67,7 +67,7 @@ class Pulse(threading.Thread):
             self._due.clear()
 
     def watch(self, run: UUID, kill: Callable[[], None]) -> None:
-        """Renew the lease on a run, too; `kill` ends its job if the run is lost."""
+        """Also renew the lease on a run; `kill` ends its job if the run is lost."""
         self._watch = Watch(run, kill)
         self._due.set()  # The worker's status changes at once.
 
@@ -108,6 +108,6 @@ class Pulse(threading.Thread):
         """Kill the job if another worker has its run, or if the run ended some time ago."""
         watch.held |= lease == "held"
         watch.over = watch.over + 1 if lease == "over" and watch.held else 0
-        if (lease == "lost" or watch.over > PATIENCE) and watch is self._watch:
+        if (lease == "lost" or watch.over > HEARTBEATS_AFTER_END) and watch is self._watch:
             log.warning("Run %s is lost: killing its job", watch.run)
             watch.kill()

@@ -1,4 +1,4 @@
-"""Open a share, and read what it shows."""
+"""Authorise the holder of a share: open it, and read only what it shows."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -13,7 +13,7 @@ from . import archive_files, publishing
 
 
 @dataclass(frozen=True)
-class ShareView:
+class LiveShare:
     """Read access to what a live share shows."""
 
     share: Share
@@ -25,7 +25,7 @@ class ShareView:
     def run(self, session: Session, run_id: UUID) -> Run:
         if self.share.run_id is None or run_id != self.share.run_id:
             raise ProblemError(404, "Not found", f"This share holds no run of the id {run_id}.")
-        return publishing.frozen(session, self.share)
+        return publishing.run_as_shared(session, self.share)
 
     def refuse_unless_holds(self, session: Session, creature: str) -> None:
         if not publishing.holds(session, self.share, creature):
@@ -44,7 +44,7 @@ class ShareView:
         return found
 
 
-def open_share(services: Services, slug: str) -> ShareView:
+def open_share(services: Services, slug: str) -> LiveShare:
     """Return the view of a live share; raise `ProblemError` 404 or 410."""
     with services.sessions.read() as session:
-        return ShareView(publishing.opened(session, slug))
+        return LiveShare(publishing.find_live(session, slug))

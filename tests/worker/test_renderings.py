@@ -13,7 +13,7 @@ from microcosmos.spec import EXPERIMENTS, Gaits
 from server.creatures import storage as creatures
 from server.renderings import storage as renderings
 from server.tables import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP
-from worker import pictures
+from worker.renderings import make
 
 
 def replay() -> bytes:
@@ -80,10 +80,10 @@ def asked(monkeypatch):
 def test_films_and_pictures_are_drawn_from_the_stored_replay(
     services, known, asked, kind, start
 ):
-    assert pictures.make(services, known, kind).startswith(start)
+    assert make(services, known, kind).startswith(start)
     assert asked == [("record", known)]
     assert renderings.existing(services, known, REPLAY) == replay()
-    pictures.make(services, known, kind)
+    make(services, known, kind)
     assert asked == [("record", known)], "the second one needs no simulation"
 
 
@@ -91,15 +91,15 @@ def test_a_damaged_replay_is_made_again_for_a_film(services, known, asked):
     renderings.save(services, known, REPLAY, replay())
     path = renderings.rendering_path(known, REPLAY)
     services.artifacts.write(path, b"damaged")
-    assert pictures.make(services, known, GIF).startswith(b"GIF89a")
+    assert make(services, known, GIF).startswith(b"GIF89a")
     assert asked == [("record", known)]
 
 
 def test_audits_and_measurements_are_json_and_other_kinds_refused(services, known, asked):
     with pytest.raises(ValueError, match="`kind` of a rendering must be one of replay, audit"):
-        pictures.make(services, known, "film.avi")
+        make(services, known, "film.avi")
     assert asked == []
-    document = json.loads(pictures.make(services, known, AUDIT))
+    document = json.loads(make(services, known, AUDIT))
     assert document["verdict"] == {"survives": True, "reasons": []}
-    assert json.loads(pictures.make(services, known, MEASUREMENT)) == {"exact": True}
+    assert json.loads(make(services, known, MEASUREMENT)) == {"exact": True}
     assert asked == [("audit", known), ("measurement", known)]

@@ -23,7 +23,7 @@ MEDIA_TYPES = {
 }
 ON_REQUEST = (REPLAY, AUDIT, STRIP, PREVIEW, GIF, MP4)
 """Renderings that the first request for them orders."""
-WORDS = {AUDIT: "audit", STRIP: "picture", PREVIEW: "picture", GIF: "film", MP4: "film"}
+NOUNS = {AUDIT: "audit", STRIP: "picture", PREVIEW: "picture", GIF: "film", MP4: "film"}
 
 
 def existing(
@@ -57,13 +57,13 @@ def existing_motion(
 def order(services: Services, sha: str, kind: str, *, anonymous: bool = False) -> Response:
     """Order a rendering and return 202; raise `ProblemError` if the last try failed.
 
-    Holders of a share are not told why: the words of errors may name files and hosts.
+    Holders of a share do not see the reason: errors may name files and hosts.
     """
     try:
         storage.order(services, sha, kind, anonymous=anonymous)
     except storage.RenderingFailed as error:
         why = "" if anonymous else f": {error}"
-        detail = f"The {WORDS.get(kind, kind)} failed{why}. Try again in a minute."
+        detail = f"The {NOUNS.get(kind, kind)} failed{why}. Try again in a minute."
         headers = {"Retry-After": str(FAILURE_SECONDS)}
         raise ProblemError(500, "Rendering failed", detail, headers=headers) from error
     return JSONResponse(Rendering().model_dump(), 202, {"Retry-After": "1"})

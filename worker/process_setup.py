@@ -1,11 +1,11 @@
-"""Set-up of a worker's processes: logging, and the request to stop."""
+"""Set up a process of a worker: logging, and signals that request it to stop."""
 
 import logging
 import signal
 from collections.abc import Callable
 from types import FrameType
 
-# A lock, as in an Event, could be held by the very code that the signal interrupts.
+# Not an Event: the code that the signal interrupts might hold its lock.
 _stop_requested = False
 
 

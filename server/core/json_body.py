@@ -1,4 +1,4 @@
-"""Read JSON bodies: limit their size while they stream, and refuse what is not plain JSON."""
+"""Read JSON bodies: limit their size, and refuse what is not plain JSON."""
 
 import json
 import math
@@ -15,15 +15,15 @@ from .errors import ProblemError
 
 DEPTH = 32
 VALUES = 100_000
-"""Limit on commas, above those of the largest creature: each value may cause an error."""
+"""Limit on commas, since each value may cause an error; the largest creature has fewer."""
 NUL = re.compile(r"(?<!\\)(?:\\\\)*\\u0000")
-"""An escaped NUL, whose escape is not itself escaped."""
+"""An escaped NUL whose backslash is not itself escaped."""
 
 
 def json_route(limit: int) -> type[APIRoute]:
     """Return a class of routes that take JSON objects of at most so many bytes.
 
-    FastAPI itself reads bodies of any length, and JSON that other readers refuse.
+    FastAPI itself reads bodies of any length, and JSON that other parsers refuse.
     """
 
     class JSONRoute(APIRoute):
@@ -43,7 +43,7 @@ def json_route(limit: int) -> type[APIRoute]:
 
 
 def _parsed(request: Request, body: bytes, document: dict[str, Any]) -> Request:
-    """Return the request with its body as JSON, whatever content type it names."""
+    """Return the request with its body as JSON, ignoring its content type."""
     headers = [one for one in request.scope["headers"] if one[0] != b"content-type"]
     headers.append((b"content-type", b"application/json"))
     parsed = Request({**request.scope, "headers": headers}, request.receive)
@@ -74,7 +74,7 @@ async def limited(request: Request, limit: int) -> bytes:
 def parse(body: bytes) -> Any:
     """Return the document of a JSON text, or raise `ProblemError`.
 
-    Refused are NaN, infinities, repeated names, deep nesting, lone surrogates and NUL.
+    NaN, infinities, repeated names, deep nesting, lone surrogates and NUL are errors.
     """
     if body.count(b",") > VALUES:
         detail = f"The body has more than the {VALUES:,} values that are allowed."
@@ -90,7 +90,7 @@ def parse(body: bytes) -> Any:
         raise _too_deep() from None
     except ValueError as error:  # Also bytes that are not UTF-8.
         raise ProblemError(422, "Not JSON", f"JSON is needed; {_place(error)}.") from error
-    refuse_unkeepable(document)
+    refuse_unstorable(document)
     return document
 
 
@@ -103,14 +103,14 @@ def _place(error: ValueError) -> str:
     return "the body has a number of too many digits"
 
 
-def refuse_unkeepable(document: Any) -> None:
+def refuse_unstorable(document: Any) -> None:
     """Raise `ProblemError` for values that databases or other readers of JSON cannot hold."""
     _refuse_depth(document)
     _refuse_text(document)
 
 
 def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Readers of JSON disagree on which of two equal names counts."""
+    """Refuse repeated names: JSON parsers disagree on which one counts."""
     found = dict(pairs)
     if len(found) < len(pairs):
         ((twice, _),) = Counter(name for name, _ in pairs).most_common(1)

@@ -1,4 +1,4 @@
-"""Serve the page and the documentation, as `make` has built them."""
+"""Serve the built page and the built documentation."""
 
 import gzip
 from functools import lru_cache
@@ -12,7 +12,7 @@ from starlette.exceptions import HTTPException
 
 ROOT = Path(__file__).parents[2]
 BUILT = ROOT / "web" / "dist"
-HELP = ROOT / "docs" / "_build"
+DOCUMENTATION = ROOT / "docs" / "_build"
 MISSING = """<!doctype html><html lang="en"><title>Microcosmos</title>
 <p>The page has not been built yet: <code>make</code> in the checkout builds it.
 The API is at <a href="/api/v1/openapi.json">/api/v1</a>."""
@@ -24,7 +24,7 @@ router = APIRouter(include_in_schema=False)
 
 @router.get("/{path:path}")
 def page(path: str, accept_encoding: Annotated[str, Header()] = "") -> Response:
-    """Return a built file, else the page itself, which reads its path."""
+    """Return a built file, else the page, which reads the path itself."""
     if path == "help":
         return RedirectResponse("/help/")  # Relative links need the slash.
     if path.startswith("help/"):
@@ -42,7 +42,7 @@ def page(path: str, accept_encoding: Annotated[str, Header()] = "") -> Response:
 
 
 def _documentation(path: str) -> Response:
-    if file := _file(HELP, path or "index.html"):
+    if file := _file(DOCUMENTATION, path or "index.html"):
         return FileResponse(file, headers=FRESH)
     raise HTTPException(404, "The documentation has no such page. `make docs` builds it.")
 
