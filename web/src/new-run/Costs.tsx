@@ -27,8 +27,10 @@ export function Costs({ estimate, runs = 1, problem }: Props) {
   return (
     <dl class="costs row" aria-label={text.estimate}>
       <Cost name={runs > 1 ? text.timeOfRuns(count(runs)) : text.time}>
-        {about(estimate) ?? text.unknown}
-        {shared && <span class="quiet">{text.onWorkers(queue.workers, rough(seconds / queue.workers))}</span>}
+        {timeText(estimate) ?? text.unknown}
+        {shared && (
+          <span class="quiet">{text.onWorkers(queue.workers, roughDuration(seconds / queue.workers))}</span>
+        )}
       </Cost>
       <Cost name={runs > 1 ? text.memoryEach : text.memory} wrong={memory_bytes > memory_limit_bytes}>
         {bytes(memory_bytes)} <span class="quiet">{text.ofMemory(bytes(memory_limit_bytes))}</span>
@@ -62,11 +64,11 @@ export function CostDetails({ estimate }: { estimate: Estimate }) {
   const pace = speed ? text.pace(number(speed.cell_steps_per_second)) : "";
   return (
     <Card id="cost" kind="cost-details" title={text.cost}>
-      <Detail value={words(about(estimate) ?? text.time)} about={`${basis(estimate)}.`} />
+      <Detail value={words(timeText(estimate) ?? text.time)} about={`${estimateBasis(estimate)}.`} />
       <Detail value={bytes(memory_bytes)} about={memory} wrong={!fits} />
       <Detail value={count(evaluations)} about={text.evaluationsAbout} />
       <Detail value={number(cell_steps)} about={`${text.cellSteps}${pace}`} />
-      <p class="quiet">{wait(estimate)}</p>
+      <p class="quiet">{waitText(estimate)}</p>
     </Card>
   );
 }
@@ -79,7 +81,7 @@ function Detail({ value, about, wrong = false }: { value: string; about: string;
   );
 }
 
-export function rough(seconds: number): string {
+export function roughDuration(seconds: number): string {
   if (seconds < 10) return "10 s";
   if (seconds < 90) return `${5 * Math.round(seconds / 5)} s`;
   if (seconds < 5400) return `${Math.round(seconds / 60)} min`;
@@ -87,24 +89,24 @@ export function rough(seconds: number): string {
   return seconds < 365 * 86400 ? text.days(Math.round(seconds / 86400)) : text.overAYear;
 }
 
-/** The estimated time in short; null if unknown. */
-export function about({ seconds }: Pick<Estimate, "seconds">): string | null {
+/** The rounded time; null if unknown. */
+export function timeText({ seconds }: Pick<Estimate, "seconds">): string | null {
   if (seconds === null) return null;
-  return seconds < 10 ? text.fewSeconds : text.about(rough(seconds));
+  return seconds < 10 ? text.fewSeconds : text.about(roughDuration(seconds));
 }
 
 /** The range is shown if the slowest and the fastest earlier run differ by this factor. */
 const MIN_RATIO = 1.5;
 
-export function basis({ speed }: Estimate): string {
+export function estimateBasis({ speed }: Estimate): string {
   if (!speed) return text.noPace;
-  const [low, high] = [rough(speed.low), rough(speed.high)];
+  const [low, high] = [roughDuration(speed.low), roughDuration(speed.high)];
   const wide = speed.high > MIN_RATIO * speed.low && low !== high;
   const range = wide ? text.paceRange(low, high) : "";
   return text.basis(speed.device, text.basedOn(speed.runs), range);
 }
 
-export function wait({ queue }: Estimate): string {
+export function waitText({ queue }: Estimate): string {
   const { runs_ahead, workers, idle_workers } = queue;
   if (workers === 0) return text.noWorker;
   if (runs_ahead > 0) return text.queued(runs_ahead);

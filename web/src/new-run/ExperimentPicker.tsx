@@ -1,7 +1,7 @@
 /** The choice of an experiment and a preset. */
 
 import type { Estimate, Experiment, Preset } from "../api/types";
-import { about } from "./Costs";
+import { timeText } from "./Costs";
 import { bytes, words } from "../ui/format";
 import { text } from "./text";
 
@@ -65,5 +65,5 @@ export function ExperimentPicker({
 
 function costOf(estimate: Estimate | undefined): string {
   if (!estimate) return " ";
-  return `${about(estimate) ?? text.timeUnknown} · ${bytes(estimate.memory_bytes)}`;
+  return `${timeText(estimate) ?? text.timeUnknown} · ${bytes(estimate.memory_bytes)}`;
 }

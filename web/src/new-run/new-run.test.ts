@@ -4,7 +4,7 @@ import { type Draft, addressOf, discardDraft, loadDraft, saveDraft } from "../st
 import { EXPERIMENTS, experiment } from "./form/presets.fixture";
 import { load, baseOfPreset, titleOfBase } from "./sources";
 import { branchesOf, dotsOf, linesOf, tilesOf } from "./BodyDrawing";
-import { about, basis, rough, wait } from "./Costs";
+import { timeText, estimateBasis, roughDuration, waitText } from "./Costs";
 
 describe("a draft", () => {
   const base = baseOfPreset(experiment("gaits").presets[0]!, experiment("gaits"));
@@ -65,17 +65,17 @@ describe("costs in words", () => {
     [9000, "2.5 h"],
     [200000, "2 days"],
     [1e9, "more than a year"],
-  ])("has %f s as %s", (seconds, text) => expect(rough(seconds)).toBe(text));
+  ])("has %f s as %s", (seconds, text) => expect(roughDuration(seconds)).toBe(text));
 
   it("tells what a time rests on, and a range where it is wide", () => {
-    expect(about(estimate({}))).toBe("about 11 min");
-    expect(about(estimate({ seconds: 2 }))).toBe("a few seconds");
-    expect(basis(estimate({}))).toBe("on a CPU, based on 3 earlier runs");
-    expect(basis(estimate({ speed: { ...speed, runs: 1, high: 1300 } }))).toBe(
+    expect(timeText(estimate({}))).toBe("about 11 min");
+    expect(timeText(estimate({ seconds: 2 }))).toBe("a few seconds");
+    expect(estimateBasis(estimate({}))).toBe("on a CPU, based on 3 earlier runs");
+    expect(estimateBasis(estimate({ speed: { ...speed, runs: 1, high: 1300 } }))).toBe(
       "on a CPU, based on 1 earlier run; range 10 min to 22 min",
     );
-    expect(about(estimate({ seconds: null }))).toBeNull();
-    expect(basis(estimate({ speed: null }))).toMatch(/^unknown until this server/);
+    expect(timeText(estimate({ seconds: null }))).toBeNull();
+    expect(estimateBasis(estimate({ speed: null }))).toMatch(/^unknown until this server/);
   });
 
   it.each([
@@ -84,7 +84,7 @@ describe("costs in words", () => {
     [{}, /immediately/],
     [{ idle_workers: 0 }, /when a worker is free/],
   ])("says what a run waits for with %j", (changes, words) =>
-    expect(wait(estimate({ queue: { ...queue, ...changes } }))).toMatch(words),
+    expect(waitText(estimate({ queue: { ...queue, ...changes } }))).toMatch(words),
   );
 });
 

@@ -19,7 +19,7 @@ export interface Props {
 
 const LICENCES = Object.entries(text.licences);
 
-/** The dialog opens whenever `opened` grows, with the values typed before. */
+/** Open the dialog whenever `opened` increases; typed values are kept. */
 export function PublishDialog({ opened, ...props }: Props & { opened: number }) {
   const dialog = useRef<HTMLDialogElement>(null);
   const [share, setShare] = useState<Share | null>(null);

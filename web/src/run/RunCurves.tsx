@@ -91,8 +91,8 @@ const xValuesOf = (curves: Columns, { over }: CurveView) => curves[over] as read
 
 /** The runs to compare from the address, without duplicates and the run itself. */
 export function useComparedRuns(query: URLSearchParams, id: string): ComparedRuns {
-  const asked = (query.get("with") ?? "").split(",").filter((other) => other && other !== id);
-  const ids = [...new Set(asked)].slice(0, MAX_COMPARED);
+  const requested = (query.get("with") ?? "").split(",").filter((other) => other && other !== id);
+  const ids = [...new Set(requested)].slice(0, MAX_COMPARED);
   const { value, error } = useCurvesOf(ids);
   const runs = useRuns(ids);
   const experiments = useExperiments().value ?? [];

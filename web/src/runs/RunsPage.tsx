@@ -36,20 +36,20 @@ const COLUMNS: { title: string; key?: string; falling?: boolean }[] = [
 
 export function RunsPage({ query: address }: { query: URLSearchParams }) {
   const query = queryOf(address);
-  const together = groupsSweeps(query);
-  const listedQuery: RunQuery = together ? { sweep: WITHOUT_SWEEP } : query;
+  const grouped = groupsSweeps(query);
+  const listedQuery: RunQuery = grouped ? { sweep: WITHOUT_SWEEP } : query;
   const { value: fetched, error } = useRunList(listedQuery);
-  const [most, setMost] = useState(FIRST_SWEEPS);
-  const sweeps = useSweeps(most, together).value;
+  const [maxSweeps, setMaxSweeps] = useState(FIRST_SWEEPS);
+  const sweeps = useSweeps(maxSweeps, grouped).value;
   const listed = useStore((state) => state.listed);
   const next = useStore((state) => state.next);
   const experiments = useExperiments().value ?? [];
   const tags = useTags();
-  const [selected, setChosen] = useState<string[]>([]);
+  const [selected, setSelected] = useState<string[]>([]);
   const choose = (id: string) =>
-    setChosen((old) => (old.includes(id) ? old.filter((each) => each !== id) : [...old, id]));
-  const swept = together && (sweeps?.items.length ?? 0) > 0;
-  const empty = fetched && listed.length === 0 && !swept;
+    setSelected((old) => (old.includes(id) ? old.filter((each) => each !== id) : [...old, id]));
+  const hasSweeps = grouped && (sweeps?.items.length ?? 0) > 0;
+  const empty = fetched && listed.length === 0 && !hasSweeps;
   return (
     <Page
       title={query.deleted ? text.bin : text.runs}
@@ -58,13 +58,15 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
       loading={!fetched && listed.length === 0}
     >
       <Welcome />
-      {(listed.length > 0 || swept || isFiltered(query)) && (
+      {(listed.length > 0 || hasSweeps || isFiltered(query)) && (
         <Filters query={query} experiments={experiments} tags={tags} onChange={setQuery} />
       )}
-      {selected.length > 0 && <CompareBar ids={selected} onClear={() => setChosen([])} />}
+      {selected.length > 0 && <CompareBar ids={selected} onClear={() => setSelected([])} />}
       {empty && <NothingListed query={query} />}
       {query.sweep && <SweepBanner sweep={query.sweep} />}
-      {swept && <SweepRows page={sweeps!} onMore={most < MAX_SWEEPS ? () => setMost(MAX_SWEEPS) : null} />}
+      {hasSweeps && (
+        <SweepRows page={sweeps!} onMore={maxSweeps < MAX_SWEEPS ? () => setMaxSweeps(MAX_SWEEPS) : null} />
+      )}
       {listed.length > 0 && <Table {...{ query, listed, experiments, selected }} onSelect={choose} />}
       <datalist id={TAGS_ID}>
         {tags.map((tag) => (

@@ -15,22 +15,22 @@ import { useSubmit } from "../ui/submit";
 import { text } from "./text";
 
 export function Tokens({ own }: { own: string | null }) {
-  const [turn, setTurn] = useState(0);
+  const [version, setVersion] = useState(0);
   const [made, setMade] = useState<CreatedToken | null>(null);
-  const { value, error } = useFetched(readTokens, [turn]);
-  const again = () => setTurn((count) => count + 1);
+  const { value, error } = useFetched(readTokens, [version]);
+  const reload = () => setVersion((count) => count + 1);
   return (
     <Card id="tokens" title={text.tokens}>
       <NewToken
         onMade={(token) => {
           setMade(token);
-          again();
+          reload();
         }}
       />
       {made && <Secret made={made} onDone={() => setMade(null)} />}
       {error && <p class="banner wrong">{error}</p>}
       {value?.length === 0 && <p class="quiet">{text.noTokens}</p>}
-      {value && value.length > 0 && <TokenTable tokens={value} own={own} onRevoked={again} />}
+      {value && value.length > 0 && <TokenTable tokens={value} own={own} onRevoked={reload} />}
     </Card>
   );
 }
@@ -152,5 +152,5 @@ export function tokenStatus(token: Token, now = Date.now()): string {
 export const isExpired = (token: Token, now = Date.now()) =>
   token.revoked_at !== null || (token.expires_at !== null && Date.parse(token.expires_at) <= now);
 
-/** When a token for this number of days expires; null for no expiry. */
+/** The expiry of a token that is valid for this number of days; null for none. */
 export const endOf = (days: number, now = Date.now()) => (days > 0 ? inDays(days, now) : null);

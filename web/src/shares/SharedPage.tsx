@@ -68,8 +68,8 @@ function Terms({ share: { credit, licence, expires_at, created_at } }: { share: 
   const url = LICENCE_URLS[licence];
   return (
     <dl class="facts terms">
-      {credit.length > 0 && <Term name={text.credit}>{credit.join(", ")}</Term>}
-      <Term name={text.licence}>
+      {credit.length > 0 && <Fact name={text.credit}>{credit.join(", ")}</Fact>}
+      <Fact name={text.licence}>
         {url ? (
           <a href={url} target="_blank" rel="noreferrer license">
             {licence}
@@ -77,14 +77,14 @@ function Terms({ share: { credit, licence, expires_at, created_at } }: { share: 
         ) : (
           licence
         )}
-      </Term>
-      <Term name={text.shared}>{dateTime(created_at)}</Term>
-      {expires_at && <Term name={text.until}>{dateTime(expires_at)}</Term>}
+      </Fact>
+      <Fact name={text.shared}>{dateTime(created_at)}</Fact>
+      {expires_at && <Fact name={text.until}>{dateTime(expires_at)}</Fact>}
     </dl>
   );
 }
 
-function Term({ name, children }: { name: string; children: preact.ComponentChildren }) {
+function Fact({ name, children }: { name: string; children: preact.ComponentChildren }) {
   return (
     <div>
       <dt>{name}</dt>
