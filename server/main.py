@@ -5,7 +5,7 @@ import sys
 import uvicorn
 
 from .auth import bootstrap
-from .core.folders import private
+from .core.folders import create_private
 from .services.services import connect
 from .settings import Settings
 from .tables import migrations
@@ -15,7 +15,7 @@ SHUTDOWN_SECONDS = 5
 
 def main() -> None:
     settings = Settings()
-    private(settings.data)
+    create_private(settings.data)
     if settings.needs_token:
         _prepare(settings)
     uvicorn.run(

@@ -6,8 +6,8 @@ The first audit imports the engine; until then this process needs little memory.
 from operator import attrgetter
 
 from .process_setup import log_to_stderr
-from .renderer import serve
+from .renderer import serve_queue
 
 if __name__ == "__main__":
     log_to_stderr()
-    serve("auditor", attrgetter("audits"))
+    serve_queue("auditor", attrgetter("audits"))

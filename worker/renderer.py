@@ -36,7 +36,7 @@ def retry_interrupted(jobs: Jobs, queue: Queue) -> None:
             jobs.render(*job.args, meta={RETRIED: True})
 
 
-def serve(
+def serve_queue(
     name: str, queue_of: Callable[[Jobs], Queue], before: Callable[[], None] = lambda: None
 ) -> None:
     """Make the renderings of a queue until asked to stop; call `before` first."""
@@ -55,4 +55,4 @@ def serve(
 
 if __name__ == "__main__":
     log_to_stderr()
-    serve("renderer", attrgetter("renderings"), prepared)
+    serve_queue("renderer", attrgetter("renderings"), prepared)

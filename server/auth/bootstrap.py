@@ -6,7 +6,7 @@ from pathlib import Path
 from sqlalchemy import exists, select
 
 from ..core.errors import ProblemError
-from ..core.folders import private
+from ..core.folders import create_private
 from ..services.services import Services
 from ..settings import Settings
 from ..tables import Token
@@ -63,7 +63,7 @@ def refuse_without_admin(services: Services) -> None:
 
 
 def _write_private(path: Path, secret: str) -> None:
-    private(path.parent)
+    create_private(path.parent)
     path.unlink(missing_ok=True)
     with os.fdopen(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600), "w") as file:
         file.write(secret + "\n")

@@ -20,19 +20,19 @@ class RateLimit:
 
     def __init__(self, clock: Callable[[], float] = time.monotonic):
         self._clock, self._lock = clock, Lock()
-        self._paid = OrderedDict[str, float]()
+        self._charged_until = OrderedDict[str, float]()
 
     def add(self, address: str) -> int:
         """Count a wrong token; return the seconds to wait before the next one."""
         network = network_of(address)
         with self._lock:
             now = self._clock()
-            paid = max(now, self._paid.pop(network, now))
-            wait = max(0, ceil(paid + INTERVAL - now - BURST * INTERVAL))
+            charged = max(now, self._charged_until.pop(network, now))
+            wait = max(0, ceil(charged + INTERVAL - now - BURST * INTERVAL))
             # A refused attempt does not make the wait longer.
-            self._paid[network] = paid if wait else paid + INTERVAL
-            if len(self._paid) > ADDRESSES:
-                self._paid.popitem(last=False)
+            self._charged_until[network] = charged if wait else charged + INTERVAL
+            if len(self._charged_until) > ADDRESSES:
+                self._charged_until.popitem(last=False)
         return wait
 
 

@@ -12,7 +12,7 @@ from sqlalchemy.orm import Session, sessionmaker
 from sqlalchemy.sql.expression import FunctionElement
 from sqlalchemy.types import TypeDecorator
 
-from .folders import private
+from .folders import create_private
 
 TIMEOUT_MS = 15_000
 
@@ -115,7 +115,7 @@ def _postgresql(url: Any) -> Engine:
 
 def _sqlite(url: Any) -> Engine:
     if url.database:
-        private(Path(url.database).parent)
+        create_private(Path(url.database).parent)
     engine = create_engine(url, connect_args={"timeout": TIMEOUT_MS / 1000})
     event.listen(engine, "connect", _prepare_sqlite)
     event.listen(engine, "begin", _begin_sqlite)

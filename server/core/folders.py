@@ -4,7 +4,7 @@ import stat
 from pathlib import Path
 
 
-def private(folder: Path) -> None:
+def create_private(folder: Path) -> None:
     """Create a folder that no other user can read; leave an existing one as it is."""
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
 

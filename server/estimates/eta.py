@@ -30,7 +30,7 @@ class Measured:
     """Cell steps of one generation."""
     rate: float
     """Cell steps per second."""
-    start: float
+    startup_seconds: float
     """Seconds that its first generation took longer than the others."""
 
 
@@ -40,18 +40,18 @@ class Speed:
 
     device: str
     rates: tuple[float, ...]
-    start: float
+    startup_seconds: float
 
     def seconds(self, cell_steps: int) -> float:
-        return self.start + cell_steps / median(self.rates)
+        return self.startup_seconds + cell_steps / median(self.rates)
 
     def read(self, cell_steps: int) -> MeasuredSpeed:
         return MeasuredSpeed(
             device=self.device,
             runs=len(self.rates),
             cell_steps_per_second=median(self.rates),
-            low=self.start + cell_steps / max(self.rates),
-            high=self.start + cell_steps / min(self.rates),
+            low=self.startup_seconds + cell_steps / max(self.rates),
+            high=self.startup_seconds + cell_steps / min(self.rates),
         )
 
 
@@ -87,7 +87,7 @@ def _similar(measured: Sequence[Measured], spec: Spec, models: Collection[str]) 
     return Speed(
         device=_name(nearest[0].device, models),
         rates=tuple(one.rate for one in nearest),
-        start=median(one.start for one in nearest),
+        startup_seconds=median(one.startup_seconds for one in nearest),
     )
 
 

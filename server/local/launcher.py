@@ -15,7 +15,7 @@ from sqlalchemy.exc import OperationalError
 from microcosmos.spec import EXPERIMENTS
 
 from ..auth import bootstrap
-from ..core.folders import open_to_others, private
+from ..core.folders import create_private, open_to_others
 from ..core.processes import spawn
 from ..maintenance.healthcheck import answers
 from ..runs.submission import submit
@@ -51,7 +51,7 @@ class DataFolder:
 def lock_data_folder(settings: Settings) -> DataFolder:
     """Lock the data folder for as long as this process lives."""
     folder = settings.data.resolve()
-    private(folder)
+    create_private(folder)
     if settings.needs_token and open_to_others(folder):
         say("warning", f"other users can look into {folder}: chmod o= {folder}")
     lock = FileLock(folder / "lock", mode=0o600)

@@ -92,7 +92,11 @@ def existing(services: Services, creature: str, kind: str) -> bytes | None:
     """Return a rendering if it exists and is sound."""
     with services.sessions.read() as session:
         row = find(session, creature, kind)
-    return services.artifacts.sound(StoredFile(row.path, row.size, row.sha256)) if row else None
+    return (
+        services.artifacts.read_verified(StoredFile(row.path, row.size, row.sha256))
+        if row
+        else None
+    )
 
 
 def creature(services: Services, name: str) -> dict[str, Any]:

@@ -30,7 +30,7 @@ log = logging.getLogger(__name__)
 NOT_IN_BIN = Run.deleted_at.is_(None)
 """The condition that a run is not in the bin."""
 
-ATTEMPTS = 3
+MAX_ATTEMPTS = 3
 """Number of attempts without a new checkpoint after which a run fails."""
 
 
@@ -125,14 +125,14 @@ def refuse(session: Session, action: str, run: Run, needed: str) -> NoReturn:
 def fail_attempt(session: Session, run_id: UUID, *where: Any, error: str) -> Run | None:
     """End an attempt that failed, and queue the run again.
 
-    If requested, pause or cancel it instead. After `ATTEMPTS` without a checkpoint it fails.
+    If requested, pause or cancel it instead; fail it after `MAX_ATTEMPTS` attempts.
     """
     run = end_attempt(session, run_id, *where, error=error)
     if run is None:
         return None
     note(session, run, f"Attempt {run.attempt} failed: {error}", "error")
-    if run.status == QUEUED and run.attempts_without_checkpoint >= ATTEMPTS:
-        reason = f"{ATTEMPTS} attempts without a new checkpoint"
+    if run.status == QUEUED and run.attempts_without_checkpoint >= MAX_ATTEMPTS:
+        reason = f"{MAX_ATTEMPTS} attempts without a new checkpoint"
         text = f"{reason}; the last one: {error}"
         run = change(session, run_id, status=FAILED, finished_at=clock(), error=text)
         assert run is not None
@@ -152,7 +152,7 @@ def end_attempt(session: Session, run_id: UUID, *where: Any, **values: Any) -> R
 
 
 def stop_attempt(session: Session, run_id: UUID, *where: Any) -> Run | None:
-    """End an attempt that did not fail; it does not count towards `ATTEMPTS`."""
+    """End an attempt that did not fail; it does not count towards `MAX_ATTEMPTS`."""
     counted = Run.attempts_without_checkpoint
     earlier = case((counted > 0, counted - 1), else_=0)
     run = end_attempt(session, run_id, *where, attempts_without_checkpoint=earlier)

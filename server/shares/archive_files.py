@@ -24,7 +24,7 @@ def copy_checkpoint(services: Services, share: Share) -> None:
         checkpoint = None if find(session, share) else _checkpoint(session, share)
     if checkpoint is None:
         return
-    data = services.artifacts.sound(
+    data = services.artifacts.read_verified(
         StoredFile(checkpoint.path, checkpoint.size, checkpoint.sha256)
     )
     if data is None:

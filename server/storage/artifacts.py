@@ -54,7 +54,7 @@ class Artifacts:
     def read(self, path: str) -> bytes:
         return self.files.cat_file(self._full(path))
 
-    def sound(self, stored: StoredFile) -> bytes | None:
+    def read_verified(self, stored: StoredFile) -> bytes | None:
         """Return the content, or None if the file is missing or has changed."""
         try:
             data = self.read(stored.path)

@@ -204,7 +204,7 @@ def test_a_burst_of_wrong_tokens_from_an_address_is_allowed_and_recovers(limit, 
 def test_the_rate_limit_remembers_limited_addresses(limit):
     for number in range(2 * ADDRESSES):
         limit.add(f"198.18.{number // 256}.{number % 256}")
-    assert len(limit._paid) == ADDRESSES
+    assert len(limit._charged_until) == ADDRESSES
 
 
 @pytest.mark.parametrize(

@@ -84,7 +84,7 @@ def test_the_log_names_stopped_workers_dead_jobs_and_the_last_attempt(services, 
     claim(services, run_id, "worker")
     leases.job_ended(services, run_id, "worker", "killed by signal 9")
     assert ("error", 2, "Attempt 2 failed: killed by signal 9") in log()
-    for _ in range(lifecycle.ATTEMPTS - 1):
+    for _ in range(lifecycle.MAX_ATTEMPTS - 1):
         claim(services, run_id, "worker").fail("no luck")
     assert log()[-1] == ("error", 4, "Failed: 3 attempts without a new checkpoint.")
 
