@@ -58,7 +58,8 @@ def refuse_without_admin(services: Services) -> None:
     if not found:
         raise ValueError(
             "A server that others can reach needs an admin token, and there is none: "
-            "create one with `python -m server.auth create NAME --scope admin`, or set MICROCOSMOS_TOKEN"
+            "create one with `python -m server.auth create NAME --scope admin`, "
+            "or set MICROCOSMOS_TOKEN"
         )
 
 
