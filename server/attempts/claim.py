@@ -17,7 +17,7 @@ from ..tables import OVERRIDE_ALLOWED, QUEUED, RUNNING, Run, Worker
 from ..workers import plugins
 from .attempt import Attempt, ClaimLost
 from .checkpoints import CheckpointUnavailable, rewind
-from .leases import expired
+from .leases import lease_expired
 
 DATABASE_SECONDS = 600.0
 """Seconds that a computed generation waits while the database is away."""
@@ -35,7 +35,7 @@ def claim(services: Services, run_id: UUID, worker: str) -> Attempt | None:
         run = session.get(Run, run_id)
         if run and not plugins.fit(session.get(Worker, worker), run.plugin_versions):
             return None  # The run waits in another queue.
-        over = or_(Run.worker == worker, expired(session, services.settings.lease))
+        over = or_(Run.worker == worker, lease_expired(session, services.settings.lease))
         fail_attempt(session, run_id, over, error="the worker stopped reporting")
         started = {
             "status": RUNNING,

@@ -32,7 +32,7 @@ def heartbeat(sessions: Sessions, run_id: UUID, worker: str) -> Lease:
         return "waiting" if run and run.status == QUEUED else "over"
 
 
-def expired(session: Session, lease: float) -> Any:
+def lease_expired(session: Session, lease: float) -> Any:
     """Return the condition that a run has had no heartbeat for as long as a lease."""
     return or_(Run.heartbeat_at.is_(None), Run.heartbeat_at < ago(session, lease))
 

@@ -88,7 +88,7 @@ def requeue_expired(services: Services) -> None:
     """End the attempts whose lease has expired, and queue their runs again."""
     lease = services.settings.lease
     with services.sessions.read() as session:
-        expired = (Run.status == RUNNING, leases.expired(session, lease))
+        expired = (Run.status == RUNNING, leases.lease_expired(session, lease))
         found = session.execute(select(Run.id, Run.worker).where(*expired)).all()
     for run_id, worker in found:
         with services.sessions.write.begin() as session:

@@ -24,7 +24,7 @@ ATTRIBUTES = {"format", "sha256", *PARTS}
 
 
 def dump(file: Mapping[str, Any]) -> bytes:
-    """The bytes of a parsed creature file; the same file gives the same bytes."""
+    """Return the bytes of a parsed creature file; the same file gives the same bytes."""
     return hdf5.dump(_tree(file), _attributes(file))
 
 

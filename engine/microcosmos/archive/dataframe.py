@@ -26,9 +26,9 @@ def to_pandas(archive: Source) -> Any:
 def to_ribs(archive: Source) -> Any:
     """A `GridArchive` or `CVTArchive` of pyribs with our elites and every measure as a field.
 
-    Ranges of a grid are on the axes' own scales, around centroids from 0 to 1 on those. pyribs
-    rounds borders of bins differently: an elite on one moves to the middle of its cell. Raises
-    `ImportError` without pyribs.
+    A grid has ranges on the axes' own scales; with centroids they are 0 to 1 on those scales.
+    pyribs rounds differently at the borders of bins, so an elite on a border moves to the
+    middle of its cell. Raises `ImportError` without pyribs.
     """
     data = _bytes(archive)
     found, peer = columns(data), require("ribs.archives", "ribs[visualize]")

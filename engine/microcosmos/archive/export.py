@@ -14,7 +14,7 @@ Columns = dict[str, Any]
 
 
 def csv(data: bytes) -> str:
-    """One row for each elite, with `columns`."""
+    """Return the table of `columns` as CSV, one row per elite."""
     found = columns(data)
     text = StringIO()
     writer = csv_module.writer(text, lineterminator="\n")
@@ -24,12 +24,13 @@ def csv(data: bytes) -> str:
 
 
 def columns(data: bytes) -> Columns:
-    """`solution_i`, `objective`, `measures_i`, `threshold`, measures, `generation`, `creature`,
-    results of reevaluation if there are any, and `index`, an entry an elite.
+    """Return the table, one entry per elite in each column.
 
-    A solution is the genome's arrays side by side, in the order of their names; a measure
-    is on its axis' own scale, so that bins of a log axis are equally wide, and around
-    centroids from 0 to 1 on that scale, as distances are taken there.
+    The columns are `solution_i`, `objective`, `measures_i`, `threshold`, all measures by name,
+    `generation`, `creature`, results of reevaluation if there are any, and `index`. A solution
+    is the genome's arrays side by side, in the order of their names. In a grid, `measures_i`
+    are on the axis' own scale, so that bins of a log axis are equally wide. With centroids,
+    they are from 0 to 1 on that scale, on which distances are measured.
     """
     tree, attributes = load(data)
     archive = tree["archive"]
@@ -52,7 +53,7 @@ def columns(data: bytes) -> Columns:
 
 
 def licensed(data: bytes, licence: str, credit: Sequence[str]) -> bytes:
-    """The same file with a licence and the names to credit."""
+    """Return the same file with a licence and the names to credit."""
     tree, attributes = load(data)
     terms = {"licence": licence, "credit": json.dumps(list(credit))}
     return dump(tree, {**attributes, **terms})
@@ -94,7 +95,7 @@ def unit(values: np.ndarray, axis: dict[str, Any]) -> np.ndarray:
 
 
 def ends(axis: dict[str, Any]) -> tuple[float, float]:
-    """The ends of an axis on its own scale."""
+    """Return the ends of an axis on its own scale."""
     low, high = axis["low"], axis["high"]
     if axis["scale"] == "log10":
         return float(np.log10(low)), float(np.log10(high))

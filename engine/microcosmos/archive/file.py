@@ -31,7 +31,7 @@ def dump(tree: Mapping[str, Any], attributes: Mapping[str, str]) -> bytes:
 
 
 def load(data: bytes) -> tuple[Tree, dict[str, str]]:
-    """The arrays and attributes of our file. Raises `ValueError` for any other."""
+    """Return the arrays and attributes of our file. Raises `ValueError` for any other."""
     try:
         with h5py.File(BytesIO(data), "r") as file:
             attributes = {name: bytes(value).decode() for name, value in file.attrs.items()}
@@ -67,7 +67,7 @@ class Table:
 
 
 def read_table(data: bytes) -> Table:
-    """The table in a run's file. Raises `ValueError` if it has none."""
+    """Return the table in a run's file. Raises `ValueError` if it has none."""
     tree, attributes = load(data)
     loop = tree.get("loop", {})
     if "rows" not in loop:

@@ -1,4 +1,4 @@
-"""Safe reading of HDF5 from strangers: only expected items, only from the file itself."""
+"""Safe reading of untrusted HDF5: only expected items, only from the file itself."""
 
 from collections.abc import Mapping
 from itertools import islice
@@ -7,15 +7,15 @@ from typing import Any
 import h5py
 import numpy as np
 
-LONGEST = 8 << 20
-"""Most bytes of a text."""
-PLAIN = (h5py.h5d.CONTIGUOUS, h5py.h5d.COMPACT)
+MAX_TEXT_BYTES = 8 << 20
+"""Maximum number of bytes of a text."""
+PLAIN_LAYOUTS = (h5py.h5d.CONTIGUOUS, h5py.h5d.COMPACT)
 TOLERANCE = 1e-6
 """Relative tolerance of numbers that another machine has computed."""
 
 
 def texts(item: Any, names: set[str]) -> dict[str, str]:
-    """The attributes of an object, which must be texts under just these names."""
+    """Return the attributes of an object; they must be texts with exactly these names."""
     found = set(islice(item.attrs, len(names) + 1))
     if found != names:
         raise ValueError(f"attributes must be {sorted(names)}, got {_few(found)}")
@@ -23,7 +23,7 @@ def texts(item: Any, names: set[str]) -> dict[str, str]:
 
 
 def text(group: h5py.Group, name: str) -> str:
-    """The text in a dataset."""
+    """Return the text in a dataset."""
     dataset = _own(group, name, name)
     if not isinstance(dataset, h5py.Dataset):
         raise ValueError(f"`{name}` must be a dataset, got a group")
@@ -32,7 +32,7 @@ def text(group: h5py.Group, name: str) -> str:
 
 
 def refuse_other(group: h5py.Group, tree: Mapping[str, Any], where: str = "") -> None:
-    """Raise `ValueError` unless a group holds a tree's arrays, no more and no less."""
+    """Raise `ValueError` unless a group holds exactly the arrays of a tree."""
     found = set(islice(group, len(tree) + 1))
     if found != set(tree):
         raise ValueError(f"`{where or '/'}` must hold {sorted(tree)}, got {_few(found)}")
@@ -49,7 +49,7 @@ def refuse_other(group: h5py.Group, tree: Mapping[str, Any], where: str = "") ->
 
 
 def _own(group: h5py.Group, name: str, place: str) -> Any:
-    """The item of a name, which must not be a link to another file or name."""
+    """Return a named item; raise `ValueError` if it is a soft or external link."""
     link = group.get(name, getlink=True)
     if not isinstance(link, h5py.HardLink):
         kind = type(link).__name__ if link else "nothing"
@@ -64,13 +64,13 @@ def _refuse_elsewhere(dataset: h5py.Dataset, place: str) -> None:
         raise ValueError(f"`{place}` must be stored in the file, got external storage")
     if dataset.is_virtual:
         raise ValueError(f"`{place}` must be stored in the file, got a virtual dataset")
-    if layout.get_layout() not in PLAIN or layout.get_nfilters():
+    if layout.get_layout() not in PLAIN_LAYOUTS or layout.get_nfilters():
         raise ValueError(f"`{place}` must be stored plainly, got chunks or filters")
 
 
 def _text(item: Any, place: str) -> str:
-    """One text of fixed length; variable length would point to a heap."""
-    if item.shape != () or item.dtype.kind != "S" or item.dtype.itemsize > LONGEST:
+    """Return a text of fixed length; refuse variable length, which points to a heap."""
+    if item.shape != () or item.dtype.kind != "S" or item.dtype.itemsize > MAX_TEXT_BYTES:
         raise ValueError(f"`{place}` must be one text, got {item.dtype}{item.shape}")
     if isinstance(item, h5py.Dataset):
         return bytes(item[()]).decode()
@@ -88,7 +88,7 @@ def _refuse_unequal(dataset: h5py.Dataset, expected: np.ndarray, place: str) -> 
         )
     found = np.asarray(dataset[()])
     floats = expected.dtype.kind == "f"
-    # Bytes tell more than values: 0x41 counts as true too.
+    # Compare bytes, not values: a boolean of byte 0x41 would equal true.
     same = found.tobytes() == expected.tobytes()
     if not same and not (floats and np.allclose(found, expected, TOLERANCE)):
         raise ValueError(f"`{place}` must be as the identity has it, got other values")

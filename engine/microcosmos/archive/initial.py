@@ -17,12 +17,12 @@ from .creature import CreatureError
 Genes = dict[str, Any]
 """The genome of a creature's identity."""
 
-MOST = 2**30
-"""Upper bound of the genes' numbers, so that a search never runs out of them."""
+MAX_GENE_NUMBER = 2**30
+"""Upper bound of the numbers of initial genes; it leaves enough numbers for the search."""
 
 
 def genes_of(chosen: Evolution, files: Iterable[Mapping[str, Any]]) -> list[Genes]:
-    """The genes of creature files, in their order, as the spec's encoding reads them.
+    """Return the genes of creature files, in their order, as the spec's encoding reads them.
 
     Raises `CreatureError`, which names the field of the spec that a creature does not fit.
     """
@@ -33,7 +33,7 @@ def genes_of(chosen: Evolution, files: Iterable[Mapping[str, Any]]) -> list[Gene
 
 
 def fitting(chosen: Evolution, file: Mapping[str, Any]) -> Genes:
-    """The genome of a creature file, if it fits the spec."""
+    """Return the genome of a creature file, if it fits the spec."""
     genome, who = file["identity"]["genome"], f"creature {file['sha256'][:12]}"
     control = chosen.control
     _compare("control.encoding", control.encoding, genome["encoding"], who)
@@ -78,7 +78,7 @@ def _refuse_cycles(control: Control | Grown, genome: Genes, who: str) -> None:
 
 
 def _refuse_other_parts(chosen: Evolution, before: Any, who: str) -> None:
-    """Each number must stand for the same thing: the same joints, edges, layers."""
+    """Raise `CreatureError` unless each gene means the same: joints, edges, layers."""
     control, old = chosen.control, before.control
     if isinstance(control, Weights):
         _compare("control: layers", list(control.sizes), list(old.sizes), who)
@@ -93,10 +93,10 @@ def _refuse_other_parts(chosen: Evolution, before: Any, who: str) -> None:
 
 
 def renumbered(genomes: Sequence[Genes], inputs: int, outputs: int) -> list[Genes]:
-    """Genomes in which each number stands for one connection.
+    """Return genomes in which each number stands for one connection.
 
-    Numbers of one run agree and stay. Genomes in which a number has other ends than before make
-    a family with its own numbers.
+    Genomes whose numbers agree keep them. A genome that gives a known number other ends belongs
+    to another family, whose numbers are shifted.
     """
     fixed = inputs + outputs
     last = [max(_numbers(genome), default=0) for genome in genomes]
@@ -116,14 +116,15 @@ def renumbered(genomes: Sequence[Genes], inputs: int, outputs: int) -> list[Gene
                 known.update(ends)
                 found.append(moved)
                 break
-    if step * max(1, len(families)) >= MOST:
-        needed = f"creatures whose genes have numbers below {MOST // max(1, len(families)):,}"
+    limit = MAX_GENE_NUMBER // max(1, len(families))
+    if step * max(1, len(families)) >= MAX_GENE_NUMBER:
+        needed = f"creatures whose genes have numbers below {limit:,}"
         raise CreatureError("search.initial", needed, step - 1)
     return found
 
 
 def counters(genomes: Sequence[Genes]) -> tuple[int, int]:
-    """The first numbers after all connections and after all nodes."""
+    """Return the first unused number of a connection and of a node."""
     connections = [n for genome in genomes for n in genome["connections"]["innovation"]]
     nodes = [n for genome in genomes for n in genome["nodes"]["id"]]
     return max(connections, default=-1) + 1, max(nodes, default=-1) + 1

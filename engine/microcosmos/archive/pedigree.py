@@ -5,12 +5,12 @@ from typing import Any
 
 from .creature import CreatureError, parse
 
-MOST = 200
-"""Most ancestors in one document."""
+MAX_ANCESTORS = 200
+"""Maximum number of ancestors in one document."""
 
 
 def document(file: Mapping[str, Any], ancestors: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-    """The document around a creature file and those of its ancestors, nearest first."""
+    """Return a creature file with the files of its ancestors, nearest first."""
     return {**file, "ancestors": [dict(one) for one in ancestors]}
 
 
@@ -20,9 +20,10 @@ def split(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[dict[str, Any]]
     Raises `CreatureError` if one is invalid, or is not an ancestor.
     """
     files = data.get("ancestors", [])
-    if not isinstance(files, list) or len(files) > MOST:
+    if not isinstance(files, list) or len(files) > MAX_ANCESTORS:
         got = len(files) if isinstance(files, list) else files
-        raise CreatureError("ancestors", f"a list of at most {MOST} creature files", got)
+        needed = f"a list of at most {MAX_ANCESTORS} creature files"
+        raise CreatureError("ancestors", needed, got)
     file = parse({name: part for name, part in data.items() if name != "ancestors"})
     ancestors = [_ancestor(one, place) for place, one in enumerate(files)]
     _refuse_strangers(file, ancestors)
@@ -38,7 +39,7 @@ def _ancestor(data: Any, place: int) -> dict[str, Any]:
 
 
 def parents(file: Mapping[str, Any]) -> list[str]:
-    """The names of a creature's parents in its file."""
+    """Return the names of a creature's parents in its file."""
     return list((file["provenance"] or {}).get("parents", ()))
 
 

@@ -46,7 +46,7 @@ def gradient(
 def gradient_health(
     file: Mapping[str, Any], of: str = "fitness", by: By = ("genes",), *, starts: int = 8
 ) -> search.Health:
-    """The report on a creature file's gradient; raises as `gradient` does."""
+    """Return the report on a creature file's gradient; raises as `gradient` does."""
     return search.gradient_health(lambda dtype: _creature(file, dtype), of, by, starts=starts)
 
 

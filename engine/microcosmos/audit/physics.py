@@ -22,29 +22,31 @@ from ..genomes import Drive
 from ..viz.replay import CELL_STEPS, actuator_of, unmeasured
 from .variants import body_of, other_delta, reciprocal, refine, tireless, with_other_delta
 
-AGREES = (0.5, 2.0)
-"""Shares of the recorded displacement that count as the same swimming. Wide, because the delta
-thickens a filament by most of a cell: at twice the resolution a slender swimmer is half as
-thick and goes further."""
+AGREEING_RANGE = (0.5, 2.0)
+"""Range of displacement, relative to the recorded one, that counts as the same swimming.
 
-IMPULSE = 1e-4
+The range is wide because the delta thickens a filament by most of a cell: at twice the
+resolution a slender swimmer is half as thick and goes further.
+"""
+
+MAX_IMPULSE = 1e-4
 """Largest net momentum given by a body, float32."""
 
-RECIPROCAL = 0.015
+MAX_RECIPROCAL = 0.015
 """Largest displacement of a reciprocal gait in creeping flow, as a share of its path."""
 
-CREEPING = 1.0
+CREEPING_REYNOLDS = 1.0
 """Reynolds number below which the scallop theorem holds."""
 
-WORK = 16
-"""Cell steps of an audit over those of the creature."""
+COST_RATIO = 16
+"""Ratio of an audit's cell steps to those of the creature."""
 
 
 @dataclass(frozen=True)
-class Found:
+class Simulation:
     """The result of one simulation."""
 
-    way: np.ndarray
+    displacement: np.ndarray
     """(2,) displacement of the mean node, in the creature's own cells."""
     path: float
     """Mean path of a node, in cells."""
@@ -55,20 +57,20 @@ class Found:
 
     @property
     def distance(self) -> float:
-        return float(np.hypot(*self.way))
+        return float(np.hypot(*self.displacement))
 
 
 def audit(file: Mapping[str, Any]) -> dict[str, Any]:
-    """The audit of a creature file, as a JSON document described in `docs/formats.md`.
+    """Return the audit of a creature file, as a JSON document described in `docs/formats.md`.
 
     Raises `creature.CreatureError` for a file that is invalid, too large, or diverges.
     """
     file = creature.parse(file)
     scene = unmeasured(creature.scene_of(file))
-    work = WORK * scene.world.width * scene.world.height * scene.task.steps
+    work = COST_RATIO * scene.world.width * scene.world.height * scene.task.steps
     if work > CELL_STEPS:
-        needed = f"at most {CELL_STEPS // WORK:.1e} cell steps for an audit"
-        raise creature.CreatureError("task.steps", needed, work // WORK)
+        needed = f"at most {CELL_STEPS // COST_RATIO:.1e} cell steps for an audit"
+        raise creature.CreatureError("task.steps", needed, work // COST_RATIO)
     task = build.build_task(scene)
     actuator = jax.tree.map(jnp.asarray, actuator_of(file, scene))
     driven = search.drive(task, actuator)
@@ -76,17 +78,17 @@ def audit(file: Mapping[str, Any]) -> dict[str, Any]:
     if not np.isfinite(nominal.distance):
         needed = "a creature whose simulation stays finite"
         raise creature.CreatureError("identity", needed, "one that diverges")
-    body, rest = _made(scene, driven, rest)
-    refined, _ = _follow(*refine(scene, rest, body))
-    other, _ = _follow(with_other_delta(scene, body), rest)
-    back, _ = _follow(tireless(scene, body), reciprocal(rest))
+    body, rest = _developed(scene, driven, rest)
+    refined, _ = _simulate_rest(*refine(scene, rest, body))
+    other, _ = _simulate_rest(with_other_delta(scene, body), rest)
+    back, _ = _simulate_rest(tireless(scene, body), reciprocal(rest))
     rows = [
-        *_soundness(scene, nominal),
-        _remeasured(
+        *_simulation_rows(scene, nominal),
+        _agreement_row(
             "refined", "at twice the resolution and half the step", nominal, refined, 0.5
         ),
-        _remeasured("delta", f"with the delta {other_delta(scene)}", nominal, other, 1.0),
-        _reciprocal(back),
+        _agreement_row("delta", f"with the delta {other_delta(scene)}", nominal, other, 1.0),
+        _reciprocal_row(back),
     ]
     reasons = [row["note"] for row in rows if row["passed"] is False]
     survives = all(row["passed"] is not False for row in rows if row["name"] in VERDICT_ROWS)
@@ -102,8 +104,8 @@ VERDICT_ROWS = ("refined", "delta", "impulse")
 """Rows that must pass for the creature to survive."""
 
 
-def _made(scene: spec.Scene, driven: Drive, rest: Rest) -> tuple[bodies.Body, Rest]:
-    """The developed body of a creature, and its rest shapes."""
+def _developed(scene: spec.Scene, driven: Drive, rest: Rest) -> tuple[bodies.Body, Rest]:
+    """Return the developed body of a creature, and its rest shapes."""
     try:
         body, joints, edges = body_of(scene, driven)
     except ValueError as error:
@@ -113,21 +115,21 @@ def _made(scene: spec.Scene, driven: Drive, rest: Rest) -> tuple[bodies.Body, Re
     return body, Rest(jnp.asarray(angle), jnp.asarray(length))
 
 
-def _follow(task: search.Task, rest: Rest) -> tuple[Found, Rest]:
+def _simulate_rest(task: search.Task, rest: Rest) -> tuple[Simulation, Rest]:
     return _simulate(task, search.drive(task, rest))
 
 
-def _simulate(task: search.Task, driven: Drive) -> tuple[Found, Rest]:
-    """The result, and the applied rest shapes."""
+def _simulate(task: search.Task, driven: Drive) -> tuple[Simulation, Rest]:
+    """Return the result, and the applied rest shapes."""
 
     def run(start, inputs):
         begun = replace(driven, start=start, inputs=inputs)
         end, watched = search.simulate(begun, partial(search.watch, driven.world))
         values = search.motion_of(task, begun, end, watched.observed)
         path = jnp.sum(watched.observed.node_speed)
-        way = watched.observed.centre[-1] - world.centre(driven.world, start)
+        displacement = watched.observed.centre[-1] - world.centre(driven.world, start)
         return (
-            way,
+            displacement,
             path,
             jnp.max(watched.mach),
             values,
@@ -136,9 +138,11 @@ def _simulate(task: search.Task, driven: Drive) -> tuple[Found, Rest]:
         )
 
     program = jax.jit(run, compiler_options=compiler_options())
-    way, path, mach, values, push, rest = jax.device_get(program(driven.start, driven.inputs))
-    found = Found(
-        way=np.asarray(way, float),
+    displacement, path, mach, values, push, rest = jax.device_get(
+        program(driven.start, driven.inputs)
+    )
+    found = Simulation(
+        displacement=np.asarray(displacement, float),
         path=float(path),
         mach=float(mach),
         limited=float(values["limited"]),
@@ -160,15 +164,15 @@ def _row(name: str, quantity: str, value: float, unit: str, bar: str, passed, no
     }
 
 
-def _soundness(scene: spec.Scene, found: Found) -> list[dict[str, Any]]:
-    """The quantities of the simulation itself, some with a largest value."""
+def _simulation_rows(scene: spec.Scene, found: Simulation) -> list[dict[str, Any]]:
+    """Return the rows of the recorded simulation, some with an upper limit."""
     pushed = "" if scene.coupling.force_free else ": this form of the coupling lets it"
     fast = "the flow is so fast that it is compressible"
     limits = "limits act: they decide in part how it swims"
     bounded = (
         ("mach", "largest Mach number", found.mach, "", units.MAX_MACH, fast),
         ("limited", "node steps at a limit", found.limited, "share", units.MAX_LIMITED, limits),
-        ("impulse", "net impulse on the fluid", found.impulse, "lattice units", IMPULSE,
+        ("impulse", "net impulse on the fluid", found.impulse, "lattice units", MAX_IMPULSE,
          "it pushes itself" + pushed),
     )  # fmt: skip
     return [
@@ -181,12 +185,13 @@ def _soundness(scene: spec.Scene, found: Found) -> list[dict[str, Any]]:
     ]
 
 
-def _remeasured(
-    name: str, how: str, nominal: Found, again: Found, scale: float
+def _agreement_row(
+    name: str, how: str, nominal: Simulation, again: Simulation, scale: float
 ) -> dict[str, Any]:
-    along = float(again.way @ nominal.way) * scale / max(nominal.distance, 1e-12)
+    product = float(again.displacement @ nominal.displacement)
+    along = product * scale / max(nominal.distance, 1e-12)
     share = along / max(nominal.distance, 1e-12)
-    low, high = AGREES
+    low, high = AGREEING_RANGE
     return _row(
         name,
         f"displacement {how}",
@@ -198,15 +203,15 @@ def _remeasured(
     )
 
 
-def _reciprocal(back: Found) -> dict[str, Any]:
-    creeping = back.reynolds < CREEPING
+def _reciprocal_row(back: Simulation) -> dict[str, Any]:
+    creeping = back.reynolds < CREEPING_REYNOLDS
     share = back.distance / max(back.path, 1e-12)
     return _row(
         "reciprocal",
         "displacement of the gait made reciprocal",
         share,
         "of the path",
-        f"at most {RECIPROCAL:g} below Reynolds number {CREEPING:g}",
-        share <= RECIPROCAL if creeping else None,
+        f"at most {MAX_RECIPROCAL:g} below Reynolds number {CREEPING_REYNOLDS:g}",
+        share <= MAX_RECIPROCAL if creeping else None,
         "made reciprocal, it still swims where inertia hardly counts",
     )

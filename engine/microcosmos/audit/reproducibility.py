@@ -79,7 +79,7 @@ def measurement(file: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def differing(recorded: Mapping[str, float], repeated: Mapping[str, float]) -> list[Any]:
-    """The measures that differ, largest relative difference first."""
+    """Return the measures that differ, largest relative difference first."""
     both = {name: (value, repeated.get(name, np.nan)) for name, value in recorded.items()}
     wrong = [name for name, (value, other) in both.items() if value != other]
     wrong.sort(key=lambda name: (-_share(*both[name]), name))

@@ -14,7 +14,7 @@ from ..viz.replay import graph_among, present_parts
 
 
 def body_of(scene: spec.Scene, driven: Drive) -> tuple[bodies.Body, np.ndarray, np.ndarray]:
-    """The developed body, and masks of the scene's joints and edges that it has.
+    """Return the developed body, and masks of the scene's joints and edges that it has.
 
     Raises `ValueError` if it is no valid body.
     """
@@ -45,7 +45,7 @@ def body_of(scene: spec.Scene, driven: Drive) -> tuple[bodies.Body, np.ndarray, 
 def refine(
     scene: spec.Scene, rest: Rest, body: bodies.Body | None = None
 ) -> tuple[search.Task, Rest]:
-    """The same body and gait on cells half as wide in steps half as long.
+    """Return the same body and gait on cells half as wide in steps half as long.
 
     Lengths in cells, times in steps and the viscosity in cells² a step double, speeds stay.
     The chain has twice the joints: twice the sweeps relax a bend in the same time. Repulsion
@@ -82,12 +82,12 @@ def refine(
 
 
 def other_delta(scene: spec.Scene) -> str:
-    """The delta that the creature was not measured with."""
+    """Return the delta that the creature was not measured with."""
     return "roma" if scene.coupling.kernel == "peskin" else "peskin"
 
 
 def with_other_delta(scene: spec.Scene, body: bodies.Body | None = None) -> search.Task:
-    """The scene with another delta."""
+    """Return the scene with another delta."""
     return _with(scene, body, kernel=other_delta(scene))
 
 
@@ -98,7 +98,7 @@ def tireless(scene: spec.Scene, body: bodies.Body | None = None) -> search.Task:
 
 
 def reciprocal(rest: Rest) -> Rest:
-    """The first half of the rest shapes, then the same shapes back again."""
+    """Return the first half of the rest shapes, then the same shapes back again."""
     steps = len(rest.angle)
     there = np.arange(steps)
     times = np.minimum(there, steps - 1 - there)

@@ -7,7 +7,7 @@ import numpy as np
 
 from .graph import Body
 
-NUMBERED = {"edges": "positions", "joints": "edges"}
+INDEXED_BY = {"edges": "positions", "joints": "edges"}
 
 
 def placed(body: Body, centre: Sequence[int | float] | np.ndarray, turned: float = 0.0) -> Body:
@@ -26,8 +26,8 @@ def together(bodies: Sequence[Body]) -> Body:
     for name in (f.name for f in fields(Body) if f.name != "crossing"):
         parts = [getattr(body, name) for body in bodies]
         arrays[name] = np.concatenate(parts)
-        if name in NUMBERED:
-            sizes = [len(getattr(body, NUMBERED[name])) for body in bodies]
+        if name in INDEXED_BY:
+            sizes = [len(getattr(body, INDEXED_BY[name])) for body in bodies]
             arrays[name] = arrays[name] + _offsets(sizes, parts)[:, None]
     counts = [body.count for body in bodies]
     arrays["member"] = arrays["member"] + _offsets(counts, [b.member for b in bodies])

@@ -9,7 +9,7 @@ import numpy as np
 from .graph import Body
 from .shape import Stiffness, from_edges
 
-NARROWING = 0.9
+FORK_ANGLE_RATIO = 0.9
 """Ratio of the angles of successive forks: equal forks would overlap."""
 
 
@@ -107,7 +107,7 @@ def tree(
     spread = angle * (np.linspace(-0.5, 0.5, branches) if branches > 1 else np.zeros(1))
     positions, edges, tips = [np.zeros(2)], [], [(0, 0.0)]
     for level in range(levels):
-        turns = NARROWING ** (level - 1) * spread if level else np.zeros(1)
+        turns = FORK_ANGLE_RATIO ** (level - 1) * spread if level else np.zeros(1)
         tips = [
             _segment(positions, edges, tip, heading + turn, segment_nodes, spacing)
             for tip, heading in tips

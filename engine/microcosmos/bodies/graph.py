@@ -30,7 +30,7 @@ class Body:
     member: np.ndarray = field(default_factory=lambda: np.zeros(0, int))
     """(node,) creature of each node, ascending from 0; one creature if left out."""
     crossing: bool = False
-    """Whether filaments may cross, with nodes nearer than `MIN_GAP`."""
+    """True if filaments may cross, with nodes nearer than `MIN_GAP`."""
 
     def __post_init__(self):
         if not len(self.member):
@@ -39,7 +39,7 @@ class Body:
 
     @property
     def count(self) -> int:
-        """The number of creatures."""
+        """Return the number of creatures."""
         return int(self.member[-1]) + 1
 
     @cached_property

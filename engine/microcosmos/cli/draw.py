@@ -16,7 +16,7 @@ from ..viz.film import check, export
 from .app import CACHE, app, console, fail, failing, with_options
 from .modules import Modules, load_modules, prepare_engine
 
-DEFAULT = "file"
+DEFAULT_COMMAND = "file"
 """The command that runs if none is named."""
 
 
@@ -25,7 +25,7 @@ class Figures(TyperGroup):
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         named = bool(args) and self.get_command(ctx, args[0]) is not None
-        return super().resolve_command(ctx, args if named else [DEFAULT, *args])
+        return super().resolve_command(ctx, args if named else [DEFAULT_COMMAND, *args])
 
 
 figures = typer.Typer(
@@ -70,7 +70,7 @@ def _printed(
         yield drawing.Print(width, dpi, caption, latex, palette)
 
 
-@figures.command(DEFAULT)
+@figures.command(DEFAULT_COMMAND)
 def of_file(
     file: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
     out: Annotated[

@@ -22,7 +22,7 @@ IDEMPOTENT = ("GET", "HEAD", "PUT", "PATCH", "DELETE")
 BUSY = (429, 502, 503, 504)
 LONGEST_PAUSE = 8.0
 FIRST_TRIES = 2
-"""If no server has ever answered, more tries would only keep a person waiting."""
+"""Tries while no server has answered yet; more would only delay the error."""
 
 
 class Connection:

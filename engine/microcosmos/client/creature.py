@@ -44,7 +44,7 @@ class Creature:
 
     @cached_property
     def file(self) -> dict[str, Any]:
-        """The creature file: identity, hash, measured numbers, provenance."""
+        """Return the creature file: identity, hash, measured numbers, provenance."""
         return self._connection.read(self._path)
 
     @property

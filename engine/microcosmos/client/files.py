@@ -23,7 +23,7 @@ from .connection import Connection
 from .errors import NotMicrocosmos, Refused, ServerError, unreachable
 
 TRIES = 6
-"""Tries in a row that bring no byte."""
+"""Maximum number of successive tries without a new byte."""
 CHUNK = 1 << 16
 DIGEST = re.compile(r'"([0-9a-f]{64})"')
 """A strong ETag of the server: the file's SHA-256."""

@@ -72,7 +72,7 @@ class Replay:
 
     @cached_property
     def html(self) -> str:
-        """The whole page; it loads nothing."""
+        """Return the whole page; it loads nothing."""
         frames, cells = thinning(self.motion)
         page = PLAYER.read_text("utf-8")
         positions = self.motion.positions[::frames].astype("<f4")

@@ -20,7 +20,7 @@ class Share:
 
     @property
     def url(self) -> str:
-        """The whole address; the server may omit its own."""
+        """Return the whole address; the server may omit its own."""
         url = str(self.record["url"])
         return url if "://" in url else f"{self._connection.url}/{url.lstrip('/')}"
 

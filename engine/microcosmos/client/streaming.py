@@ -11,7 +11,7 @@ import httpx
 from .connection import Connection
 
 SILENCE = 40.0
-"""Seconds without a byte after which a stream is dead; the server writes each 15 s."""
+"""Seconds without a byte after which a stream counts as dead; the server writes every 15 s."""
 
 
 @dataclass(frozen=True)

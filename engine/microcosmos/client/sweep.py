@@ -73,7 +73,7 @@ class Sweep(Record):
         return frame(self.rows())
 
     def _ask(self, action: str, document: Any = None) -> Self:
-        """The answer lists the changed runs; read the record again."""
+        """Read the record again: the answer lists only the changed runs."""
         self._connection.send("POST", f"{self._path}/{action}", document)
         return self.refresh()
 

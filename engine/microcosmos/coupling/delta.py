@@ -76,7 +76,7 @@ class Windows(eqx.Module):
 
 
 def windows(positions: Vectors, size: tuple[int, ...], kernel: Kernel = PESKIN) -> Windows:
-    """The cells that points act on in a periodic box of `size` cells."""
+    """Return the cells that points act on in a periodic box of `size` cells."""
     points = len(positions)
     if points <= CHUNK:
         cells, weights = _around(positions, size, kernel)

@@ -32,12 +32,12 @@ class Forced(eqx.Module):
 
 
 def unprojected(error: Vectors, beta: Scalars, positions: Vectors, groups: Groups) -> Vectors:
-    """No rigid motion is removed: the literal method."""
+    """Remove no rigid motion, as in the paper's literal form."""
     return jnp.zeros_like(error)
 
 
 def force_free(error: Vectors, beta: Scalars, positions: Vectors, groups: Groups) -> Vectors:
-    """The rigid translations whose removal makes Σ β e = 0 for each body."""
+    """Return the rigid translations whose removal makes Σ β e = 0 for each body."""
     return groups.each(_mean(error, beta, groups))
 
 
@@ -68,7 +68,7 @@ def multi_direct_forcing(
     limit: Float[Array, ""] | float | None,
     present: Bool[Array, "node"] | None = None,
 ) -> Forced:
-    """The forcing at nodes for a fluid at `velocity` there to move with `target`.
+    """Return the forcing at nodes for a fluid at `velocity` there to move with `target`.
 
     Forcing and velocities are in cells a step; the force on the fluid is a multiple of the
     forcing, spread. With `limit`, the largest forcing of a body is at most that, by one

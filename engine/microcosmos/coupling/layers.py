@@ -23,10 +23,10 @@ def points(positions: Vectors, normals: Vectors, layers: int) -> Float[Array, "p
 
 
 def at_points(values: Vectors, layers: int) -> Float[Array, "point 2"]:
-    """The value of its node at every point."""
+    """Return the value of its node at every point."""
     return values if layers == 1 else jnp.repeat(values, layers, 0)
 
 
 def at_nodes(values: Float[Array, "point 2"], layers: int) -> Vectors:
-    """The mean over the points of every node."""
+    """Return the mean over the points of every node."""
     return values if layers == 1 else jnp.mean(values.reshape(-1, layers, 2), 1)

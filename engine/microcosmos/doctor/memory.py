@@ -10,15 +10,15 @@ from .finding import Finding, ok, warning
 
 MEMINFO = Path("/proc/meminfo")
 LIMIT = Path("/sys/fs/cgroup/memory.max")
-LEAST = 2 << 30
-"""Bytes that JAX with its compiler and a small run need."""
+MIN_BYTES = 2 << 30
+"""Bytes that JAX, its compiler and a small run need."""
 
 
 def memory(meminfo: Path = MEMINFO, limit: Path = LIMIT) -> Iterator[Finding]:
     """Check the available memory, and list the presets that need more than there is."""
     whole, free = memory_bytes(meminfo, limit)
     found = f"{size(free)} of {size(whole)} available"
-    if free < LEAST:
+    if free < MIN_BYTES:
         advice = "end other programs, or run fewer workers: make run WORKERS=1"
         yield warning("memory", found, advice)
     else:

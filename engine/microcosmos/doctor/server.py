@@ -12,13 +12,13 @@ from ..sizes import size
 from ..version import VERSION
 from .finding import Finding, ok, problem, warning
 
-SILENT = 20.0
+MAX_HEARTBEAT_AGE = 20.0
 """Seconds without a heartbeat after which a worker counts as dead."""
-LEAST, FEW = 1 << 30, 10 << 30
+MIN_FREE_BYTES, LOW_FREE_BYTES = 1 << 30, 10 << 30
 """Bytes of free disk space: less than the first is a problem, than the second a warning."""
-SLOW = 1.0
+MAX_WRITE_SECONDS = 1.0
 """Longest time, in seconds, that 4 kB should take to reach the disk."""
-REMOTE = ("nfs", "nfs4", "cifs", "smb3", "fuse.sshfs", "9p")
+NETWORK_FILE_SYSTEMS = ("nfs", "nfs4", "cifs", "smb3", "fuse.sshfs", "9p")
 """File systems on which SQLite's log does not work."""
 
 
@@ -98,22 +98,22 @@ def disk(report: Mapping[str, Any], dialect: str) -> Iterator[Finding]:
     where, free, seconds = report["location"], report["free_bytes"], report["write_seconds"]
     if free is not None:
         found = f"{size(free)} free at {where}"
-        if free < LEAST:
+        if free < MIN_FREE_BYTES:
             advice = "free some space, or choose another folder with MICROCOSMOS_DATA"
             yield problem("disk", found, advice)
-        elif free < FEW:
+        elif free < LOW_FREE_BYTES:
             yield warning("disk", found, "free some space soon: each run keeps an archive file")
         else:
             yield ok("disk", found)
     if not report["writable"]:
         advice = f"let the server write to it (chown, chmod {where}), or set MICROCOSMOS_DATA"
         yield problem("disk", f"{where} cannot be written to: {report['error']}", advice)
-    elif seconds > SLOW:
+    elif seconds > MAX_WRITE_SECONDS:
         found = f"writing to {where} (fsync) takes {1000 * seconds:.0f} ms"
         yield warning("disk", found, "checkpoints wait for it; a local disk is faster")
     else:
         yield ok("disk", f"writing to {where} (fsync) takes {1000 * seconds:.0f} ms")
-    if report["file_system"] in REMOTE and dialect == "sqlite":
+    if report["file_system"] in NETWORK_FILE_SYSTEMS and dialect == "sqlite":
         yield warning(
             "disk",
             f"{where} is on a {report['file_system']} file system, where SQLite may lose data",
@@ -143,7 +143,7 @@ def workers(found: list[dict[str, Any]], now: datetime) -> Iterator[Finding]:
     for one in found:
         age = max(0.0, (now - datetime.fromisoformat(one["heartbeat_at"])).total_seconds())
         text = f"{one['name']} on {one['device']}, {one['status']}, reported {age:.0f} s ago"
-        if age > SILENT:
+        if age > MAX_HEARTBEAT_AGE:
             yield warning("workers", text, "it may hang: read its log, restart it")
         else:
             yield ok("workers", text)

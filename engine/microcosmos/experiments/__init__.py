@@ -14,11 +14,11 @@ class Experiment(Protocol):
     """A run as pure functions of a state, which holds all that the next generation needs."""
 
     def init(self) -> Any:
-        """The state before the first generation."""
+        """Return the state before the first generation."""
         ...
 
     def done(self, state: Any) -> bool:
-        """Whether all generations are completed."""
+        """Return whether all generations are completed."""
         ...
 
     def generation(self, state: Any) -> int:
@@ -31,11 +31,11 @@ class Experiment(Protocol):
         ...
 
     def save(self, state: Any) -> bytes:
-        """The file from which the run can be resumed."""
+        """Return the file from which the run can be resumed."""
         ...
 
     def restore(self, data: bytes, *, other_device: bool = False) -> Any:
-        """The state in a file of the same spec.
+        """Return the state in a file of the same spec.
 
         Raises `ValueError` for another spec or format, and its subclass `OtherDevice` for
         another kind of device unless `other_device` allows it: from there on bits may differ,
@@ -44,5 +44,5 @@ class Experiment(Protocol):
         ...
 
     def best(self, state: Any) -> dict[str, Any] | None:
-        """The creature file of the best creature, if the experiment has one."""
+        """Return the creature file of the best creature, if the experiment has one."""
         ...

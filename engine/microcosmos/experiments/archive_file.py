@@ -41,7 +41,7 @@ ROWS = ("fitness", "measures", "generation", "slot")
 
 
 def save(plan: Plan, state: State) -> bytes:
-    """The file of a state; only occupied cells are written."""
+    """Return the file of a state; only occupied cells are written."""
     state = jax.device_get(state)
     cells = np.flatnonzero(state.elites.occupied)
     elites = jax.tree.map(lambda x: x[cells], state.elites)
@@ -80,7 +80,7 @@ def save(plan: Plan, state: State) -> bytes:
 
 
 def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
-    """The state that `save` wrote; see `Evolution.restore` for what it raises."""
+    """Return the state that `save` wrote; see `Evolution.restore` for what it raises."""
     tree, attributes = file.load(data)
     try:
         devices = devices_of(plan.spec, plan.device, attributes, other_device)
@@ -145,14 +145,14 @@ def _centroids(cells: search.Cells) -> dict[str, Any]:
 
 
 def _cells_of(plan: Plan, archive: dict[str, Any]) -> search.Cells:
-    """The run's own cells: another machine may have found slightly other centroids."""
+    """Return the run's own cells: another machine may have found slightly other centroids."""
     if "centroids" not in archive:
         return plan.cells
     return search.voronoi(plan.axes, archive["centroids"])
 
 
 def _clock(plan: Plan, state: State) -> dict[str, Any]:
-    """The time of evaluation, only if it limits the run."""
+    """Return the time of evaluation, only if it limits the run."""
     timed = np.isfinite(plan.limits.device_hours)
     return {"device_seconds": np.float64(state.device_seconds)} if timed else {}
 
@@ -172,7 +172,7 @@ def _end(plan: Plan, state: State) -> dict[str, Any] | None:
 
 
 def _placed(module: Module, cells: np.ndarray, columns: dict[str, Any]) -> Module:
-    """The module with the rows of some cells replaced.
+    """Return the module with the rows of some cells replaced.
 
     NumPy places them: JAX would compile again for each number of cells.
     """

@@ -101,11 +101,11 @@ class Evolution:
         return after, new, clipped
 
     def creature(self, state: State, cell: int) -> dict[str, Any]:
-        """The creature file of a cell's elite."""
+        """Return the creature file of a cell's elite."""
         return lineage.document(self.plan, state, cell)
 
     def best(self, state: State) -> dict[str, Any] | None:
-        """The creature file of the fittest elite, or None while there is none."""
+        """Return the creature file of the fittest elite, or None while there is none."""
         occupied = np.asarray(state.elites.occupied)
         if not occupied.any():
             return None
@@ -142,7 +142,7 @@ def _failures(state: State, genotypes: Genotype, status: np.ndarray) -> Diverged
 
 
 def _ended(plan: Plan, state: State) -> int:
-    """The index in `ENDS` of the limit that the state has reached, 0 if none."""
+    """Return the index in `ENDS` of the limit that the state has reached, 0 if none."""
     limits, elites = plan.limits, state.elites
     best = np.max(np.where(elites.occupied, elites.fitness, -np.inf))
     reached = {

@@ -102,7 +102,7 @@ class Folding:
             ) from error
 
     def best(self, state: State) -> dict[str, Any] | None:
-        """The fold with the least loss, or None before the last update."""
+        """Return the fold with the least loss, or None before the last update."""
         if not state.table.rows:
             return None
         row = state.table.rows[int(np.argmin(state.folds.least))]

@@ -78,7 +78,7 @@ def stack(points: list[search.Conditions]) -> search.Conditions:
 
 
 def report(state: Table, rows: tuple[Row, ...]) -> Report:
-    """The number of points, and of those that failed or have warnings."""
+    """Return the number of points, and of those that failed or have warnings."""
     failed = sum(row.values["status"] != "ok" for row in state.rows)
     warned = sum(bool(row.values["warnings"]) for row in state.rows)
     return Report(

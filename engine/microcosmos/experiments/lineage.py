@@ -25,7 +25,7 @@ def record(
     inserted: search.Inserted,
     names: np.ndarray,
 ) -> tuple[State, tuple[Elite, ...]]:
-    """The state with the new elites recorded, and those elites.
+    """Return the state with the new elites recorded, and those elites.
 
     `names` are the creatures that parents are drawn from, by cell.
     """
@@ -79,7 +79,7 @@ def _new_elites(
 
 
 def _entries(plan: Plan, elites: tuple[Elite, ...], parents: np.ndarray) -> Lineage:
-    """The entries of new elites in the lineage; `parents` are (elite, 2, 32)."""
+    """Return the entries of new elites in the lineage; `parents` are (elite, 2, 32)."""
     parents[[not elite.parents for elite in elites]] = 0
     names = [np.frombuffer(bytes.fromhex(elite.creature), np.uint8) for elite in elites]
     operators = [search.OPERATORS.index(elite.operator) for elite in elites]
@@ -96,7 +96,7 @@ def _entries(plan: Plan, elites: tuple[Elite, ...], parents: np.ndarray) -> Line
 
 
 def document(plan: Plan, state: State, cell: int) -> dict[str, Any]:
-    """The creature file of a cell's elite."""
+    """Return the creature file of a cell's elite."""
     elites = jax.tree.map(lambda x: np.asarray(x)[cell], state.elites)
     entry = np.flatnonzero(state.lineage.cell == cell)[-1]
     elite = _elite(
@@ -128,7 +128,7 @@ def measurement(
     room: tuple[int, int] | None = None,
     plugins: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
-    """The part `measured` of a creature file."""
+    """Return the part `measured` of a creature file."""
     return {
         "fitness": fitness,
         "descriptors": {name: measures[name] for name in descriptors},

@@ -89,7 +89,7 @@ class Offspring:
     """The earlier state of each emitter some of whose children were replaced; else None."""
 
     def kept(self, states: tuple[Any, ...]) -> tuple[Any, ...]:
-        """The states; an emitter must not learn from children that replaced its own."""
+        """Return the states; an emitter must not learn from children that replaced its own."""
         if self.untold is None:
             return states
         pairs = zip(states, self.untold, strict=True)
@@ -108,7 +108,7 @@ def refuse_lacking(plan: Plan) -> None:
 def next_offspring(
     plan: Plan, programs: Programs, state: State, stop: Callable[[], bool]
 ) -> Offspring:
-    """The next generation's children."""
+    """Return the next generation's children."""
     first, initial = state.generation * plan.batch, state.initial
     if initial is None or first >= len(initial.creature):
         return _emitted(plan, programs, state, state.elites, state.creatures, stop)

@@ -35,7 +35,7 @@ def disturb(
     generation: Int[Array, ""],
     sample: int,
 ) -> Disturbance:
-    """The conditions in every cell, derived from seed, generation, sample and cell."""
+    """Return the conditions in every cell, derived from seed, generation, sample and cell."""
     turn = jax.random.fold_in(jax.random.fold_in(key, generation), SAMPLES + sample)
     keys = jax.vmap(lambda cell: jax.random.fold_in(turn, cell))(jnp.arange(cells))
     return jax.vmap(lambda key: disturbance(reevaluation.spread, reevaluation.size, key=key))(
@@ -44,7 +44,7 @@ def disturb(
 
 
 def due(plan: Plan, state: State) -> bool:
-    """Whether elites are reevaluated after the state's generation."""
+    """Return whether elites are reevaluated after the state's generation."""
     last = bool(state.ended) or state.generation >= plan.generations
     return plan.reevaluation is not None and (
         last or state.generation % plan.reevaluation.every == 0
@@ -52,13 +52,13 @@ def due(plan: Plan, state: State) -> bool:
 
 
 def early(plan: Plan, state: State) -> bool:
-    """Whether reevaluation happens only because this is the last generation."""
+    """Return whether reevaluation happens only because this is the last generation."""
     assert plan.reevaluation is not None
     return not state.ended and state.generation % plan.reevaluation.every != 0
 
 
 def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bool]) -> State:
-    """The state with every elite reevaluated; raises `Stopped` as `advance` does."""
+    """Return the state with every elite reevaluated; raises `Stopped` as `advance` does."""
     assert plan.reevaluation is not None
     began = time.monotonic()
     done = np.asarray(state.elites.occupied)

@@ -22,8 +22,8 @@ from . import table_file
 from .lineage import identity, measurement
 from .table_file import Table
 
-SHRINK = 4.0
-"""A trial is so much shorter than the one before."""
+TRIAL_RATIO = 4.0
+"""Each trial is shorter than the one before by this factor."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ class Refinement:
         )
         best = self._best(state, found)
         if best is None:
-            row, length = _unchanged(state), state.length / SHRINK
+            row, length = _unchanged(state), state.length / TRIAL_RATIO
         else:
             row = self._row(state, found, best, tried.genes[best])
             longest = 0 < tried.lengths[best] == tried.lengths[0]
@@ -155,7 +155,7 @@ class Refinement:
         return found
 
     def _best(self, state: State, found: search.Evaluation) -> int | None:
-        """The fittest feasible trial in the creature's cell, if fitter than before."""
+        """Return the fittest feasible trial in the creature's cell, if fitter than before."""
         cells = np.asarray(self.cells.of(jnp.asarray(found.measures)))
         home = self._home(state) if state.table.rows else cells[0]
         fitness = np.where((found.status == 0) & (cells == home), found.fitness, -np.inf)
@@ -228,7 +228,7 @@ def trials_along(genes: np.ndarray, rows: np.ndarray, length: float, count: int)
     is orthogonal to the other rows, the slopes of descriptors."""
     fitness, descriptors = rows[0], rows[1:]
     ways = np.stack([_unit(fitness), _unit(_without(fitness, descriptors))])
-    lengths = length / SHRINK ** np.arange((count + 1) // 2)
+    lengths = length / TRIAL_RATIO ** np.arange((count + 1) // 2)
     trials = genes[None, None] + lengths[:, None, None] * ways[None]
     trials = trials.reshape(-1, len(genes))[:count].astype(genes.dtype)
     return Trials(trials, np.repeat(lengths, 2)[:count], float(np.linalg.norm(fitness)))

@@ -12,7 +12,7 @@ class OtherDevice(ValueError):
 def devices_of(
     spec: str, device: str, attributes: dict[str, str], other_device: bool
 ) -> tuple[str, ...]:
-    """The kinds of device of a file and, last, the present one.
+    """Return the kinds of device of a file and, last, the present one.
 
     Raises `ValueError` for another spec, and `OtherDevice` for another kind of device unless
     `other_device` allows it.

@@ -19,12 +19,12 @@ from .table_file import Table
 LINEAR_FROM = 16_000
 """Nodes from which the exponent is fitted: below, fixed costs of a call count."""
 
-FEWEST = 3
-"""Least number of points of a fit; smaller ones are added if needed."""
+MIN_POINTS = 3
+"""Minimum number of points of a fit; smaller counts of nodes are added if needed."""
 
 
 def report(state: Table, rows: tuple[Row, ...]) -> Report:
-    """The exponents so far. Times are a machine's: no second run repeats them."""
+    """Return the report with the exponents so far. Times depend on the machine."""
     return Report(
         generation=state.generation,
         evaluations=state.generation,
@@ -45,12 +45,13 @@ def summary(rows: Sequence[Mapping[str, Any]]) -> dict[str, Value]:
     pairs = [row for row in sound if row["method"] == "all-pairs"]
     memory = [row["memory_bytes"] for row in ours if row["memory_bytes"] is not None]
     counts = sorted(row["nodes"] for row in ours)
-    start = min(LINEAR_FROM, counts[-FEWEST]) if len(counts) >= FEWEST else LINEAR_FROM
+    start = min(LINEAR_FROM, counts[-MIN_POINTS]) if len(counts) >= MIN_POINTS else LINEAR_FROM
+    largest_pairs = [(r["nodes"], r["seconds"]) for r in pairs[-MIN_POINTS:]]
     large = [(r["nodes"], r["seconds"] - r["fluid"]) for r in ours if r["nodes"] >= start]
     return {
         "exponent": _exponent(large),
         "exponent_from": start,
-        "exponent_all_pairs": _exponent([(r["nodes"], r["seconds"]) for r in pairs[-FEWEST:]]),
+        "exponent_all_pairs": _exponent(largest_pairs),
         "peak_memory_bytes": max(memory, default=None),
     }
 

@@ -94,7 +94,7 @@ class Plan:
     limits: Limits = Limits()
     reevaluation: Reevaluation | None = None
     force_free: bool = True
-    """Whether bodies cannot push themselves; if not, swimming may be an artefact."""
+    """True if bodies cannot push themselves; if not, swimming may be an artefact."""
 
     measures: tuple[str, ...] = search.MEASURES
     """Names of the measures of every creature, in this order."""
@@ -119,7 +119,7 @@ class Plan:
 
     @property
     def key(self) -> PRNGKeyArray:
-        """The key that all others derive from."""
+        """Return the key that all others derive from."""
         return jax.random.key(self.seed, impl="threefry2x32")
 
     @property
@@ -189,7 +189,7 @@ class State(eqx.Module):
 
 
 def prolonged(state: State) -> State:
-    """The last state of a run as in a run with more generations."""
+    """Return the last state of a run as in a run with more generations."""
     if state.unrepeated is None:
         return state
     curves = state.curves.copy()
@@ -198,7 +198,7 @@ def prolonged(state: State) -> State:
 
 
 def start(plan: Plan) -> State:
-    """The state before the first generation."""
+    """Return the state before the first generation."""
     none, names = np.zeros(0, np.int32), np.zeros((0, 32), np.uint8)
     descriptors = np.zeros((0, len(plan.axes)), np.float32)
     no_genotypes = jax.tree.map(lambda x: np.zeros((0, *x.shape), x.dtype), plan.genotype)
@@ -238,7 +238,7 @@ def start(plan: Plan) -> State:
 
 
 def _founded(plan: Plan, emitter: search.Emitter, kept: PyTree[Array]) -> PyTree[Array]:
-    """The state of an emitter; a population starts from the initial creatures."""
+    """Return the state of an emitter; a population starts from the initial creatures."""
     if plan.initial is None or not isinstance(emitter, PopulationEmitter):
         return kept
     networks = jax.tree.map(jnp.asarray, plan.initial.genotypes)

@@ -28,7 +28,7 @@ class Table:
     """Kinds of device that computed it, the present one last."""
 
     def grown(self, rows: tuple[Row, ...]) -> "Table":
-        """The table with the rows of one more generation."""
+        """Return the table with the rows of one more generation."""
         return replace(self, generation=self.generation + 1, rows=self.rows + rows)
 
 
@@ -101,7 +101,7 @@ def save(spec: str, table: Table, arrays: file.Tree | None = None) -> bytes:
 
 
 def restore(spec: str, device: str, data: bytes, *, other_device: bool) -> Table:
-    """The table in a file of the same spec; raises like `archive_file.restore`."""
+    """Return the table in a file of the same spec; raises like `archive_file.restore`."""
     tree, attributes = file.load(data)
     try:
         devices = devices_of(spec, device, attributes, other_device)

@@ -7,7 +7,7 @@ Plane = Float[Array, "x y"]
 
 
 def splat(positions: Float[Array, "node 2"], size: tuple[int, int], width: float) -> Plane:
-    """The sum over nodes of exp(−r²/2σ²), σ = `width` cells, in a periodic box.
+    """Return the sum over nodes of exp(−r²/2σ²), σ = `width` cells, in a periodic box.
 
     Of each node the nearest image alone counts, so that the box must be many widths wide.
     """
@@ -25,5 +25,5 @@ def saturated(density: Plane) -> Plane:
 
 
 def unsaturated(density: Plane) -> Plane:
-    """The density itself."""
+    """Return the density itself."""
     return density

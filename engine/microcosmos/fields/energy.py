@@ -61,7 +61,7 @@ def diffuse(field: Plane, diffusion: Float[Array, ""]) -> Plane:
 
 
 def collect(field: Plane, coverage: Plane, rate: Float[Array, ""]) -> tuple[Plane, Plane]:
-    """The field after consumption, and the part for each unit of coverage.
+    """Return the field after consumption, and the part for each unit of coverage.
 
     `coverage` is the number of nodes over each cell; together they take at most all. A node's
     part is the second plane interpolated at it; the parts sum to the consumed energy.

@@ -57,7 +57,7 @@ def in_chunks(
 
 
 def _repeat(pairs: np.ndarray, bodies: int, members: int) -> bool:
-    """Whether every body has the same pairs of its own members."""
+    """Return whether every body has the same pairs of its own members."""
     if len(pairs) % bodies:
         return False
     relative = pairs.reshape(bodies, -1, 2) - members * np.arange(bodies)[:, None, None]

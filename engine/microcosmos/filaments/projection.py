@@ -51,12 +51,12 @@ class Rest(eqx.Module):
 
 
 def wrap(angle: Float[Array, "*shape"]) -> Float[Array, "*shape"]:
-    """The same angle within ±π; its gradient is 1."""
+    """Return the same angle within ±π; its gradient is 1."""
     return angle - 2 * jnp.pi * jax.lax.stop_gradient(jnp.round(angle / (2 * jnp.pi)))
 
 
 def edge_angles(positions: Positions, rods: Rods) -> Angles:
-    """The direction of every edge, in radians."""
+    """Return the direction of every edge, in radians."""
     v = positions[rods.edges[:, 1]] - positions[rods.edges[:, 0]]
     return jnp.arctan2(v[:, 1], v[:, 0])
 

@@ -66,7 +66,7 @@ def adjoint(inputs: Inputs, h: Populations) -> Inputs:
 
 
 def _back(bars: list[Plane]) -> tuple[Plane, Plane]:
-    """The transpose of `along`, summed over the four pairs of directions."""
+    """Return the transpose of `along`, summed over the four pairs of directions."""
     x, y, diagonal, antidiagonal = bars
     return x + (diagonal + antidiagonal), y + (diagonal - antidiagonal)
 

@@ -39,7 +39,7 @@ def advance(
     rates: Rates,
     surroundings: Surroundings,
 ) -> Populations:
-    """Collide, stream, return from walls what would have entered them, feed the sponge.
+    """Collide, stream, bounce back at walls, and relax the sponge.
 
     `rho` and `momentum` are the moments of `f`, without force; `force` is what bodies add.
     """

@@ -19,7 +19,7 @@ class CPPNControl:
     controls: Controls
     room: tuple[int, int]
     recurrent: bool = False
-    """Whether networks may have cycles; their nodes then keep values between steps."""
+    """True if networks may have cycles; their nodes then keep values between steps."""
 
     def newcomer(self, *, key: PRNGKeyArray) -> CPPN:
         return minimal(key, self.controls.inputs, OUTPUTS, *self.room)

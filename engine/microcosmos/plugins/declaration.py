@@ -16,7 +16,7 @@ Size = Annotated[int, Field(ge=0, le=65_536)]
 
 
 def is_plugin(name: object) -> bool:
-    """Whether a name is that of a plug-in: it contains a dot, built-in names do not."""
+    """Return whether a name is that of a plug-in: it contains a dot, built-in names do not."""
     return isinstance(name, str) and FULL_NAME.fullmatch(name) is not None
 
 

@@ -30,10 +30,10 @@ from .evaluation import mapped as mapped
 from .evaluation import motion_of as motion_of
 from .evaluation import never as never
 from .evaluation import simulate as simulate
+from .gradient_report import Health as Health
+from .gradient_report import gradient_health as gradient_health
 from .gradients import Slopes as Slopes
 from .gradients import slopes as slopes
-from .health import Health as Health
-from .health import gradient_health as gradient_health
 from .insertion import Elites as Elites
 from .insertion import Inserted as Inserted
 from .insertion import candidates as candidates

@@ -21,7 +21,7 @@ class Adam(eqx.Module):
 
 
 def begin(genes: Float[Array, "gene"]) -> Adam:
-    """The state before the first step."""
+    """Return the state before the first step."""
     none = jnp.zeros_like(genes)
     return Adam(jnp.zeros((), jnp.int32), none, none)
 
@@ -29,7 +29,7 @@ def begin(genes: Float[Array, "gene"]) -> Adam:
 def descend(
     adam: Adam, slope: Float[Array, "gene"], rate: float | Float[Array, ""]
 ) -> tuple[Float[Array, "gene"], Adam]:
-    """The descending change of genes, and the new state."""
+    """Return the descending change of genes, and the new state."""
     count = adam.count + 1
     mean = BETA_1 * adam.mean + (1 - BETA_1) * slope
     square = BETA_2 * adam.square + (1 - BETA_2) * slope * slope

@@ -33,7 +33,7 @@ class Axis(eqx.Module):
         return (value - low) / (high - low)
 
     def bin(self, value: Float[Array, "*batch"]) -> Int[Array, "*batch"]:
-        """Numbers of half-open bins; values beyond an end are in the last one."""
+        """Return numbers of half-open bins; values beyond an end are in the outer bin."""
         place = jnp.floor(self.place(value) * self.bins)
         return jnp.clip(place, 0, self.bins - 1).astype(jnp.int32)
 
@@ -55,7 +55,7 @@ class Grid(eqx.Module):
         return np.stack([x.ravel() for x in mesh], 1).astype(np.float32)
 
     def of(self, measures: Measures) -> Int[Array, "row"]:
-        """The number of each row's cell."""
+        """Return the number of each row's cell."""
         cell = jnp.zeros(measures.shape[0], jnp.int32)
         for axis in self.axes:
             cell = cell * axis.bins + axis.bin(measures[:, axis.measure])
@@ -82,7 +82,7 @@ class Voronoi(eqx.Module):
         return np.asarray(self.centroids)
 
     def of(self, measures: Measures) -> Int[Array, "row"]:
-        """The number of each row's cell."""
+        """Return the number of each row's cell."""
         place = places(measures, self.axes)
         if self.near is None:
             return _first_least(place, lambda axis: self.centroids[None, :, axis])
@@ -118,13 +118,13 @@ def places(measures: Measures, axes: tuple[Axis, ...]) -> Places:
 
 
 def sound(measures: Measures, axes: tuple[Axis, ...]) -> Bool[Array, "row"]:
-    """Whether all descriptors are finite."""
+    """Return whether all descriptors are finite."""
     chosen = jnp.stack([measures[:, axis.measure] for axis in axes], 1)
     return jnp.all(jnp.isfinite(chosen), 1)
 
 
 def boxes(cells: int, axes: int) -> int:
-    """Boxes along each axis of the coarse grid, about one a centroid."""
+    """Return the boxes along each axis of the coarse grid; about one box per centroid."""
     return max(1, int(cells ** (1 / axes) + 1e-9))
 
 
@@ -139,7 +139,7 @@ def candidates(centroids: np.ndarray) -> np.ndarray | None:
     middles = np.stack(np.meshgrid(*[(np.arange(side) + 0.5) / side] * axes, indexing="ij"), -1)
     middles, half = middles.reshape(-1, axes), np.sqrt(axes) / 2 / side
     tree = KDTree(centroids.astype(np.float64))
-    reach = tree.query(middles)[0] + 2 * half + 1e-4  # More than what float32 rounds away.
+    reach = tree.query(middles)[0] + 2 * half + 1e-4  # A margin above the rounding of float32.
     counts = tree.query_ball_point(middles, reach, return_length=True)
     if len(middles) * counts.max() > LISTED:
         return None
@@ -151,6 +151,6 @@ def candidates(centroids: np.ndarray) -> np.ndarray | None:
 
 
 def _first_least(place: Places, of_axis: Callable[[int], Array]) -> Int[Array, "row"]:
-    """The index of the nearest candidate to each place, the first of equal ones."""
+    """Return the index of the nearest candidate to each place, the first of equal ones."""
     squares = [(place[:, i, None] - of_axis(i)) ** 2 for i in range(place.shape[1])]
     return jnp.argmin(sum(squares[1:], squares[0]), 1).astype(jnp.int32)

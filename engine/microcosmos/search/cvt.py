@@ -17,19 +17,19 @@ from scipy.spatial import KDTree
 
 from ..archive.atomic import write_whole
 
-METHOD = "lloyd/1"
-"""Part of the name on disk; count it up if the same numbers give other centroids."""
+CACHE_VERSION = "lloyd/1"
+"""Version in the cache's file names; change it if the same arguments give other centroids."""
 
 SAMPLES = 10
-"""Samples a centroid; at least `LEAST` in all."""
-LEAST = 50_000
+"""Samples per centroid; at least `MIN_SAMPLES` in all."""
+MIN_SAMPLES = 50_000
 ROUNDS = 10
 
 Points = Float[np.ndarray, "point axis"]
 
 
 def centroids(cells: int, axes: int, seed: int) -> Points:
-    """Float32 centroids, the same for the same numbers; from disk if cached."""
+    """Return float32 centroids, the same for the same arguments; from disk if cached."""
     path = folder() / f"{name(cells, axes, seed)}.npy"
     kept = _kept(path, (cells, axes))
     if kept is not None:
@@ -38,7 +38,7 @@ def centroids(cells: int, axes: int, seed: int) -> Points:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, _npy(found))
-    except OSError:  # A folder that cannot be written costs time only.
+    except OSError:  # Without the cache the result is the same.
         pass
     return found
 
@@ -47,8 +47,8 @@ def lloyd(cells: int, axes: int, seed: int) -> Points:
     """Centroids by Lloyd's algorithm: each becomes the mean of its nearest samples."""
     random = np.random.Generator(np.random.PCG64(seed))
     points = spread(cells, axes, random.random(axes))
-    samples = spread(max(LEAST, SAMPLES * cells), axes, random.random(axes))
-    samples = samples[np.lexsort(np.floor(samples * 64).T)]  # Near ones together, for caches.
+    samples = spread(max(MIN_SAMPLES, SAMPLES * cells), axes, random.random(axes))
+    samples = samples[np.lexsort(np.floor(samples * 64).T)]  # Neighbours together, for caches.
     for _ in range(ROUNDS):
         tree = KDTree(points, balanced_tree=False, compact_nodes=False)
         nearest = tree.query(samples, workers=-1)[1]
@@ -73,7 +73,7 @@ def spread(count: int, axes: int, shift: Float[np.ndarray, "axis"]) -> Points:
 
 
 def folder() -> Path:
-    """The folder of the cache: in XDG_CACHE_HOME, else the platform's."""
+    """Return the folder of the cache: in XDG_CACHE_HOME, else the platform's."""
     places = {"darwin": Path.home() / "Library" / "Caches"}
     if os.name == "nt" and "LOCALAPPDATA" in os.environ:
         places["win32"] = Path(os.environ["LOCALAPPDATA"])
@@ -82,8 +82,8 @@ def folder() -> Path:
 
 
 def name(cells: int, axes: int, seed: int) -> str:
-    """The SHA-256 of all that determines the centroids."""
-    text = f"{METHOD} {cells} {axes} {seed} {SAMPLES} {LEAST} {ROUNDS}"
+    """Return the SHA-256 of all that determines the centroids."""
+    text = f"{CACHE_VERSION} {cells} {axes} {seed} {SAMPLES} {MIN_SAMPLES} {ROUNDS}"
     return hashlib.sha256(text.encode()).hexdigest()
 
 

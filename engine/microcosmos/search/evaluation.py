@@ -47,7 +47,7 @@ class Goal(eqx.Module):
     displacement: float = eqx.field(static=True, default=1.0)
     energy: float = eqx.field(static=True, default=0.0)
     plugin: str | None = eqx.field(static=True, default=None)
-    """The name of the task's own measure that is all of it."""
+    """Name of the plug-in measure that replaces both terms; None: displacement and energy."""
 
 
 class Task(eqx.Module):
@@ -90,7 +90,7 @@ def measured(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
 
 
 def elsewhere(driven: Drive, shift: Int[Array, "2"]) -> Drive:
-    """The simulation with the energy moved by `shift` cells."""
+    """Return the simulation with the energy moved by `shift` cells."""
     assert driven.start.energy is not None
     energy = jnp.roll(driven.start.energy, shift, (0, 1))
     return replace(driven, start=replace(driven.start, energy=energy))
@@ -109,7 +109,7 @@ def _measured(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
 
 
 def drive(task: Task, actuator: Actuator) -> Drive:
-    """The simulation of a genotype, or of a body that follows rest shapes."""
+    """Return the simulation of a genotype, or of a body that follows rest shapes."""
     if isinstance(actuator, Rest) or task.encoding is None:
         return Drive(task.world, task.start, actuator)
     return task.encoding.drive(task.world, task.start, actuator, task.phase)
@@ -120,7 +120,7 @@ def simulate(
     see: Callable[[State, Measures], Any] = observe,
     segment: int | None = None,
 ) -> tuple[State, Any]:
-    """The state at the end, and the observations after each step."""
+    """Return the state at the end, and the observations after each step."""
     go_on = partial(rollout, control=driven.control, remember=driven.remember, segment=segment)
     return go_on(driven.world, driven.start, driven.inputs, see)
 
@@ -136,8 +136,10 @@ def motion_of(task: Task, driven: Drive, end: State, observed: Measures) -> dict
 
 
 def fitness_of(task: Task, values: Mapping[str, Any]) -> Scalar:
-    """Displacement in cells, collected energy, or both, as the goal weighs them; or a measure
-    of a plug-in."""
+    """Return displacement in cells and collected energy, weighted by the goal.
+
+    A goal may name a plug-in's measure instead.
+    """
     goal = task.goal
     if goal.plugin is not None:
         return values[goal.plugin]
@@ -155,20 +157,20 @@ def status(world: World, end: State, measures: Float[Array, "measure"]) -> Int[A
     last = jnp.sqrt(jnp.max(jnp.sum(u * u, 0)))
     fastest = jnp.maximum(measures[MEASURES.index("mach")], units.mach(last))
     finite = jnp.all(jnp.isfinite(measures)) & jnp.isfinite(fastest)
-    # At the lattice's speed of sound the expansion in Mach number means nothing any more.
+    # The expansion in Mach number is invalid from the lattice's speed of sound.
     return jnp.where(finite, jnp.where(fastest < 1, 0, 2), 1)
 
 
 def block_program(function: Callable) -> Callable:
-    """One compiled program for a function of every item of a block, such as genotypes."""
+    """Compile a program that applies a function to every item of a block, such as genotypes."""
     return jax.jit(lambda block: mapped(function, block), compiler_options=compiler_options())
 
 
 def mapped(function: Callable, block: PyTree[Array]) -> Any:
-    """A function of every item of a block: one after another on a CPU, elsewhere a batch.
+    """Apply a function to every item of a block: in turn on a CPU, elsewhere as a batch.
 
     On a CPU one world fits in a core's cache and a block keeps one core busy (measured
-    faster than a batch, with a device a core).
+    faster than a batch, with one device per core).
     """
     if jax.default_backend() == "cpu":
         return jax.lax.map(function, block)
@@ -193,7 +195,7 @@ def evaluate_blocks(
     block: int,
     stop: Callable[[], bool] = never,
 ) -> Found:
-    """Evaluate networks (or other items) of NumPy arrays, their number first.
+    """Evaluate networks (or other items) in NumPy arrays whose first axis counts them.
 
     The last block is padded with its first item. Each device has one block in flight. Raises
     `Stopped` if `stop` is true before a block.

@@ -48,7 +48,7 @@ class Descent(eqx.Module):
 
 
 def loss(descent: Descent, genes: Float[Array, "gene"], picture: Plane) -> Float[Array, ""]:
-    """The mean squared difference between density and picture at the end."""
+    """Return the mean squared difference between density and picture at the end."""
     driven = drive(descent.task, Vector(genes))
     end, _ = simulate(driven, lambda state, measures: None, segment=descent.segment)
     found = fields.splat(end.positions, descent.task.world.size, descent.width)

@@ -37,7 +37,7 @@ Values = dict[str, Float[Array, "..."]]
 
 
 def parts(task: Task, actuator: Actuator, names: tuple[str, ...] = PARTS) -> Values:
-    """The present values of parts of a creature.
+    """Return the present values of parts of a creature.
 
     `genes` are the weights, then the biases of a network, or a vector's numbers.
     `rest_angle` in rad is added to every joint's rest angle and `rest_length` to the logarithm
@@ -62,7 +62,7 @@ def parts(task: Task, actuator: Actuator, names: tuple[str, ...] = PARTS) -> Val
 
 
 def changed(task: Task, actuator: Actuator, values: Values) -> Drive:
-    """The simulation of a creature whose parts have other values.
+    """Return the simulation of a creature whose parts have other values.
 
     Stiffnesses are those of the body before a genotype grows it.
     """
@@ -130,7 +130,7 @@ def value_and_jacobian(
     horizon: int | None = None,
     segment: int | None = None,
 ) -> tuple[Float[Array, "output"], Values]:
-    """The result of `measures`, and its derivatives by each of `values`, outputs first.
+    """Return the result of `measures`, and its derivatives by each of `values`, outputs first.
 
     `segment` is that of `world.rollout`: without it the memory grows with the horizon.
     """
@@ -150,7 +150,7 @@ def genes_of(actuator: Any) -> Float[Array, "gene"]:
 
 
 def with_genes(actuator: Any, genes: Float[Array, "gene"]) -> Any:
-    """The actuator with other genes; see `genes_of`."""
+    """Return the actuator with other genes; see `genes_of`."""
     if isinstance(actuator, Vector):
         return Vector(genes)
     assert isinstance(actuator, CPPN)
@@ -163,7 +163,7 @@ class Slopes(eqx.Module):
 
     rows: Float[Array, "*block output gene"]
     sound: Bool[Array, "*block"]
-    """Whether the simulation and all derivatives stayed finite."""
+    """True if the simulation and all derivatives stayed finite."""
 
 
 def slopes(

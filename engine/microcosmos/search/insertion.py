@@ -11,9 +11,9 @@ from jaxtyping import Array, Bool, Float, Int, UInt32
 from ..genomes import Genotype, words
 from .cells import Cells, sound
 
-LAST = np.int32(np.iinfo(np.int32).max)
-TOP = np.uint32(1 << 31)
-"""Maps unsigned numbers, in their order, to signed ones."""
+MAX_INT = np.int32(np.iinfo(np.int32).max)
+SIGN_BIT = np.uint32(1 << 31)
+"""Flipping this bit maps unsigned integers to signed ones in the same order."""
 
 
 class Elites(eqx.Module):
@@ -60,13 +60,13 @@ class Inserted(eqx.Module):
     """Cells; the number of cells for rows that cannot enter any."""
     entered: Bool[Array, "row"]
     fresh: Bool[Array, "row"]
-    """Whether the cell was empty before."""
+    """True if the cell was empty before."""
     improvement: Float[Array, "row"]
     """Fitness above the cell's earlier elite; above 0 if the cell was empty."""
 
 
 def clipped(candidates: Elites, cells: Cells) -> int:
-    """The number of sound candidates beyond an end of an axis, which its last bin takes."""
+    """Count the sound candidates beyond an end of an axis; its outer bins take them."""
     beyond = np.zeros(len(candidates.occupied), bool)
     for axis in cells.axes:
         value = np.asarray(candidates.measures)[:, axis.measure]
@@ -75,7 +75,7 @@ def clipped(candidates: Elites, cells: Cells) -> int:
 
 
 def insert(archive: Elites, candidates: Elites, cells: Cells) -> tuple[Elites, Inserted]:
-    """The archive with the best of each cell, and the result for each candidate.
+    """Return the archive with the best of each cell, and the result for each candidate.
 
     The order is total: fitness, then the smaller digest of the genome, then the earlier
     generation and slot. So equal creatures and equal fitness give the same archive on every
@@ -89,7 +89,7 @@ def insert(archive: Elites, candidates: Elites, cells: Cells) -> tuple[Elites, I
     there = jnp.minimum(cell, count - 1)
     fresh = able & ~archive.occupied[there]
     entered = _winners(archive, candidates, cell, there, able)
-    # Rows that do not enter are sent to places of their own beyond the archive.
+    # Rows that do not enter get distinct indices beyond the archive, which are dropped.
     place = jnp.where(entered, cell, count + jnp.arange(rows))
     before = jnp.where(fresh, 0.0, archive.fitness[there])
     improvement = jnp.where(able, candidates.fitness - before, -jnp.inf)
@@ -129,12 +129,12 @@ def _winners(
     there: Int[Array, "row"],
     able: Bool[Array, "row"],
 ) -> Bool[Array, "row"]:
-    """The candidates that come first in their cell, before its elite and each other.
+    """Return the candidates that come first in their cell, before its elite and each other.
 
     Genes decide only at equal fitness.
     """
     count = archive.occupied.shape[0]
-    elite = jnp.where(archive.occupied, _height(archive.fitness), -LAST)
+    elite = jnp.where(archive.occupied, _height(archive.fitness), -MAX_INT)
     height = _height(candidates.fitness)
     best = elite.at[cell].max(height, mode="drop")
     leads = able & (height == best[there])
@@ -155,7 +155,7 @@ def _untied(
     leads: Bool[Array, "row"],
     level: Bool[Array, "row"],
 ) -> Bool[Array, "row"]:
-    """The first of equally fit leaders by digest, generation and slot.
+    """Return the first of equally fit leaders by digest, generation and slot.
 
     `level` marks rows whose cell's elite is equally fit.
     """
@@ -163,23 +163,24 @@ def _untied(
     incumbents = jax.tree.map(lambda x: x[there], archive)
     rivals = level & leads
     for mine, theirs in zip(_rank(candidates), _rank(incumbents), strict=True):
-        least = jnp.full(count, LAST).at[jnp.where(leads, cell, count)].min(mine, mode="drop")
+        least = jnp.full(count, MAX_INT)
+        least = least.at[jnp.where(leads, cell, count)].min(mine, mode="drop")
         least = least.at[jnp.where(rivals, cell, count)].min(theirs, mode="drop")
         leads &= mine == least[there]
         rivals &= theirs == least[there]
-    # Whoever is equal to the elite in everything is that elite; of equal rows one counts.
+    # A row that equals the elite in every key is that elite. The first of equal rows wins.
     row = jnp.arange(len(leads), dtype=jnp.int32)
-    first = jnp.full(count, LAST).at[jnp.where(leads, cell, count)].min(row, mode="drop")
+    first = jnp.full(count, MAX_INT).at[jnp.where(leads, cell, count)].min(row, mode="drop")
     return leads & ~rivals & (row == first[there])
 
 
 def _rank(elites: Elites) -> tuple[Int[Array, "row"], ...]:
     """Keys of the order at equal fitness, most important first; smaller is better."""
-    ordered = jax.lax.bitcast_convert_type(digest(elites.genotypes) ^ TOP, jnp.int32)
+    ordered = jax.lax.bitcast_convert_type(digest(elites.genotypes) ^ SIGN_BIT, jnp.int32)
     return ordered[:, 0], ordered[:, 1], elites.generation, elites.slot
 
 
 def _height(fitness: Float[Array, "row"]) -> Int[Array, "row"]:
-    """Integers in the order of finite float32 numbers, −0 as 0, denormal ones among them."""
+    """Map finite float32 numbers to integers in the same order, −0 as 0, denormals too."""
     bits = jax.lax.bitcast_convert_type(fitness.astype(jnp.float32), jnp.int32)
-    return jnp.where(bits < 0, -(bits & LAST), bits)
+    return jnp.where(bits < 0, -(bits & MAX_INT), bits)

@@ -118,9 +118,9 @@ def symmetry(found: Curvature, kept: Bool[Array, "joint"] | None = None) -> Scal
 
 
 def efficiency(speed: Scalar, power: Scalar, viscosity: Scalar) -> Scalar:
-    """ν U² / P: the power that drags a unit resistance along over the power that is spent.
+    """Return ν U² / P: the power to drag a unit resistance over the power spent.
 
-    0 where no power is spent on the whole.
+    It is 0 where the total power is not positive.
     """
     spent = power > 1e-20
     return jnp.where(spent, viscosity * speed**2 / jnp.where(spent, power, 1.0), 0.0)

@@ -93,7 +93,7 @@ def evaluate_disturbed(task: Task, genotype: Genotype, changed: Disturbance) -> 
 
 
 def moved(start: State, changed: Disturbance) -> State:
-    """The start with the body turned and moved, and the energy moved."""
+    """Return the start with the body turned and moved, and the energy moved."""
     c, s = jnp.cos(changed.turn), jnp.sin(changed.turn)
     middle = jnp.mean(start.positions, 0)
     x, y = (start.positions - middle[None]).T

@@ -43,7 +43,7 @@ class Watched(eqx.Module):
 
 
 def watch(world: World, state: State, measures: Measures) -> Watched:
-    """The observations, the Mach number of the whole flow, and the forces of bodies."""
+    """Return the observations, the Mach number of the whole flow, and the forces of bodies."""
     assert measures.force is not None
     u = flow(world, state)
     fastest = jnp.sqrt(jnp.max(jnp.sum(u * u, 0)))
@@ -51,7 +51,7 @@ def watch(world: World, state: State, measures: Measures) -> Watched:
 
 
 def impulse(watched: Watched) -> Float[Array, ""]:
-    """The largest net momentum that a body has given away, over all times."""
+    """Return the largest net momentum that a body has given away, over all times."""
     return jnp.max(jnp.sqrt(jnp.sum(jnp.cumsum(watched.force, 0) ** 2, -1)))
 
 

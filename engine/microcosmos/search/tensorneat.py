@@ -25,7 +25,7 @@ State = Any
 
 
 def available() -> bool:
-    """Whether the package can be imported."""
+    """Return whether the package can be imported."""
     return find_spec("tensorneat") is not None
 
 
@@ -48,18 +48,18 @@ class Backend:
     """Names for its genomes, for `networks.read_tensorneat`."""
 
     def setup(self, seed: int) -> State:
-        """The first population."""
+        """Return the first population."""
         key = import_module("tensorneat.common").State(randkey=jax.random.PRNGKey(seed))
         # Names in another order would compile the program again.
         return self.from_arrays(self.to_arrays(self.algorithm.setup(key)))
 
     def ask(self, state: State) -> tuple[np.ndarray, np.ndarray]:
-        """The genomes to measure: nodes and connections, (individual, row, column)."""
+        """Return the genomes to measure: nodes and connections, (individual, row, column)."""
         nodes, connections = self.algorithm.ask(state)
         return np.asarray(nodes), np.asarray(connections)
 
     def tell(self, state: State, fitness: Float[np.ndarray, "individual"]) -> State:
-        """The next population; a NaN fitness counts as worst."""
+        """Return the next population; a NaN fitness counts as worst."""
         values = np.asarray(fitness, np.float32)
         return self.next_state(state, jnp.asarray(np.where(np.isnan(values), -np.inf, values)))
 
@@ -68,7 +68,7 @@ class Backend:
         return _flat(state, "")
 
     def from_arrays(self, arrays: Mapping[str, np.ndarray | Array]) -> State:
-        """The state of such arrays, bit for bit."""
+        """Return the state of such arrays, bit for bit."""
         states = import_module("tensorneat.common")
         named = {name: jnp.asarray(arrays[name]) for name in sorted(arrays)}
         plain = {name: x for name, x in named.items() if "." not in name}

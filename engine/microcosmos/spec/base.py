@@ -20,7 +20,7 @@ class Part(BaseModel):
 
 
 def unit(name: str) -> JsonDict:
-    """The unit of a field, for forms and the reference."""
+    """Return the unit of a field, for forms and the reference."""
     return {"unit": name}
 
 

@@ -158,7 +158,7 @@ class PluginBody(Part):
 
 
 def _tag(value: Any) -> Any:
-    """The tag of a body; one without a builder is a chain."""
+    """Return the tag of a body; one without a builder is a chain."""
     if isinstance(value, dict):
         name = value.get("builder", "chain")
     else:
@@ -208,7 +208,7 @@ def estimated_shape(body: Body) -> bodies.Body:
 
 
 def is_unavailable(body: Body) -> bool:
-    """Whether a plug-in builds the body whose version is not loaded in this process."""
+    """Return whether a plug-in builds the body whose version is not loaded in this process."""
     if not isinstance(body, PluginBody):
         return False
     try:
@@ -261,7 +261,7 @@ def _graph(body: PluginBody, made: bodies.Body) -> Graph:
 
 
 def _node_count(body: Elastic) -> float:
-    """The approximate number of nodes of builders whose fields alone do not bound it."""
+    """Return the approximate number of nodes of builders whose fields alone do not bound it."""
     match body:
         case Star():
             return 1 + body.arms * body.arm_nodes

@@ -38,7 +38,7 @@ class Coupling(Part):
 
     @property
     def force_free(self) -> bool:
-        """Whether a body cannot push itself; if it can, its swimming may be an artefact."""
+        """Return whether bodies cannot push themselves; if not, swimming may be an artefact."""
         return self.projection != "none"
 
     @model_validator(mode="after")

@@ -39,7 +39,7 @@ class Drawn:
     edges: np.ndarray
     """(edge, 2) numbers of drawn nodes."""
     whole: bool = True
-    """Whether every filament is drawn."""
+    """True if every filament is drawn."""
 
 
 @dataclass(frozen=True)

@@ -206,7 +206,7 @@ Controller = Annotated[
 
 
 def max_stretch(control: Controller) -> float:
-    """The largest share of its length by which a controller may stretch a body."""
+    """Return the largest share of its length by which a controller may stretch a body."""
     if isinstance(control, Shaping) and control.rest_length is not None:
         return control.rest_length.high * (1 + control.length_scale) - 1
     return control.length_scale

@@ -91,7 +91,7 @@ class Evolution(Part, Generic[Name, How]):
 
     @property
     def scene(self) -> Scene:
-        """The scene of every creature."""
+        """Return the scene of every creature."""
         return Scene(
             world=self.world,
             body=self.body if is_unavailable(self.body) else resolved(self.body),

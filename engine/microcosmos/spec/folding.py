@@ -177,7 +177,7 @@ class Folding(Part):
 
     @property
     def scene(self) -> Scene:
-        """The scene of every filament."""
+        """Return the scene of every filament."""
         return Scene(
             world=self.world,
             body=self.body if is_unavailable(self.body) else resolved(self.body),

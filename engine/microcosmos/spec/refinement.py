@@ -40,7 +40,7 @@ class Refinement(Part):
 
     @property
     def generations(self) -> int:
-        """The unchanged creature, then every step."""
+        """Return the number of steps, and one for the unchanged creature."""
         return 1 + self.steps
 
 

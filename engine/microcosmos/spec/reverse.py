@@ -23,7 +23,7 @@ def of_state(world: World, nodes: int) -> int:
 
 
 def shortest(steps: int, step: int, state: int) -> int:
-    """The segment that takes the least memory, given the bytes of a step and a state."""
+    """Return the segment that takes the least memory, given the bytes of a step and a state."""
     return max(1, round((steps * state / step) ** 0.5))
 
 

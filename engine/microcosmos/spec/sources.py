@@ -31,7 +31,7 @@ DIGITS = "Alpaydin and Kaynak, UCI (1998), doi:10.24432/C50P49"
 
 
 def source(text: str) -> JsonDict:
-    """The source of a field, for its schema."""
+    """Return the source of a field, for its schema."""
     return {"source": text}
 
 

@@ -18,7 +18,7 @@ from .strip import strip
 ENCODER = "libx264"
 QUALITY = {"preset": "medium", "crf": "18"}
 X86 = {"x264-params": "asm=SSE4"}
-"""Gives the same film on every x86: with AVX-512, x264 differs even from run to run."""
+"""These settings give the same film on every x86: with AVX-512, x264 differs between runs."""
 
 BT709, LIMITED = 1, 1
 """The colours of films of high definition, in the numbers of H.264 and FFmpeg."""

@@ -26,7 +26,7 @@ class Film:
 
 
 def show(creature: Mapping[str, Any] | bytes | Replay, **options: Any) -> Film:
-    """The film of a creature file, the bytes of a replay, or a replay.
+    """Return the film of a creature file, the bytes of a replay, or a replay.
 
     `options` are those of `film.gif`: `width`, `frames`, `rate`, `theme`, `follow` ...
     """

@@ -54,7 +54,7 @@ def view(size: tuple[int, int], width: int, centre: np.ndarray) -> View:
 
 
 def _weights(places: np.ndarray, cells: int) -> np.ndarray:
-    """The weight (place, cell) of each cell's value at places along a periodic axis."""
+    """Return the weight (place, cell) of each cell's value at places along a periodic axis."""
     first = np.floor(places).astype(int)
     t = places - first
     spline = (
@@ -140,7 +140,7 @@ def frame(
 
 
 def frame_number(replay: Replay, number: int) -> int:
-    """The number of a frame, counted from the start."""
+    """Return the number of a frame, counted from the start."""
     if not -replay.frames <= number < replay.frames:
         raise ValueError(f"`number` must be within {replay.frames} frames, got {number}.")
     return number % replay.frames
@@ -167,7 +167,7 @@ def _table(theme: str) -> np.ndarray:
 
 
 def _grid(seen: View) -> np.ndarray:
-    """The dots (dot, 2) in view, in cells."""
+    """Return the dots (dot, 2) in view, in cells."""
     first = seen.centre - np.array(seen.size) / 2
     x, y = (
         np.arange(np.ceil(low / GRID) * GRID, low + side, GRID)
@@ -238,7 +238,7 @@ def distance(
 
 
 def coverage(distances: np.ndarray, width: float) -> np.ndarray:
-    """The share of each pixel that lines of this width cover, smoothed over a pixel.
+    """Return the share of each pixel that lines of this width cover, smoothed over a pixel.
 
     A line thinner than a pixel is drawn a pixel wide and fainter.
     """

@@ -47,7 +47,7 @@ CELL_STEPS = 3 * 10**10
 
 
 def record(file: Mapping[str, Any]) -> bytes:
-    """The replay of a creature file: a JSON header, then motion, rest shapes and planes.
+    """Return the replay of a creature file: a JSON header, then motion, rest shapes and planes.
 
     The layout is described in `docs/formats.md`. Raises `creature.CreatureError` for an
     invalid file.
@@ -170,13 +170,13 @@ def interval(scene: Scene, network_nodes: int) -> int:
 
 
 def energy_changes(scene: Scene) -> bool:
-    """Whether the energy changes during the simulation."""
+    """Return whether the energy changes during the simulation."""
     energy = scene.world.energy
     return energy is not None and (energy.consume or energy.diffusion > 0)
 
 
 def actuator_of(file: Mapping[str, Any], scene: Scene) -> search.Actuator:
-    """The genotype, or the gait's rest shapes, of a parsed creature file."""
+    """Return the genotype, or the gait's rest shapes, of a parsed creature file."""
     if isinstance(scene.control, Gait):
         return build_stroke(scene.control, scene.task.steps)
     encoding = build_encoding(scene, creature.room(file) or ROOM)
@@ -200,7 +200,7 @@ class Film(eqx.Module):
 
 @lru_cache(maxsize=16)
 def _program(scene_json: str, every: int) -> Callable[[search.Actuator], tuple]:
-    """The program from an actuator to the film and the measures.
+    """Return the program from an actuator to the film and the measures.
 
     Compiled programs are kept, so that the second creature of a run is shown at once.
     """

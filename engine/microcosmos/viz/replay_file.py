@@ -66,7 +66,7 @@ class Replay:
 
     @property
     def quantum(self) -> float:
-        """The vorticity of one level, in 1/step."""
+        """Return the vorticity of one level, in 1/step."""
         return self.header["vorticity"]["scale"] / 127
 
     @property
@@ -99,12 +99,12 @@ class Replay:
         return self.quantum * max(1, strong.max(initial=1))
 
     def step(self, number: int) -> int:
-        """The number of steps before a frame."""
+        """Return the number of steps before a frame."""
         return number * self.header["every"]
 
 
 def read_replay(data: bytes) -> Replay:
-    """The replay in these bytes. Raises `ReplayError` if they are invalid."""
+    """Return the replay in these bytes. Raises `ReplayError` if they are invalid."""
     header, start = _header(data)
     frames, nodes, (width, height) = (header[key] for key in ("frames", "nodes", "size"))
     edges, joints = len(header["edges"]), len(header["joints"])

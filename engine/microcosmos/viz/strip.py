@@ -56,7 +56,7 @@ def strip(
 
 
 def moments(replay: Replay, count: int) -> list[int]:
-    """The numbers of `count` frames, evenly from the first to the last."""
+    """Return the numbers of `count` frames, evenly from the first to the last."""
     if not 1 <= count <= replay.frames:
         raise ValueError(f"`count` must be from 1 to {replay.frames} frames, got {count}.")
     if count == 1:

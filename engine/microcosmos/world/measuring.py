@@ -27,7 +27,7 @@ class Pushed(eqx.Module):
 
 
 def measure(world: World, end: State, rest: filaments.Rest, pushed: Pushed) -> Measures:
-    """The measures of a step that ended in `end`."""
+    """Return the measures of a step that ended in `end`."""
     groups = world.groups.repeated(world.form.layers)
     speed = jnp.sqrt(jnp.sum(pushed.moved * pushed.moved, 1) + 1e-24)
     return Measures(

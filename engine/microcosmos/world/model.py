@@ -109,6 +109,6 @@ def at_rest(world: World, positions: Vectors) -> State:
 
 
 def flow(world: World, state: State) -> fluid.Vectors:
-    """The fluid's velocity in cells a step, without the half step of force."""
+    """Return the fluid's velocity in cells a step, without the half step of force."""
     momentum = fluid.momentum(state.populations)
     return jnp.stack(momentum) / fluid.density(state.populations)[None]

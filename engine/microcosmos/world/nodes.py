@@ -12,7 +12,7 @@ Vectors = Float[Array, "node 2"]
 
 
 def sense(world: World, state: State) -> Float[Array, "node"]:
-    """The energy at each node; zero in a world without energy."""
+    """Return the energy at each node; zero in a world without energy."""
     if state.energy is None:
         return jnp.zeros_like(state.positions[:, 0])
     at = coupling.windows(state.positions, world.size, world.form.kernel)
@@ -20,7 +20,7 @@ def sense(world: World, state: State) -> Float[Array, "node"]:
 
 
 def collect(world: World, state: State, at: coupling.Windows) -> State:
-    """The state after nodes took energy at their positions before the step."""
+    """Return the state after nodes took energy at their positions before the step."""
     energy, field = world.energy, state.energy
     if energy is None or field is None:
         return state

@@ -40,7 +40,7 @@ def grown_rods(rods: filaments.Rods, present: Bool[Array, "node"]) -> filaments.
 
 
 def mean(values: Float[Array, "item *rest"], kept: Bool[Array, "item"] | None):
-    """The mean of present items, over the first axis."""
+    """Return the mean of present items, over the first axis."""
     if kept is None:
         return jnp.mean(values, 0)
     mask = kept.reshape(-1, *(1,) * (values.ndim - 1))
@@ -48,5 +48,5 @@ def mean(values: Float[Array, "item *rest"], kept: Bool[Array, "item"] | None):
 
 
 def centre(world: World, state: State) -> Float[Array, "2"]:
-    """The mean unwrapped node position, in cells."""
+    """Return the mean unwrapped node position, in cells."""
     return mean(state.positions, world.present)

@@ -28,7 +28,7 @@ class Climb(eqx.Module):
     """The normal numbers behind the present children."""
     thresholds: Float[Array, "cell"]
     restart: Bool[Array, ""]
-    """Whether to begin anew at an elite."""
+    """True if the search restarts at an elite."""
 
 
 @dataclass(frozen=True)

@@ -33,9 +33,9 @@ class Ascent(eqx.Module):
     """The normal numbers behind the present weights."""
     weights: Float[Array, "slot output"]
     due: Bool[Array, ""]
-    """Whether the present children are its own; the first ones are newcomers."""
+    """True if the present children are its own; the first ones are newcomers."""
     restart: Bool[Array, ""]
-    """Whether to begin anew at an elite."""
+    """True if the search restarts at an elite."""
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ def draw(archive: Elites, *, key: PRNGKeyArray) -> Int[Array, ""]:
 
 
 def genotype(archive: Elites, cell: Int[Array, ""]) -> Genotype:
-    """The genotype of a cell's elite."""
+    """Return the genotype of a cell's elite."""
     return jax.tree.map(lambda x: x[cell], archive.genotypes)
 
 
@@ -49,7 +49,7 @@ def children(genotypes: Genotype, parents: list[Int[Array, "slot"]], name: str) 
 
 
 def either(archive: Elites, varied: Children, fresh: Children) -> Children:
-    """The varied children, or newcomers if the archive is empty."""
+    """Return the varied children, or newcomers if the archive is empty."""
     any_elite = jnp.any(archive.occupied)
     return jax.tree.map(lambda one, other: jnp.where(any_elite, one, other), varied, fresh)
 

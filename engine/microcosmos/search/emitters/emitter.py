@@ -56,7 +56,7 @@ class Outcome(eqx.Module):
     fitness: Float[Array, "slot"]
     measures: Float[Array, "slot measure"]
     sound: Bool[Array, "slot"]
-    """Whether the evaluation is feasible."""
+    """True if the evaluation is feasible."""
     cell: Int[Array, "slot"]
     entered: Bool[Array, "slot"]
     fresh: Bool[Array, "slot"]
@@ -64,7 +64,7 @@ class Outcome(eqx.Module):
 
 
 def outcome(candidates: Elites, inserted: Inserted) -> Outcome:
-    """The outcome of candidates for the archive."""
+    """Return the outcome of candidates for the archive."""
     return Outcome(
         genotypes=candidates.genotypes,
         fitness=candidates.fitness,
@@ -93,7 +93,7 @@ class Emitter(Protocol):
         ...
 
     def init(self, *, key: PRNGKeyArray) -> Kept:
-        """The state before the first generation."""
+        """Return the state before the first generation."""
         ...
 
     def emit(
@@ -103,7 +103,7 @@ class Emitter(Protocol):
         ...
 
     def tell(self, state: Kept, outcome: Outcome) -> Kept:
-        """The state once its children are measured and inserted."""
+        """Return the state once its children are measured and inserted."""
         ...
 
 
@@ -121,7 +121,7 @@ class Learner(Emitter, Protocol):
         ...
 
     def learn(self, state: Kept, children: Children, slopes: Slopes) -> tuple[Children, Kept]:
-        """The children and the state after a lesson."""
+        """Return the children and the state after a lesson."""
         ...
 
 
@@ -134,7 +134,7 @@ def emit(
     *,
     key: PRNGKeyArray,
 ) -> tuple[Children, tuple[Kept, ...], Counters]:
-    """The children of all emitters, one after another, and the emitters' new states.
+    """Return the children of all emitters, one after another, and the emitters' new states.
 
     Every slot has its own key, derived from the seed, the generation and the slot.
     """
@@ -155,7 +155,7 @@ def emit(
 def tell(
     emitters: tuple[Emitter, ...], states: tuple[Kept, ...], outcome: Outcome
 ) -> tuple[Kept, ...]:
-    """The state of each emitter after the outcome of its own children."""
+    """Return the state of each emitter after the outcome of its own children."""
     after, first = [], 0
     for emitter, state in zip(emitters, states, strict=True):
         rows = slice(first, first + emitter.slots)

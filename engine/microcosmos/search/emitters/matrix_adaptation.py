@@ -44,7 +44,7 @@ class Strategy:
 
 
 def strategy(genes: int, children: int) -> Strategy:
-    """The weights and rates of Hansen, table 1."""
+    """Return the weights and rates of Hansen, table 1."""
     half = max(1, children // 2)
     raw = log((children + 1) / 2) - np.log(np.arange(1, half + 1))
     raw = np.maximum(raw, 0.0)
@@ -66,7 +66,7 @@ def strategy(genes: int, children: int) -> Strategy:
 
 
 def start(mean: Float[Array, "gene"], sigma: float) -> Distribution:
-    """The distribution around a mean, equal in all directions."""
+    """Return the distribution around a mean, equal in all directions."""
     genes = mean.shape[0]
     eye = jnp.eye(genes, dtype=mean.dtype)
     return Distribution(mean, jnp.asarray(sigma, mean.dtype), eye, jnp.zeros_like(mean))
@@ -75,7 +75,7 @@ def start(mean: Float[Array, "gene"], sigma: float) -> Distribution:
 def restarted(
     restart: Bool[Array, ""], anew: Distribution, before: Distribution
 ) -> Distribution:
-    """The new distribution on a restart, else the one before."""
+    """Return the new distribution on a restart, else the one before."""
     return jax.tree.map(lambda one, other: jnp.where(restart, one, other), anew, before)
 
 
@@ -94,7 +94,7 @@ def update(
     order: Int[Array, "child"],
     strategy: Strategy,
 ) -> Distribution:
-    """The distribution after its children are ranked; `order` has the best first."""
+    """Return the distribution after its children are ranked; `order` has the best first."""
     w = jnp.asarray(strategy.weights, z.dtype)
     best = z[order[: len(w)]]
     d = best @ distribution.m.T
@@ -114,7 +114,7 @@ def update(
 
 
 def spent(distribution: Distribution) -> Bool[Array, ""]:
-    """Whether the distribution has converged, run away, or is not finite."""
+    """Return whether the distribution has converged, run away, or is not finite."""
     deviations = distribution.sigma * jnp.sqrt(jnp.sum(distribution.m**2, 1))
     finite = jnp.all(jnp.isfinite(distribution.m)) & jnp.all(jnp.isfinite(distribution.mean))
     useful = (jnp.max(deviations) > SMALLEST) & (jnp.max(deviations) < LARGEST)

@@ -56,7 +56,7 @@ class Neat:
         )
 
     def founded(self, state: Population, networks: CPPN) -> Population:
-        """The state with given networks in place of the first newcomers."""
+        """Return the state with given networks in place of the first newcomers."""
         count = networks.weight.shape[0]
         networks = jax.tree.map(lambda a, b: a.at[:count].set(b), state.networks, networks)
         species = neat.first_species(networks, self.settings)
@@ -65,7 +65,7 @@ class Neat:
     def emit(
         self, state: Population, archive: Elites, counters: neat.Counters, *, keys: Keys
     ) -> tuple[Children, Population, neat.Counters]:
-        """The newcomers first, then the children of the generation before."""
+        """Return the newcomers first, then the children of the generation before."""
         cells = archive.occupied.shape[0]
         first = orphans(state.networks, self.slots, "random"), state.species, counters
 

@@ -45,7 +45,7 @@ class TensorNeat:
     def emit(
         self, state: Foreign, archive: Elites, counters: Counters, *, keys: Keys
     ) -> tuple[Children, Foreign, Counters]:
-        """The first population, then the one that it makes of the one before."""
+        """Return the first population, then the one that it makes of the one before."""
         theirs = self.backend.from_arrays(state.arrays)
         if state.age > 0:
             theirs = self.backend.tell(theirs, np.asarray(state.fitness))

@@ -27,7 +27,7 @@ class Pending(eqx.Module):
     place: Float[Array, "slot axis"]
     sound: Bool[Array, "slot"]
     due: Bool[Array, ""]
-    """Whether the last children were its own; the first ones are newcomers."""
+    """True if the last children were its own; the first ones are newcomers."""
 
 
 @dataclass(frozen=True)
@@ -173,7 +173,7 @@ class NeatEmitter:
 
 
 def _beyond(networks: CPPN, counters: Counters) -> Counters:
-    """The first numbers after those of the networks and the given ones."""
+    """Return the first numbers after those of the networks and the given ones."""
     used = jnp.where(networks.connection_used, networks.innovation, -1)
     nodes = jnp.where(networks.node_used, networks.node_id, -1)
     return Counters(

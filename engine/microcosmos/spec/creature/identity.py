@@ -62,7 +62,7 @@ class Identity(Part):
 
     @property
     def scene(self) -> Scene:
-        """The scene that is simulated."""
+        """Return the scene that is simulated."""
         world, genome = self.world.model_dump(), self.genome
         gait = isinstance(genome, Stroke)
         control = Gait(**genome.model_dump(exclude={"encoding"})) if gait else genome.control

@@ -24,7 +24,7 @@ COLUMNS = ("field", "type", "unit", "range", "default", "meaning", "source")
 
 
 def reference() -> str:
-    """The whole document."""
+    """Return the whole document."""
     found = list(EXPERIMENTS.values())
     return "\n".join(
         [

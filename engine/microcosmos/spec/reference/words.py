@@ -4,8 +4,8 @@ from typing import Any
 
 Schema = dict[str, Any]
 
-LONGEST = 60
-"""Letters of a default that are written out."""
+MAX_LENGTH = 60
+"""Maximum length of a written-out default."""
 
 TYPES = {"integer": "integer", "number": "number", "boolean": "yes or no", "string": "text"}
 TAGS = ("experiment", "builder", "encoding", "operator", "kind")
@@ -13,7 +13,7 @@ TAGS = ("experiment", "builder", "encoding", "operator", "kind")
 
 
 def plain(field: Schema) -> Schema:
-    """The schema of what is there: of `x | None` that of x, of a list that of its entries."""
+    """Return the inner schema: x of `x | None`, and the entry of a list."""
     options = [o for o in field.get("anyOf", [field]) if o.get("type") != "null"]
     inner = options[0] if len(options) == 1 else field
     items = inner.get("items")
@@ -25,7 +25,7 @@ def items(field: Schema) -> bool:
 
 
 def refs(field: Schema) -> list[str]:
-    """The names of the parts that a field may hold."""
+    """Return the names of the parts that a field may hold."""
     if "$ref" in field:
         return [field["$ref"].rpartition("/")[2]]
     inner = [*field.get("anyOf", []), *field.get("oneOf", [])]
@@ -103,7 +103,7 @@ def default(field: Schema, defined: Schema, required: bool) -> str:
 
 
 def _usual(field: Schema, value: Schema, defined: Schema) -> Schema:
-    """The defaults of the part that a default is of."""
+    """Return the defaults of the part to which a default belongs."""
     for ref in refs(field):
         own = defined[ref]["properties"]
         tagged = all(own[t].get("const") == value.get(t) for t in TAGS if t in own)
@@ -127,12 +127,12 @@ def _word(value: Any) -> str:
         else:
             words = [_word(one) for one in value]
         text = ", ".join(words)
-        return text if len(text) <= LONGEST else f"{text[:LONGEST].rpartition(', ')[0]} …"
+        return text if len(text) <= MAX_LENGTH else f"{text[:MAX_LENGTH].rpartition(', ')[0]} …"
     return _tag(value) if isinstance(value, dict) else str(value)
 
 
 def _tag(value: Schema) -> str:
-    """A part by what tells it from others."""
+    """Name a part by its name or tag."""
     named = next((str(value[t]) for t in ("name", *TAGS, "digit") if t in value), None)
     if "digit" in value:
         return f"{value['digit']}"

@@ -58,7 +58,7 @@ def fitness_label(archive: Archive) -> str:
 
 
 def chosen(archive: Archive, names: list[str] | None) -> list[Axis]:
-    """The named axes; by default the archive's first two, or its only one."""
+    """Return the named axes; by default the archive's first two, or its only one."""
     own = {axis.name: axis for axis in archive.axes}
     names = names or list(own)[:2]
     if not 1 <= len(names) <= 2 or len(set(names)) < len(names):
@@ -83,7 +83,7 @@ def _own(archive: Archive, axis: Any) -> Axis:
 
 
 def _other(archive: Archive, name: str) -> Axis:
-    """The axis of another measure, its ends rounded outwards."""
+    """Return the axis of another measure, its ends rounded outwards."""
     known, values = MEASURES.get(name), archive.measures[name].astype(float)
     title = label(archive, name)
     if known is not None and known.scale == "log10":
@@ -97,7 +97,7 @@ def _other(archive: Archive, name: str) -> Axis:
 
 
 def _round(least: float) -> float:
-    """The next 1, 2 or 5 times a power of ten."""
+    """Return the next 1, 2 or 5 times a power of ten."""
     power = 10.0 ** np.floor(np.log10(least))
     return next(m * power for m in (1, 2, 5, 10) if m * power >= least * (1 - 1e-9))
 

@@ -23,7 +23,7 @@ NAMES = {"best": "best fitness", "mean": "mean fitness", "qd_score": "QD score"}
 
 
 def of_archive(found: Archive, names: list[str] | None) -> str:
-    """The caption of a map."""
+    """Return the caption of a map."""
     along = chosen(found, names)
     filled, cells = len(found.cells), found.spec.archive.cells
     fittest = "the ring marks the fittest" if len(along) == 2 else "the fittest has"
@@ -56,7 +56,7 @@ def of_curves(groups: Sequence[Group], shown: Sequence[str]) -> str:
 
 
 def of_sheet(found: Archive, plan: Layout, moments: int) -> str:
-    """The caption of a contact sheet."""
+    """Return the caption of a contact sheet."""
     first = (
         f"The fittest elite of each of {len(plan.regions)} regions over {_over(plan.axes)}, "
         f"at {moments} moments of its {found.spec.task.steps:,} steps, pale at the start, at "
@@ -67,7 +67,7 @@ def of_sheet(found: Archive, plan: Layout, moments: int) -> str:
 
 
 def of_lineage(found: Archive, cell: int | None, ancestors: int) -> str:
-    """The caption of a tree."""
+    """Return the caption of a tree."""
     row = found.row(cell)
     who = "fittest elite" if cell is None else f"elite of cell {cell}"
     first = (
@@ -80,7 +80,7 @@ def of_lineage(found: Archive, cell: int | None, ancestors: int) -> str:
 
 
 def run(found: Archive, seeds: Sequence[int] | None = None) -> str:
-    """The spec and the machine, in three sentences."""
+    """Return the spec and the machine, in three sentences."""
     spec = found.spec
     seeds = [spec.seed] if seeds is None else seeds
     seeded = f", {_seeds(seeds)}" if seeds else ""

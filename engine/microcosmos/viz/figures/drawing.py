@@ -18,9 +18,9 @@ class Print:
     """`single`, `double`, or a length in mm, cm or in."""
     dpi: int = 300
     under: bool = False
-    """Whether to write the caption under the figure too."""
+    """Also write the caption under the figure."""
     tex: bool = False
-    """Whether to write the caption for LaTeX as well."""
+    """Also write the caption for LaTeX."""
     palette: str = "viridis"
 
     def publish(self, figure, out: Path, text: str) -> list[Path]:

@@ -13,7 +13,7 @@ __all__ = ["of", "save", "scaling", "sweep"]
 
 
 def of(data: bytes) -> Any:
-    """The figure of a run's file. Raises `ValueError` for other experiments."""
+    """Return the figure of a run's file. Raises `ValueError` for other experiments."""
     table = read_table(data)
     if table.experiment == "gaits":
         return sweep(table.rows)

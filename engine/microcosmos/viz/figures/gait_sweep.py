@@ -14,7 +14,7 @@ FORMS = {
     "paper": "The paper’s literal form",
 }
 
-UNSOUND = "#f4eee0"
+NOT_FORCE_FREE_COLOUR = "#f4eee0"
 """Background of results that are not force-free."""
 
 MOST_TICKS = 5
@@ -40,7 +40,8 @@ def sweep(rows: Sequence[Row]) -> Any:
         _dress(panel, form, here)
     panels[0].set_ylabel("displacement [cells a cycle]")
     for panel, form in zip(panels, forms, strict=True):
-        panel.set_ylim(0, _top([row for row in rows if _free(row) == _free_form(rows, form)]))
+        sound = _all_force_free(rows, form)
+        panel.set_ylim(0, _top([row for row in rows if _force_free(row) == sound]))
     _legend(figure, panels[0], rows)
     return figure
 
@@ -66,16 +67,16 @@ def _line(panel: Any, rows: Sequence[Row], swimmer: str, number: int) -> None:
     )
 
 
-def _free(row: Row) -> bool:
+def _force_free(row: Row) -> bool:
     return bool(row.get("force_free", True))
 
 
-def _free_form(rows: Sequence[Row], form: str) -> bool:
-    return all(_free(row) for row in rows if row["form"] == form)
+def _all_force_free(rows: Sequence[Row], form: str) -> bool:
+    return all(_force_free(row) for row in rows if row["form"] == form)
 
 
 def _top(rows: Sequence[Row]) -> float:
-    """The upper end of the scale: one for force-free panels, one for the others."""
+    """Return the upper end of the scale: one for force-free panels, one for the others."""
     most = max((row["displacement"] for row in rows if _finished(row)), default=0) or 1
     return most * (1.06 if all(map(_finished, rows)) else 1.25)
 
@@ -87,8 +88,8 @@ def _finished(row: Row) -> bool:
 
 def _dress(panel: Any, form: str, rows: Sequence[Row]) -> None:
     title = FORMS.get(form, form)
-    if not _free_form(rows, form):
-        panel.set_facecolor(UNSOUND)
+    if not _all_force_free(rows, form):
+        panel.set_facecolor(NOT_FORCE_FREE_COLOUR)
         title += " (not force-free)"
     panel.set_title(title, fontsize=10.5)
     panel.set(xscale="log", xlabel="viscosity [cells²/step]")

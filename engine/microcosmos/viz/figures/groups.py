@@ -8,11 +8,11 @@ import numpy as np
 
 from .reading import Archive
 
-APART = ("seed",)
+IGNORED = ("seed",)
 """Fields that may differ within a group."""
 
-MOST = 3
-"""Most fields that a label names."""
+MAX_FIELDS = 3
+"""Maximum number of fields in a label."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +33,7 @@ def grouped(runs: Sequence[Archive]) -> list[Group]:
     found: dict[tuple, list[Archive]] = {}
     for run in runs:
         flat = dict(flattened(run.document))
-        key = tuple(sorted((k, repr(v)) for k, v in flat.items() if k not in APART))
+        key = tuple(sorted((k, repr(v)) for k, v in flat.items() if k not in IGNORED))
         found.setdefault(key, []).append(run)
     for same in found.values():
         seeds = [run.spec.seed for run in same]
@@ -64,19 +64,19 @@ def flattened(document: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 def differing(flats: Sequence[Mapping[str, Any]]) -> list[str]:
     """The paths whose values differ; only those that all specs have, if there are any."""
-    paths = list(dict.fromkeys(path for flat in flats for path in flat if path not in APART))
+    paths = list(dict.fromkeys(path for flat in flats for path in flat if path not in IGNORED))
     other = [p for p in paths if len({repr(flat.get(p, "none")) for flat in flats}) > 1]
     shared = [path for path in other if all(path in flat for flat in flats)]
     return shared or other
 
 
 def _label(flat: Mapping[str, Any], paths: Sequence[str]) -> str:
-    parts = [f"{short(path)} {_value(flat.get(path, 'none'))}" for path in paths[:MOST]]
-    return ", ".join(parts) + (" …" if len(paths) > MOST else "")
+    parts = [f"{short(path)} {_value(flat.get(path, 'none'))}" for path in paths[:MAX_FIELDS]]
+    return ", ".join(parts) + (" …" if len(paths) > MAX_FIELDS else "")
 
 
 def short(path: str) -> str:
-    """The last two words of a path, without indices."""
+    """Return the last two words of a path, without indices."""
     words = [word for word in path.split(".") if not word.isdigit()]
     return " ".join(words[-2:]).replace("_", " ")
 

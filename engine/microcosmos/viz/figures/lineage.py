@@ -10,7 +10,7 @@ from .axes import fitness_label
 from .reading import Archive
 from .style import GREY, INK, blank, colour_bar, shades
 
-NOBODY = -1
+NO_ENTRY = -1
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class Family:
         found, left = set(), list(entries)
         while left:
             entry = left.pop()
-            if entry == NOBODY or entry in found:
+            if entry == NO_ENTRY or entry in found:
                 continue
             found.add(entry)
             left.extend(self.parents[entry][: 1 + both].tolist())
@@ -48,7 +48,7 @@ def family(found: Archive) -> Family:
     number: dict[bytes, int] = {}
     for entry, name in enumerate(names):
         number.setdefault(name, entry)
-    parents = [[number.get(bytes(p), NOBODY) for p in row] for row in columns["parents"]]
+    parents = [[number.get(bytes(p), NO_ENTRY) for p in row] for row in columns["parents"]]
     latest = dict(zip(columns["cell"].tolist(), range(len(names)), strict=True))
     lost = [int(cell) for cell in found.cells if int(cell) not in latest]
     if lost:
@@ -65,19 +65,19 @@ def family(found: Archive) -> Family:
 
 
 def _first(parents: list[int]) -> list[int]:
-    return parents if parents[0] != NOBODY else parents[::-1]
+    return parents if parents[0] != NO_ENTRY else parents[::-1]
 
 
 def heights(found: Family, entries: list[int]) -> dict[int, float]:
     """The height of each entry in the tree: childless ones evenly, others between those whose
     first parent they are. `entries` include all first parents.
     """
-    children: dict[int, list[int]] = {NOBODY: []}
+    children: dict[int, list[int]] = {NO_ENTRY: []}
     for entry in sorted(entries):
         children.setdefault(int(found.parents[entry, 0]), []).append(entry)
     places: dict[int, float] = {}
     ends = 0
-    left = [(root, False) for root in reversed(children[NOBODY])]
+    left = [(root, False) for root in reversed(children[NO_ENTRY])]
     while left:
         entry, seen = left.pop()
         own = children.get(entry, [])
@@ -139,7 +139,7 @@ def _branches(
     lines = []
     for entry in entries:
         parent, x, y = int(tree.parents[entry, 0]), tree.generation[entry], places[entry]
-        if parent == NOBODY:
+        if parent == NO_ENTRY:
             start = (x, y)
             lines.append([start, start, start])
         else:
@@ -160,7 +160,7 @@ def _living(panel: Any, tree: Family, places: dict[int, float], last: int) -> No
 def _crossings(panel: Any, tree: Family, places: dict[int, float], entries: list[int]) -> None:
     for entry in entries:
         other = int(tree.parents[entry, 1])
-        if other != NOBODY:
+        if other != NO_ENTRY:
             x = [tree.generation[other], tree.generation[entry]]
             y = [places[other], places[entry]]
             panel.plot(x, y, color=GREY, lw=0.5, ls=(0, (3, 2)), zorder=1.5)

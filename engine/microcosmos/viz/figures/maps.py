@@ -18,7 +18,7 @@ def archive(
     colours: str = "viridis",
     width: float = 85.0,
 ) -> Any:
-    """The map over one or two axes; of elites at one place it shows the fittest.
+    """Return the map over one or two axes; of elites at one place it shows the fittest.
 
     `colour` is fitness or any other measure; a ring marks the fittest elite.
     """
@@ -65,13 +65,13 @@ def _scale(shown: np.ndarray, logarithmic: bool) -> Any:
 
 
 def _whole(found: Archive, along: list[Axis]) -> bool:
-    """Whether the map is over all axes of Voronoi cells, so that it can show them."""
+    """Return whether the map is over all axes of Voronoi cells, so that it can show them."""
     names = [axis.name for axis in found.axes]
     return found.centroids is not None and sorted(a.name for a in along) == sorted(names)
 
 
 def bins(found: Archive, along: list[Axis]) -> np.ndarray:
-    """The bin of each elite (axis, elite); from its cell if the axis is a grid's."""
+    """Return the bin of each elite (axis, elite); from its cell if the axis is a grid's."""
     own = [axis.name for axis in found.axes]
     grid = found.centroids is None
     places = np.unravel_index(found.cells, found.spec.archive.shape) if grid else ()
@@ -88,7 +88,7 @@ def bins(found: Archive, along: list[Axis]) -> np.ndarray:
 
 
 def fittest(found: Archive, places: np.ndarray) -> np.ndarray:
-    """The rows of the fittest elites, one for each occupied place (axis, elite)."""
+    """Return the rows of the fittest elites, one for each occupied place (axis, elite)."""
     order = np.lexsort((-found.fitness, *places))
     new = np.any(np.diff(places[:, order], axis=1) != 0, axis=0)
     return order[np.concatenate([[True], new])]
@@ -152,7 +152,7 @@ def _bars(panel: Any, found: Archive, along: list[Axis], shown: np.ndarray, shad
 
 
 def cells(centroids: np.ndarray) -> list[np.ndarray]:
-    """The corners (corner, 2) of the cell around each centroid (cell, 2), in order.
+    """Return the corners (corner, 2) of the cell around each centroid (cell, 2), in order.
 
     Centroids are mirrored at the four sides: the borders between them and their mirror images
     are the sides themselves.
@@ -169,7 +169,7 @@ def cells(centroids: np.ndarray) -> list[np.ndarray]:
 
 
 def borders(centroids: np.ndarray) -> np.ndarray:
-    """The ends (cell, 2) of each centroid's cell on one axis."""
+    """Return the ends (cell, 2) of each centroid's cell on one axis."""
     order = np.argsort(centroids)
     inside = (centroids[order][1:] + centroids[order][:-1]) / 2
     ends = np.concatenate([[0.0], inside, [1.0]])

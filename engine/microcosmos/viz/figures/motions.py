@@ -12,7 +12,7 @@ from .sheet import Motion
 
 
 def documents(data: bytes, cells: Sequence[int]) -> list[dict[str, Any]]:
-    """The creature files of the elites in some cells of an archive file."""
+    """Return the creature files of the elites in some cells of an archive file."""
     experiment = build(read(data).spec)
     state = experiment.restore(data, other_device=True)
     return [experiment.creature(state, int(cell)) for cell in cells]  # pyright: ignore

@@ -48,7 +48,7 @@ class Archive:
 
     @property
     def best(self) -> int:
-        """The row of the fittest elite."""
+        """Return the row of the fittest elite."""
         return int(np.argmax(self.fitness))
 
     @cached_property

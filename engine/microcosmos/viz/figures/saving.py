@@ -26,14 +26,14 @@ CAPTION_FIELDS = {".pdf": "Subject", ".svg": "Description", ".png": "Description
 
 
 def kind(path: Path) -> str:
-    """The ending of a figure's name. Raises `ValueError` for any other."""
+    """Return the ending of a figure's name. Raises `ValueError` for any other."""
     if path.suffix.lower() not in KINDS:
         raise ValueError(f"`OUT` must end in {', '.join(KINDS)}; got {str(path)!r}.")
     return path.suffix.lower()
 
 
 def encoded(figure: Any, suffix: str, *, caption: str = "", dpi: int = 300) -> bytes:
-    """The bytes of a figure, with its caption in the metadata."""
+    """Return the bytes of a figure, with its caption in the metadata."""
     metadata = {**KINDS[suffix], "Title": TITLE}
     if caption:
         metadata[CAPTION_FIELDS[suffix]] = caption
@@ -103,6 +103,6 @@ ESCAPES = {
 
 
 def latex(text: str) -> str:
-    """The text for LaTeX: special letters escaped, others as UTF-8."""
+    """Return the text for LaTeX: special letters escaped, others as UTF-8."""
     text = text.replace(" %", THIN + "%")
     return "".join(ESCAPES.get(letter, letter) for letter in text)

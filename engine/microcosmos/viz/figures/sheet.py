@@ -164,7 +164,7 @@ def _body(
 
 
 def _strokes(last: bool, colour: Any, pale: Any) -> list[dict[str, Any]]:
-    """The last moment has a dark border, so that light colours show on paper."""
+    """Draw the last moment with a dark border, so that light colours show on paper."""
     if not last:
         return [{"colors": [pale], "linewidths": 0.7, "zorder": 2}]
     border = {"colors": [INK], "linewidths": 1.9, "zorder": 3}

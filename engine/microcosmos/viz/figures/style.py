@@ -82,7 +82,7 @@ def palette(name: str) -> Any:
 
 
 def shades(values: np.ndarray, colours: str) -> Any:
-    """The colours of values from their least to their greatest."""
+    """Return the colours of values from their least to their greatest."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
@@ -97,7 +97,7 @@ def colour_bar(panel: Any, drawn: Any, label: str, *, pad: float, aspect: int) -
 
 
 def millimetres(width: str) -> float:
-    """The width in mm of `single`, `double`, `85mm`, `3.5in`, or a number of mm."""
+    """Return the width in mm of `single`, `double`, `85mm`, `3.5in`, or a number of mm."""
     found = re.fullmatch(r"([0-9.]+) *(mm|cm|in|)", width.strip())
     try:
         size = COLUMNS.get(width) or float(found[1]) * _unit(found[2])  # pyright: ignore

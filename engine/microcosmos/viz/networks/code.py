@@ -17,7 +17,7 @@ from .network import Network
 
 TOLERANCE = 1e-12
 PROVED_STEPS = 4
-"""Steps of a recurrent network in the check; more prove no more."""
+"""Steps of a recurrent network in the check; more steps would prove nothing further."""
 
 
 def messages(*values):
@@ -30,7 +30,7 @@ def kept(old, new, *sources):
 
 
 def numpy_code(network: Network) -> str:
-    """The text of a module with a function `network(inputs)`, (input, …) to (output, …).
+    """Return the text of a module with a function `network(inputs)`, (input, …) to (output, …).
 
     Raises `ValueError` if it differs from the network on random inputs over a few steps.
     """
@@ -130,7 +130,7 @@ def _recurrent(network: Network) -> list[str]:
 
 
 def _node(network: Network, key: int, live: set[int]) -> str:
-    """The expression of a node's value, adding in the order in which `evaluate` does."""
+    """Return the expression of a node's value, adding in the order in which `evaluate` does."""
     node = network.node[key]
     terms = [
         f"{link.weight!r} * {_variable(network, link.source)}"

@@ -31,7 +31,7 @@ def fill(network: Network, key: int) -> str:
 
 
 def activation(network: Network, key: int) -> str:
-    """The activation of a node; an output also has the transform."""
+    """Return the activation of a node; an output also has the transform."""
     name = network.node[key].activation
     transform = network.output_transform
     return transform if key in network.outputs and transform and name == "identity" else name
@@ -46,7 +46,7 @@ def label(network: Network, key: int) -> str:
 
 
 def value_text(network: Network, key: int) -> str:
-    """The description of a node, for a tooltip."""
+    """Return the description of a node, for a tooltip."""
     if key < network.inputs:
         return network.names[key]
     name = network.names.get(key, f"node {key}")
@@ -54,13 +54,13 @@ def value_text(network: Network, key: int) -> str:
 
 
 def thickness(network: Network, weight: float, least: float, most: float) -> float:
-    """The width of a connection, in proportion to its weight."""
+    """Return the width of a connection, in proportion to its weight."""
     largest = max(abs(link.weight) for link in network.links)
     return least + (most - least) * (abs(weight) / largest if largest else 0.0)
 
 
 def described(network: Network) -> str:
-    """The network in one sentence."""
+    """Return the network in one sentence."""
     kind = f"recurrent network ({network.steps} steps)" if network.steps else "network"
     inputs, outputs = _count(network.inputs, "input"), _count(len(network.outputs), "output")
     hidden = _count(len(network.hidden), "hidden node")

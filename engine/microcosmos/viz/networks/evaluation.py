@@ -38,7 +38,7 @@ def probes(inputs: int, points: int = 256) -> np.ndarray:
 
 
 def agree(one: np.ndarray, other: np.ndarray, tolerance: float = TOLERANCE) -> bool:
-    """Whether values are the same within the tolerance, NaN and infinity at the same places."""
+    """Return whether values agree within the tolerance, NaN and infinity at the same places."""
     with np.errstate(invalid="ignore"):
         close = np.abs(one - other) <= tolerance * np.maximum(1, np.abs(one))
     same = (one == other) | (np.isnan(one) & np.isnan(other))

@@ -17,7 +17,7 @@ BOUND = 1e6
 
 
 def of_creature(identity: Mapping[str, Any]) -> Network:
-    """The network in a creature's identity. Raises `ValueError` if its genes are none.
+    """Return the network in a creature's identity. Raises `ValueError` if its genes are none.
 
     A recurrent one runs for the steps of the simulation with constant inputs.
     """
@@ -35,7 +35,7 @@ def from_genes(
     outputs: Sequence[str],
     steps: int | None = None,
 ) -> Network:
-    """The network of a creature's genes without disabled connections.
+    """Return the network of a creature's genes without disabled connections.
 
     Feed-forward, or recurrent over so many `steps` from values of 0.
     """
@@ -122,7 +122,7 @@ def _summing(network: Network) -> Network:
 
 
 def _transformed(network: Network) -> Network:
-    """The output transform as the outputs' activation, which other nodes do not see."""
+    """Return the output transform as the outputs' activation, which other nodes do not see."""
     transform = network.output_transform
     if transform is not None:
         for output in network.outputs:

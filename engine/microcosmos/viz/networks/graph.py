@@ -23,7 +23,7 @@ def order(keys: Sequence[int], pairs: Pairs) -> list[int]:
 
 
 def partial_order(keys: Sequence[int], pairs: Pairs) -> list[int]:
-    """The order without the nodes on a cycle or behind one."""
+    """Return the order without the nodes on a cycle or behind one."""
     row = {key: place for place, key in enumerate(keys)}
     waiting = dict.fromkeys(keys, 0)
     targets: dict[int, list[int]] = {key: [] for key in keys}
@@ -44,7 +44,7 @@ def partial_order(keys: Sequence[int], pairs: Pairs) -> list[int]:
 
 
 def reached(starts: Iterable[int], pairs: Pairs) -> set[int]:
-    """The starts and every key that a path leads to from them."""
+    """Return the starts and every key that a path leads to from them."""
     targets: dict[int, list[int]] = {}
     for source, target in pairs:
         targets.setdefault(source, []).append(target)
@@ -59,7 +59,7 @@ def reached(starts: Iterable[int], pairs: Pairs) -> set[int]:
 
 
 def depths(keys: Sequence[int], pairs: Pairs) -> dict[int, int]:
-    """The longest path to each key along the connections that close no cycle."""
+    """Return the longest path to each key along the connections that close no cycle."""
     back = closing(keys, pairs)
     forward = [pair for pair in pairs if pair not in back]
     depth = dict.fromkeys(keys, 0)

@@ -90,7 +90,7 @@ class Network:
 
     @property
     def marked(self) -> bool:
-        """Whether the links have historical numbers."""
+        """Return whether the links have historical numbers."""
         return bool(self.links) and all(link.marker is not None for link in self.links)
 
     @cached_property
@@ -100,7 +100,7 @@ class Network:
 
     @property
     def hidden(self) -> tuple[int, ...]:
-        """The keys of nodes that are neither input nor output."""
+        """Return the keys of nodes that are neither input nor output."""
         return tuple(k for k in self.keys if k >= self.inputs and k not in self.outputs)
 
     @property
@@ -112,7 +112,7 @@ class Network:
 
 
 def renumbered(network: Network, key: Callable[[int], int]) -> Network:
-    """The network with every key exchanged, nodes in the order of the new ones."""
+    """Return the network with every key exchanged, nodes in the order of the new ones."""
     nodes = [replace(node, key=key(node.key)) for node in network.nodes]
     return replace(
         network,

@@ -79,7 +79,7 @@ def _links(conns: np.ndarray, marked: bool) -> tuple[Link, ...]:
 
 
 def one_of(meta: Mapping[str, Any], field: str, allowed: tuple[str, ...]) -> str:
-    """The word in a field, which must be one of those allowed."""
+    """Return the word in a field, which must be one of those allowed."""
     if not isinstance(meta, Mapping):
         raise ValueError(f"`meta` must be an object of names, got {type(meta).__name__}")
     value = meta.get(field)
@@ -133,7 +133,7 @@ def _labels(meta: Mapping[str, Any], field: str) -> tuple[str, ...]:
 
 
 def _table(field: str, table: np.ndarray, columns: tuple[str, ...]) -> np.ndarray:
-    """The rows in double precision; a used one has every column."""
+    """Return the rows in double precision; a used one has every column."""
     table = np.asarray(table)
     if table.ndim != 2 or table.shape[1] != len(columns):
         raise ValueError(

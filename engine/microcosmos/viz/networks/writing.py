@@ -41,7 +41,7 @@ def write_tensorneat(
 
 
 def as_live(network: Network) -> Network:
-    """The same function under TensorNEAT's rule, where outputs are linear.
+    """Return the same function under TensorNEAT's rule, where outputs are linear.
 
     An output's activation goes to a hidden node before it; a node without sources, which
     would have no value, gets one with weight 0.
@@ -61,7 +61,7 @@ def as_live(network: Network) -> Network:
 
 
 def room(needed: int) -> int:
-    """The smallest of 16, 32, 64 … that holds as many rows."""
+    """Return the smallest of 16, 32, 64 … that holds as many rows."""
     size = SMALLEST
     while size < needed:
         size *= 2

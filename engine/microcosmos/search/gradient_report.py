@@ -51,11 +51,11 @@ class Health:
     """Share of node steps at a limit, where gradients are cut."""
 
     def document(self) -> dict[str, Any]:
-        """The report as JSON."""
+        """Return the report as JSON."""
         return asdict(self) | {"norms": [[n, norm] for n, norm in self.norms.items()]}
 
     def lines(self) -> list[str]:
-        """The report as sentences."""
+        """Return the report as sentences."""
         about = f"{self.of} by {', '.join(self.by)}"
         agrees = [f"{name} {error:.1e}" for name, error in self.errors.items()]
         grows = [f"{norm:.3g} after {steps} steps" for steps, norm in self.norms.items()]
@@ -77,7 +77,7 @@ def gradient_health(
     starts: int = 8,
     seed: int = 0,
 ) -> Health:
-    """The report for a creature; `build(dtype)` makes its task and actuator."""
+    """Return the report for a creature; `build(dtype)` makes its task and actuator."""
     with jax.enable_x64(True):
         task, actuator = build(jnp.dtype("float64"))
         values = gradients.parts(task, actuator, by)
@@ -122,7 +122,7 @@ def _flat(values: gradients.Values) -> Float[Array, "value"]:
 def _gradient(
     task: Task, actuator: Actuator, of: str, horizon: int | None = None
 ) -> Callable[[gradients.Values], tuple[Array, Array]]:
-    """The program from values to the measure and its gradient as one vector."""
+    """Return the program from values to the measure and its gradient as one vector."""
 
     def both(values):
         def measure(values):
@@ -135,7 +135,7 @@ def _gradient(
 
 
 def _error(program: Callable, values: gradients.Values, sizes: tuple[float, ...]) -> float:
-    """The slope along the gradient against central differences of the best size."""
+    """Return the slope along the gradient against central differences of the best size."""
     _, own = program(values)
     length = jnp.linalg.norm(own)
     flat, whole = ravel_pytree(values)
@@ -151,7 +151,7 @@ def _error(program: Callable, values: gradients.Values, sizes: tuple[float, ...]
 def _from_other_starts(
     task: Task, actuator: Actuator, of: str, starts: int, seed: int
 ) -> Callable[[gradients.Values], Float[Array, "start value"]]:
-    """The program from values to gradients with other phases, places and directions."""
+    """Return the program from values to gradients with other phases, places and directions."""
     spread = Spread(viscosity=0.0, energy=False)
     keys = jax.random.split(jax.random.key(seed), starts)
     size = task.world.size
