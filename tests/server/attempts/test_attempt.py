@@ -1,6 +1,7 @@
 """Attempts: recording, checkpoints, stopping and failing."""
 
 import errno
+import shutil
 from dataclasses import replace
 
 import pytest
@@ -140,8 +141,7 @@ def test_a_worker_that_lost_its_run_ends_silently(services, run_id, row, report)
 def test_a_run_without_its_files_pauses_with_the_reason(services, run_id, row, report):
     with claimed(services, run_id, "worker", never) as held:
         write(held, report(1), lambda: b"state")
-    folder = services.settings.data / "artifacts"
-    folder.rename(folder.with_name("elsewhere"))
+    shutil.rmtree(services.settings.data / "artifacts")
     with claimed(services, run_id, "worker", never) as held:
         held.restore()
         pytest.fail("it was let through")

@@ -1,6 +1,7 @@
 """Checkpoints: what an attempt keeps, and what the next one goes on from."""
 
 import errno
+import shutil
 
 import pytest
 
@@ -13,7 +14,7 @@ pytestmark = pytest.mark.postgresql
 
 
 def unmount(folder):
-    folder.rename(folder.with_name("elsewhere"))
+    shutil.rmtree(folder)
 
 
 def lose_the_newest(folder):
@@ -168,12 +169,14 @@ def test_a_checkpoint_that_cannot_be_read_deletes_nothing(
     assert count(Generation) == count(Elite) == count(Artifact) == 2
 
 
-def test_a_run_resumes_when_its_files_are_there_again(services, run_id, attempt, record):
+def test_a_run_resumes_when_its_files_are_there_again(
+    services, run_id, attempt, record, tmp_path
+):
     record(1, {1: 1.0})
     attempt.save(1, b"state 1")
     folder = services.settings.data / "artifacts"
-    folder.rename(folder.with_name("elsewhere"))
+    folder.rename(tmp_path / "elsewhere")
     with pytest.raises(CheckpointUnavailable):
         claim(services, run_id, "worker").restore()
-    folder.with_name("elsewhere").rename(folder)
+    (tmp_path / "elsewhere").rename(folder)
     assert claim(services, run_id, "worker").restore() == b"state 1"
