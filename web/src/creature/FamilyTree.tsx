@@ -2,6 +2,7 @@
 
 import type { Relative } from "../api/types";
 import { number, shortId } from "../ui/format";
+import { px } from "../ui/px";
 import { ROW_HEIGHT, type PlacedRelative, type FamilyLayout, COLUMN_WIDTH } from "./relatives";
 import { text } from "./text";
 
@@ -60,9 +61,6 @@ export function FamilyTree({ tree, self, hrefOf }: Props) {
     </div>
   );
 }
-
-const px = (sizes: Record<string, number>) =>
-  Object.fromEntries(Object.entries(sizes).map(([name, value]) => [name, `${value}px`]));
 
 function pathOf(parent: PlacedRelative, child: PlacedRelative): string {
   const [x, end] = [parent.x + COLUMN_WIDTH, child.x];

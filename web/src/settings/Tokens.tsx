@@ -120,7 +120,7 @@ function TokenTable({ tokens, own, onRevoked }: TableProps) {
   ];
   return (
     <Table
-      label={text.tokens}
+      label={text.tokenTable}
       columns={columns}
       rows={tokens}
       keyOf={({ id }) => id}

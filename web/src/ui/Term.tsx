@@ -3,6 +3,7 @@
 import type { ComponentChildren } from "preact";
 import { useId, useState } from "preact/hooks";
 import { define } from "./glossary";
+import { px } from "./px";
 
 /** Pixels that a definition is wide at most. */
 const WIDTH = 320;
@@ -37,7 +38,7 @@ export function Term({ name, children }: Props) {
     >
       {children ?? name}
       {place && (
-        <span id={id} role="tooltip" class="tooltip" style={place}>
+        <span id={id} role="tooltip" class="tooltip" style={px(place)}>
           {about}
         </span>
       )}

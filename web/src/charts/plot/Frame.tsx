@@ -1,6 +1,7 @@
 /** Axes, grid and titles of a plot. */
 
 import { Term } from "../../ui/Term";
+import { px } from "../../ui/px";
 import type { Axis } from "./Plot";
 import { positionOf, ticksOf } from "./scale";
 import "./plot.css";
@@ -65,14 +66,14 @@ export function AxisTitles({ x, y, room, upper }: Omit<Props, "shaded">) {
   return (
     <>
       {upper && (
-        <span class="axis-title" style={{ ...across, top: top - 46 }}>
+        <span class="axis-title" style={px({ ...across, top: top - 46 })}>
           <Term name={upper.title} />
         </span>
       )}
-      <span class="axis-title" style={{ ...across, top: bottom + 26 }}>
+      <span class="axis-title" style={px({ ...across, top: bottom + 26 })}>
         <Term name={x.title} />
       </span>
-      <span class="axis-title upright" style={{ top, height: bottom - top }}>
+      <span class="axis-title upright" style={px({ top, height: bottom - top })}>
         <Term name={y.title} />
       </span>
     </>
