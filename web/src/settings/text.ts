@@ -17,7 +17,7 @@ export const text = {
     "This server requires a token. Its administrator can create one for you. The server printed the first token when it started.",
   token: "Token",
   tokens: "Tokens",
-  tokenTable: "Owners of tokens",
+  tokenTable: "Existing tokens",
   noTokens: "No tokens yet.",
   owner: "Owner",
   ownerHint: "alice, laptop",
