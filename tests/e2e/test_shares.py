@@ -3,7 +3,7 @@
 import re
 from urllib.parse import urlsplit
 
-from places import GUIDED, best_of, the_map
+from places import GUIDED, best_of, stage, the_map
 from playwright.sync_api import Page, Request, expect
 
 SLOW = 300_000
