@@ -23,12 +23,11 @@ def small():
 
 
 def test_no_known_swimmer_gives_the_fluid_an_impulse():
-    assert not swimmers.check_impulse(period=250).missed
+    assert not swimmers.check_impulse(period=250).failed
 
 
 def test_a_worm_without_limits_gives_the_fluid_no_impulse(dtype):
-    found = swimmers.check_impulse(("worm",), (0.05, 2.0), 250, dtype.name, limits=False)
-    assert not found.missed
+    assert not swimmers.check_impulse(("worm",), period=250, dtype=dtype, limits=False).failed
 
 
 @pytest.mark.parametrize("viscosity", [0.05, 2.0])
