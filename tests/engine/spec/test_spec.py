@@ -29,6 +29,7 @@ def test_a_preset_survives_json(preset):
 
 AXES = [{"name": "bending_effort", "low": 0}, {"name": "stretching_effort"}]
 LOOP = {"builder": "ring", "nodes": 12}
+GROWN = {"control": {"encoding": "cppn-body", "min_nodes": 20}}
 LARGE = {"body": {"nodes": 256}, "world": {"width": 512, "height": 512}}
 
 
@@ -67,10 +68,7 @@ def free(low, high):
         (direct(rest_length=free(0.5, 0.9)) | {"body": LOOP}, "without loops"),
         (direct(rest_length=free(1.0, 2.0)), "at least 73 cells"),  # 31 × 2 × 1.1 + 4
         ({"control": {"encoding": "cppn-body"}, "body": {"builder": "arc"}}, "must be 'chain'"),
-        (
-            {"control": {"encoding": "cppn-body", "min_nodes": 20}, "body": {"nodes": 12}},
-            "at most the body's 12 nodes",
-        ),
+        (GROWN | {"body": {"nodes": 12}}, "at most the body's 12 nodes"),
         (direct(terms=256) | LARGE, "at most 65536 genes"),
         (
             {"control": {"encoding": "cppn-body"}, "genome": {"max_nodes": 10}},
@@ -83,12 +81,9 @@ def test_a_spec_that_cannot_be_carried_out_is_refused_with_the_field_and_reason(
     assert re.search(words, refusal(**changes))
 
 
-def test_an_unknown_encoding_of_a_scene_is_refused_with_the_known_ones():
+def test_an_unknown_encoding_or_experiment_is_refused_with_the_known_ones():
     with pytest.raises(ValidationError, match=r"control\n.*l-system.*'direct'"):
         Scene.model_validate({"control": {"encoding": "l-system"}})
-
-
-def test_an_unknown_experiment_is_refused_with_the_known_ones():
     with pytest.raises(ValidationError, match="'quality-diversity'"):
         parse({"experiment": "astrology"})
 
@@ -138,10 +133,8 @@ def test_importing_it_loads_no_jax(module):
 
 
 def test_only_forms_without_projection_can_push_themselves():
-    forms = {
-        name: spec.Coupling(projection=name).force_free for name in ("force", "force+torque")
-    }
-    assert forms == {"force": True, "force+torque": True}
+    for projection in ("force", "force+torque"):
+        assert spec.Coupling(projection=projection).force_free
     assert not spec.Coupling(projection="none").force_free
 
 

@@ -241,9 +241,8 @@ def test_a_strip_that_cannot_be_is_refused(swimming, options, message):
 
 def test_a_library_that_is_missing_is_named_with_what_installs_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "PIL", None)
-    with pytest.raises(
-        ImportError, match=r'PIL is needed: pip install "microcosmos\[figures\]"'
-    ):
+    reason = r'PIL is needed: pip install "microcosmos\[figures\]"'
+    with pytest.raises(ImportError, match=reason):
         require("PIL")
 
 

@@ -82,10 +82,10 @@ def test_a_check_repeats_every_recorded_number_exactly(best):
     assert result.same_device
     assert result.exact
     assert set(result.repeated) == set(search.MEASURES)
-    told = measurement(best)
-    assert (told["exact"], told["figures"]) == (True, [])
-    assert told["fitness"]["measured"] == best["measured"]["fitness"]
-    assert told["device"] == told["recorded_device"]
+    report = measurement(best)
+    assert (report["exact"], report["figures"]) == (True, [])
+    assert report["fitness"]["measured"] == best["measured"]["fitness"]
+    assert report["device"] == report["recorded_device"]
 
 
 @pytest.mark.optimised
@@ -94,8 +94,8 @@ def test_a_check_notices_a_wrong_record(best):
     right = changed["measured"]["measures"]["path_length"]
     wrong = changed["measured"]["measures"]["path_length"] = right * (1 + 1e-12)
     assert not check(changed).exact
-    (told,) = measurement(changed)["figures"]
-    assert told == {"name": "path_length", "recorded": wrong, "measured": right}
+    (figure,) = measurement(changed)["figures"]
+    assert figure == {"name": "path_length", "recorded": wrong, "measured": right}
     # Older files know fewer measures; what a file does not say is not compared.
     del changed["measured"]["measures"]["path_length"]
     assert check(changed).exact
@@ -124,9 +124,8 @@ def test_a_replay_holds_the_rest_shapes_as_they_were_applied(film, best):
     scene = creature.scene_of(best)
     encoding = build_encoding(scene, creature.room(best))
     task = build_task(scene)
-    genotype = jax.tree.map(
-        jnp.asarray, genomes.read(best["identity"]["genome"], encoding.room)
-    )
+    genes = genomes.read(best["identity"]["genome"], encoding.room)
+    genotype = jax.tree.map(jnp.asarray, genes)
     rest = search.drive(task, genotype).inputs
     steps = np.maximum(np.arange(film.frames) * film.header["every"] - 1, 0)
     np.testing.assert_allclose(film.drive.angles, rest.angle[steps], atol=1e-6)
@@ -143,10 +142,7 @@ def test_a_replay_holds_the_velocity_of_the_fluid(film, best):
     found = film.drive.velocity[30]
     np.testing.assert_allclose(found, flows[89], atol=0.51 * quantum + 1e-5)
     curl = film.vorticity[30]
-    across, up = (
-        np.roll(u, -1, axis) - np.roll(u, 1, axis)
-        for u, axis in zip(found[::-1], (0, 1), strict=True)
-    )
+    across, up = (np.roll(found[1 - k], -1, k) - np.roll(found[1 - k], 1, k) for k in (0, 1))
     np.testing.assert_allclose(0.5 * (across - up), curl, atol=1.1 * quantum + film.quantum)
 
 
@@ -155,10 +151,8 @@ def test_energy_is_kept_once_unless_it_changes(best, change):
     identity = copy.deepcopy(best["identity"])
     identity["world"]["energy"] = {"packets": 3, "width": 2.0} | change
     identity["task"]["steps"] = 60
-    file = creature.document(
-        Identity.model_validate(identity).model_dump(mode="json"), None, None
-    )
-    film = read_replay(record(file))
+    whole = Identity.model_validate(identity).model_dump(mode="json")
+    film = read_replay(record(creature.document(whole, None, None)))
     assert len(film.drive.energy) == (film.frames if change else 1)
     packets = fields.packets((40, 32), fields.Packets(3, 2.0, 1.0, 0))
     np.testing.assert_allclose(film.drive.energy[0], packets, atol=0.003)
@@ -214,19 +208,11 @@ def test_bytes_that_are_no_replay_are_refused(replay_bytes, change, field):
     assert caught.value.field == field
 
 
-@pytest.mark.parametrize(
-    ("data", "field"),
-    [
-        (b"", "bytes"),
-        (b"\xff\0\0\0{}", "header"),
-        (b"\2\0\0\0{]", "header"),
-        (b"\2\0\0\0[]", "header"),
-    ],
-)
-def test_a_header_that_cannot_be_read_is_refused(data, field):
+@pytest.mark.parametrize("data", [b"", b"\xff\0\0\0{}", b"\2\0\0\0{]", b"\2\0\0\0[]"])
+def test_a_header_that_cannot_be_read_is_refused(data):
     with pytest.raises(ReplayError) as caught:
         read_replay(data)
-    assert caught.value.field == field
+    assert caught.value.field == ("header" if data else "bytes")
 
 
 def test_positions_that_are_not_finite_are_refused(replay_bytes):
@@ -240,22 +226,21 @@ BASE = {"period": 12, "angle_scale": 0.3}
 BENT = spec.Bounds(low=-0.1, high=0.1)
 
 
-def controls():
-    return {
-        "recurrent": spec.Control(recurrent=True, **BASE),
-        "direct": spec.Direct(rest_angle=BENT, bend=spec.Bounds(low=0.3, high=1.0), **BASE),
-        "weights": spec.Weights(**BASE),
-        "cppn-body": spec.Grown(**BASE),
-    }
+CONTROLS = {
+    "recurrent": spec.Control(recurrent=True, **BASE),
+    "direct": spec.Direct(rest_angle=BENT, bend=spec.Bounds(low=0.3, high=1.0), **BASE),
+    "weights": spec.Weights(**BASE),
+    "cppn-body": spec.Grown(**BASE),
+}
 
 
-@pytest.fixture(params=list(controls()))
+@pytest.fixture(params=CONTROLS)
 def file(request):
     """A creature that was measured as those of a run are."""
     scene = spec.Scene(
         world=spec.World(width=20, height=20),
         body=spec.Chain(nodes=NODES),
-        control=controls()[request.param],
+        control=CONTROLS[request.param],
         task=spec.Task(steps=STEPS),
     )
     encoding = build_encoding(scene, ROOM)
