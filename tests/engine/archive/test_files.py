@@ -5,13 +5,14 @@ import io
 import json
 import resource
 import signal
+import sys
 from io import BytesIO
 
 import h5py
 import numpy as np
 import pytest
 
-from microcosmos.archive import creature, creature_h5, export, file
+from microcosmos.archive import creature, creature_h5, dataframe, export, file
 from microcosmos.archive.atomic import write_whole
 from microcosmos.naming import decode
 from microcosmos.spec import shape
@@ -161,3 +162,10 @@ def test_links_out_of_the_file_are_refused(newcomer, link):
         found["body/positions"] = link
     with pytest.raises(ValueError, match="`/body/positions` must lie in the file itself"):
         creature_h5.load(stored.getvalue())
+
+
+@pytest.mark.fast
+def test_a_missing_package_is_named_with_its_command(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(ImportError, match='pip install "pandas"'):
+        dataframe.to_pandas(b"")
