@@ -104,7 +104,8 @@ def _ours(side: int, donate: bool) -> Library:
 
     def prepare(genes: np.ndarray, *measured: np.ndarray) -> search.Elites:
         vectors, feasible = genomes.Vector(jnp.asarray(genes)), jnp.ones(ROWS, bool)
-        return search.candidates(0, vectors, *map(jnp.asarray, measured), feasible)
+        fitness, descriptors = map(jnp.asarray, measured)
+        return search.candidates(0, vectors, fitness, descriptors, feasible)
 
     def insert(rows: search.Elites) -> object:
         archive[0], inserted = program(archive[0], rows, grid)

@@ -133,19 +133,22 @@ def network_of():
 
 
 @pytest.fixture(scope="session")
-def newcomer():
-    chosen = spec.parse(
-        {
-            "experiment": "quality-diversity",
-            "world": {"width": 32, "height": 32},
-            "body": {"nodes": 8},
-            "control": {"period": 20},
-            "task": {"steps": 40},
-            "search": {"generations": 1, "batch": 2, "block": 2},
-        }
-    )
-    experiment = build(chosen)
-    return creature.parse(experiment.best(experiment.advance(experiment.init())[0]))
+def best_of():
+    """A function that gives the best creature of one generation of a search."""
+
+    def find(batch, **parts):
+        search = {"generations": 1, "batch": batch, "block": batch}
+        document = {"experiment": "quality-diversity", "search": search, **parts}
+        experiment = build(spec.parse(document))
+        return experiment.best(experiment.advance(experiment.init())[0])
+
+    return find
+
+
+@pytest.fixture(scope="session")
+def newcomer(best_of):
+    parts = {"world": {"width": 32, "height": 32}, "body": {"nodes": 8}}
+    return creature.parse(best_of(2, **parts, control={"period": 20}, task={"steps": 40}))
 
 
 @pytest.fixture(scope="session")

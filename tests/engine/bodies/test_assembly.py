@@ -104,14 +104,11 @@ def test_the_arc_of_a_subdivided_filament_is_even(closed):
     np.testing.assert_allclose(arc, np.arange(len(arc)) / (18 if closed else 16))
 
 
-def test_a_small_body_stays_as_it_is():
+def test_a_thinned_chain_keeps_its_ends_and_its_order_and_a_small_one_all_nodes():
     body = bodies.chain(8, 1.0)
     positions, edges = bodies.thinned(body, 8)
     np.testing.assert_array_equal(positions, body.positions)
     np.testing.assert_array_equal(edges, body.edges)
-
-
-def test_a_thinned_chain_keeps_its_ends_and_its_order():
     positions, edges = bodies.thinned(bodies.chain(1001, 1.0), 100)
     assert len(positions) <= 102
     assert np.ptp(positions[:, 0]) == pytest.approx(1000)

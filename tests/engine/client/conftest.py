@@ -41,7 +41,7 @@ def record() -> dict[str, Any]:
         "tags": [],
         "note": None,
         "status": "running",
-        "wish": None,
+        "requested_state": None,
         "waiting_reason": None,
         "spec": {"experiment": "quality-diversity", "seed": 4},
         "progress": 0.5,

@@ -99,9 +99,8 @@ def test_forking_elites_into_another_world(command, record):
     patch = {"world": {"viscosity": 0.3}}
     expected = {"from": {"creatures": [SHA]}, "spec": patch, "name": "thick"}
     assert requests[-1][:3] == ("POST", f"runs/{record['id']}/fork", expected)
-    assert command("fork", "0f3c", "--cells", "3,17")[1][-1].document["from"] == {
-        "cells": [3, 17]
-    }
+    cells = command("fork", "0f3c", "--cells", "3,17")[1][-1]
+    assert cells.document["from"] == {"cells": [3, 17]}
     within = command("fork", "0f3c", "--region", "turning=0:1.5", "--generation", "4")[1][-1]
     assert within.document["from"] == {"region": {"turning": [0.0, 1.5]}}
     assert within.document["generation"] == 4

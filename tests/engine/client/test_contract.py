@@ -92,15 +92,14 @@ def test_a_sweep_is_found_told_off_and_summed_up(fake, record):
     band = {name: [0.5, 1.0] for name in ("median", "low", "high", "min", "max")}
     case = {"values": {"world.viscosity": 0.1}, "generation": [1, 2], "runs": [2, 1]}
     summary = {"cases": [case | dict.fromkeys(("qd_score", "coverage", "best"), band)]}
-    served = fake(
-        {
-            ("GET", "sweeps"): {"items": [SWEEP], "next": None},
-            ("GET", path): SWEEP,
-            ("POST", f"{path}/cancel"): SWEEP,
-            ("GET", f"{path}/summary"): summary,
-            ("GET", "runs"): {"items": [record | {"id": "r3"}], "next": None},
-        }
-    )
+    answers = {
+        ("GET", "sweeps"): {"items": [SWEEP], "next": None},
+        ("GET", path): SWEEP,
+        ("POST", f"{path}/cancel"): SWEEP,
+        ("GET", f"{path}/summary"): summary,
+        ("GET", "runs"): {"items": [record | {"id": "r3"}], "next": None},
+    }
+    served = fake(answers)
     sweep = served.client.sweep("5eed")
     assert sweep.ended
     assert sweep.cancel().total == 3
@@ -123,15 +122,14 @@ def test_the_bin_is_listed(fake, record):
 
 def test_links_are_published_listed_and_revoked(fake, record):
     share = {"slug": "s1", "url": "/s/s1", "title": "Eel"}
-    served = fake(
-        {
-            ("POST", "shares"): share,
-            ("GET", "shares"): [share],
-            ("GET", "commons"): {"items": [share], "next": None},
-            ("DELETE", "shares/s1"): httpx.Response(204),
-            ("GET", f"creatures/{SHA}"): {"sha256": SHA},
-        }
-    )
+    answers = {
+        ("POST", "shares"): share,
+        ("GET", "shares"): [share],
+        ("GET", "commons"): {"items": [share], "next": None},
+        ("DELETE", "shares/s1"): httpx.Response(204),
+        ("GET", f"creatures/{SHA}"): {"sha256": SHA},
+    }
+    served = fake(answers)
     client = served.client
     before = datetime.now(UTC)
     found = client.creature(SHA).share(title="Eel", credit="Ada", licence="CC0-1.0", days=2)
@@ -143,11 +141,8 @@ def test_links_are_published_listed_and_revoked(fake, record):
     expected = {"title": "Eel", "credit": "Ada", "licence": "CC0-1.0", "listed": False}
     assert document == {"creature": SHA, **expected}
     client.share(served.run(record), generation=3, listed=True)
-    assert served.requests[-1].document == {
-        "run": record["id"],
-        "generation": 3,
-        "listed": True,
-    }
+    expected = {"run": record["id"], "generation": 3, "listed": True}
+    assert served.requests[-1].document == expected
     assert [one.slug for one in (*client.shares(), *client.commons())] == ["s1", "s1"]
     client.unshare("http://fake/s/s1")
     assert sent(served) == ("DELETE", "shares/s1", None)
@@ -157,13 +152,12 @@ def test_links_are_published_listed_and_revoked(fake, record):
 
 def test_tokens_are_made_listed_and_revoked(fake):
     token = {"id": "70ce0000-0000-4000-8000-000000000001", "name": "laptop"}
-    served = fake(
-        {
-            ("POST", "tokens"): token | {"secret": "once"},
-            ("GET", "tokens"): [token],
-            ("DELETE", f"tokens/{token['id']}"): httpx.Response(204),
-        }
-    )
+    answers = {
+        ("POST", "tokens"): token | {"secret": "once"},
+        ("GET", "tokens"): [token],
+        ("DELETE", f"tokens/{token['id']}"): httpx.Response(204),
+    }
+    served = fake(answers)
     assert served.client.create_token("laptop", "write")["secret"] == "once"
     assert sent(served) == ("POST", "tokens", {"name": "laptop", "scope": "write"})
     assert served.client.tokens() == [token]
@@ -184,13 +178,12 @@ def test_the_token_goes_with_every_request():
 
 def test_a_creature_is_brought_and_saved(fake, tmp_path):
     file = {"sha256": SHA, "measured": None, "identity": {}}
-    served = fake(
-        {
-            ("POST", "creatures"): {"creature": SHA},
-            ("GET", f"creatures/{SHA}"): file,
-            ("GET", f"creatures/{SHA}/film.gif"): httpx.Response(200, content=b"GIF89a"),
-        }
-    )
+    answers = {
+        ("POST", "creatures"): {"creature": SHA},
+        ("GET", f"creatures/{SHA}"): file,
+        ("GET", f"creatures/{SHA}/film.gif"): httpx.Response(200, content=b"GIF89a"),
+    }
+    served = fake(answers)
     creature = served.client.import_creature(file)
     assert sent(served) == ("POST", "creatures", file)
     assert creature.fitness is None

@@ -29,7 +29,9 @@ def test_a_preset_survives_json(preset):
 
 AXES = [{"name": "bending_effort", "low": 0}, {"name": "stretching_effort"}]
 LOOP = {"builder": "ring", "nodes": 12}
-GROWN = {"control": {"encoding": "cppn-body", "min_nodes": 20}}
+GROWN = {"encoding": "cppn-body"}
+MANY = {"control": GROWN | {"min_nodes": 20}, "body": {"nodes": 12}}
+NARROW = {"body": {"nodes": 62}, "world": {"width": 80}}
 LARGE = {"body": {"nodes": 256}, "world": {"width": 512, "height": 512}}
 
 
@@ -50,10 +52,7 @@ def free(low, high):
         ({"body": {"nodes": 10**9}}, "body.nodes"),
         ({"world": {"width": 32}}, "`world.width` must be at least 39"),
         ({"body": {"nodes": 62}}, "`world.width` must be at least 72 cells"),
-        (
-            {"body": {"nodes": 62}, "world": {"width": 80}},
-            "`world.height` must be at least 72 cells",
-        ),
+        (NARROW, "`world.height` must be at least 72 cells"),
         ({"coupling": {"theta_feedback": 0}}, "`projection` must be 'none' or 'force'"),
         ({"world": {"magic": "fixed", "viscosity": 0.001}}, "`magic` must be"),
         ({"archive": {"descriptors": [AXES[1]] * 2}}, "`descriptors` must not repeat"),
@@ -67,11 +66,11 @@ def free(low, high):
         (direct(rest_angle=free(0.5, 0.9)) | {"body": LOOP}, "without loops"),
         (direct(rest_length=free(0.5, 0.9)) | {"body": LOOP}, "without loops"),
         (direct(rest_length=free(1.0, 2.0)), "at least 73 cells"),  # 31 × 2 × 1.1 + 4
-        ({"control": {"encoding": "cppn-body"}, "body": {"builder": "arc"}}, "must be 'chain'"),
-        (GROWN | {"body": {"nodes": 12}}, "at most the body's 12 nodes"),
+        ({"control": GROWN, "body": {"builder": "arc"}}, "must be 'chain'"),
+        (MANY, "at most the body's 12 nodes"),
         (direct(terms=256) | LARGE, "at most 65536 genes"),
         (
-            {"control": {"encoding": "cppn-body"}, "genome": {"max_nodes": 10}},
+            {"control": GROWN, "genome": {"max_nodes": 10}},
             "`genome.max_nodes` must be at least 11",
         ),
     ],

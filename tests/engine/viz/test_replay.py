@@ -12,33 +12,21 @@ from microcosmos import fields, genomes, search, spec
 from microcosmos.archive import creature
 from microcosmos.audit.physics import audit
 from microcosmos.audit.reproducibility import check, measurement
-from microcosmos.build import build, build_block, build_encoding, build_task
+from microcosmos.build import build_block, build_encoding, build_task
 from microcosmos.device import device_kind
 from microcosmos.experiments.lineage import identity
-from microcosmos.spec import parse
 from microcosmos.spec.creature.identity import Identity
 from microcosmos.viz.raster import THEMES, frame
 from microcosmos.viz.replay import actuator_of, record
 from microcosmos.viz.replay_file import Replay, ReplayError, read_replay
 from microcosmos.world import flow
 
-SPEC = parse(
-    {
-        "experiment": "quality-diversity",
-        "world": {"width": 40, "height": 32},
-        "body": {"nodes": 12},
-        "control": {"period": 30},
-        "task": {"steps": 601},
-        "search": {"generations": 1, "batch": 4, "block": 4},
-    }
-)
-
 
 @pytest.fixture(scope="module")
-def best():
+def best(best_of):
+    parts = {"world": {"width": 40, "height": 32}, "body": {"nodes": 12}}
     with jax.numpy_rank_promotion("raise"):
-        experiment = build(SPEC)
-        return experiment.best(experiment.advance(experiment.init())[0])
+        return best_of(4, **parts, control={"period": 30}, task={"steps": 601})
 
 
 @pytest.fixture(scope="module")
@@ -62,12 +50,9 @@ def test_a_short_run_is_recorded_at_every_step(newcomer):
     assert moved == pytest.approx(film.header["fitness"]["replayed"], abs=1e-4)
 
 
-def test_the_body_begins_straight_in_the_middle(film):
+def test_the_body_begins_straight_in_the_middle_and_ends_where_the_fitness_says(film, best):
     np.testing.assert_allclose(film.positions[0].mean(0), [20, 16], atol=1e-5)
     np.testing.assert_allclose(np.diff(film.positions[0], axis=0), [[1, 0]] * 11, atol=1e-5)
-
-
-def test_the_motion_ends_where_the_fitness_says(film, best):
     moved = np.linalg.norm(np.diff(film.centres[[0, -1], 0], axis=0))
     fitness = film.header["fitness"]
     # The last frame is one step before the end: 601 steps, every third kept.

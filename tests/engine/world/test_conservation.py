@@ -68,8 +68,8 @@ def test_an_untouched_body_stays_exactly_at_rest(dtype):
 def test_edges_keep_their_length_while_a_worm_swims(float64):
     swimmer = worm()
     box, start = scenes.immersed(swimmer.body, 0.5, float64)
-    seen = scenes.recorded(box, start, scenes.stroke(swimmer, 250, 2, float64))
-    lengths = np.hypot(*np.moveaxis(np.diff(seen, axis=1), -1, 0))
+    positions = scenes.recorded(box, start, scenes.stroke(swimmer, 250, 2, float64))
+    lengths = np.hypot(*np.moveaxis(np.diff(positions, axis=1), -1, 0))
     np.testing.assert_allclose(lengths, 1.0, atol=0.01)
 
 

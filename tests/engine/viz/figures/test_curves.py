@@ -88,12 +88,11 @@ def test_coverage_is_drawn_in_per_cent(runs):
 def found(made):
     """Three elites in the lower left, of which the second is fittest, and one far away."""
     places = [(1e-4, 0.0), (2e-4, 0.1), (3e-4, 0.05), (90.0, 0.95)]
-    return made(
-        [
-            {"cell": k, "fitness": f, "bending_effort": x, "straightness": y}
-            for k, ((x, y), f) in enumerate(zip(places, (1.0, 3.0, 2.0, 0.5), strict=True))
-        ]
-    )
+    elites = [
+        {"cell": k, "fitness": f, "bending_effort": x, "straightness": y}
+        for k, ((x, y), f) in enumerate(zip(places, (1.0, 3.0, 2.0, 0.5), strict=True))
+    ]
+    return made(elites)
 
 
 def swimming(length, frames=9):
@@ -186,10 +185,8 @@ def test_the_chosen_elite_and_all_its_ancestors_are_drawn_in_colour_and_counted(
     assert ring.get_offsets()[0][0] == 5
     dashed = [line for line in panel.get_lines() if line.get_linestyle() == "--"]
     assert len(dashed) == 2
-    text = caption.of_lineage(archive, 4, 4)
-    assert text.startswith(
-        "Descent of 5 elites (grey) and the 4 ancestors of the elite of cell 4"
-    )
+    text, counts = caption.of_lineage(archive, 4, 4), "5 elites (grey) and the 4 ancestors"
+    assert text.startswith(f"Descent of {counts} of the elite of cell 4")
     assert "Dashed lines lead from second parents." in text
 
 

@@ -84,8 +84,9 @@ def test_the_figure_and_the_name_of_its_file_have_defaults(archive, tmp_path, fi
 
 def test_mistakes_are_refused_with_the_need(archive, tmp_path, figure):
     assert "must end in .pdf" in figure("archive", archive, tmp_path / "map.bmp", code=2)
+    cell = ("--cell", "9999")
     assert "`cell` must be one of" in figure(
-        "lineage", archive, tmp_path / "a.svg", "--cell", "9999", code=2
+        "lineage", archive, tmp_path / "a.svg", *cell, code=2
     )
     assert "seed 0 twice" in figure("curves", archive, archive, tmp_path / "a.svg", code=2)
     assert "FILE... OUT needs" in figure("curves", archive, code=2)

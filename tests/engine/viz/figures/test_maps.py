@@ -115,10 +115,10 @@ def test_plugin_measures_have_their_declared_titles(made):
     assert figure.axes[0].get_xlabel() == figure.axes[1].get_ylabel() == "Sway [cells]"
     assert figure.axes[1].get_yscale() == "log"
     assert fitness_label(found) == "Straight way [cells]"
-    told = caption.of_archive(found, None)
-    assert "over sway [cells] and straightness;" in told
-    assert "Fitness is “Straight way” (mine.straight) over 500 steps" in told
-    assert "the body “Cross” (mine.cross), controlled by" in told
+    text = caption.of_archive(found, None)
+    assert "over sway [cells] and straightness;" in text
+    assert "Fitness is “Straight way” (mine.straight) over 500 steps" in text
+    assert "the body “Cross” (mine.cross), controlled by" in text
 
 
 def test_a_caption_of_one_axis_names_no_ring(made):
@@ -165,7 +165,7 @@ def test_width_is_that_of_a_column(found):
 
 
 def test_a_caption_states_the_spec(found):
-    told = caption.of_archive(found, None)
+    text = caption.of_archive(found, None)
     for part in (
         "4 elites in 20 cells (20.0 %)",
         "the fittest (8.5)",
@@ -176,7 +176,7 @@ def test_a_caption_states_the_spec(found):
         "48 × 48 cells, ν = 0.2 cells²/step",
         "Microcosmos 0.1.0 on cpu, A Model avx2.",
     ):
-        assert part in told
+        assert part in text
 
 
 def test_a_form_that_is_not_force_free_is_said_to_be(made):
@@ -186,12 +186,12 @@ def test_a_form_that_is_not_force_free_is_said_to_be(made):
 
 
 def test_latex_escapes_every_letter_that_means_something():
-    told = latex("64.8 % of 3 × 4 & x_1^2 #5 {ν} \\ ~ $ cells²")
-    assert told == (
+    text = latex("64.8 % of 3 × 4 & x_1^2 #5 {ν} \\ ~ $ cells²")
+    assert text == (
         r"64.8\,\% of 3 $\times$ 4 \& x\_1\textasciicircum{}2 \#5 \{$\nu$\} "
         r"\textbackslash{} \textasciitilde{} \$ cells$^2$"
     )
-    assert not re.search(r"(?<!\\)[%&#_]", told)
+    assert not re.search(r"(?<!\\)[%&#_]", text)
 
 
 def test_a_published_figure_has_its_caption_beside_it_and_below(found, tmp_path):

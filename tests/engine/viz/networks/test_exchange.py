@@ -254,9 +254,8 @@ def expressed(network):
 def computed(cppns, inputs):
     """The engine's outputs (network, output, point) in double precision."""
     batch = jax.tree.map(lambda *leaves: jnp.stack(leaves), *cppns)
-    batch = replace(
-        batch, bias=batch.bias.astype("float64"), weight=batch.weight.astype("float64")
-    )
+    genes = {name: getattr(batch, name).astype("float64") for name in ("bias", "weight")}
+    batch = replace(batch, **genes)
     program = jax.jit(jax.vmap(lambda network, x: genomes.evaluate(network, x, 2), (0, None)))
     return np.asarray(program(batch, jnp.asarray(inputs)))
 
