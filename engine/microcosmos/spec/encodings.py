@@ -3,11 +3,11 @@
 from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Field, Tag, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
-from .. import bodies, plugins
-from .base import ENCODINGS, Part, field, unit
+from .. import bodies
+from .base import ENCODINGS, Part, field, name_in, one_of
 from .body import Body, is_unavailable, shape
 from .control import OUTPUTS, Actuation, Control, Genome, Sight
 from .plugins import PluginName, PluginVersion, complete_plugin
@@ -123,7 +123,7 @@ class Weights(Sight):
 
     encoding: Literal["weights"] = "weights"
     hidden: Annotated[
-        tuple[Annotated[int, Field(ge=1, le=256, json_schema_extra=unit("nodes"))], ...],
+        tuple[Annotated[int, Field(ge=1, le=256, json_schema_extra={"unit": "nodes"})], ...],
         Field(min_length=1, max_length=8),
     ] = (8, 8)
     """Nodes of each hidden layer."""
@@ -181,28 +181,15 @@ MAX_GENES = 65_536
 """Most genes of a creature whose genome is a vector."""
 
 
-def encoding_tag(value: Any) -> Any:
-    """Return the tag of a controller; one without an encoding is a CPPN."""
-    if isinstance(value, dict):
-        name = value.get("encoding", "cppn")
-    else:
-        name = getattr(value, "encoding", None)
-    return "plugin" if plugins.is_plugin(name) else name
-
-
 Controller = Annotated[
     Annotated[Control, Tag("cppn")]
     | Annotated[Direct, Tag("direct")]
     | Annotated[Weights, Tag("weights")]
     | Annotated[Grown, Tag("cppn-body")]
     | Annotated[SkipJsonSchema[PluginControl], Tag("plugin")],
-    Discriminator(
-        encoding_tag,
-        custom_error_type="unknown_encoding",
-        custom_error_message="`encoding` must be one of " + ", ".join(ENCODINGS[:4]),
-    ),
+    *one_of("encoding", ENCODINGS[:4], name_in("encoding", "cppn")),
 ]
-"""A controller whose genome is inherited, by its encoding."""
+"""A controller whose genome is inherited."""
 
 
 def max_stretch(control: Controller) -> float:

@@ -1,17 +1,17 @@
 """The spec of filaments that fold into pictures, and its presets."""
 
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Field, Tag, model_validator
 
 from . import reverse
-from .base import Part, field
+from .base import Part, after, field, name_in, one_of
 from .body import Body, Walk, estimated_shape, is_unavailable, resolved
 from .coupling import Coupling
 from .scene import Fold, Scene
 from .search import Task
-from .sources import ADAM, DIGITS, PAPER, after
+from .sources import ADAM, DIGITS, PAPER
 from .targets import MAX_PIXELS, decoded, encoded
 from .targets import digit as handwritten
 from .world import World
@@ -72,21 +72,10 @@ def picture(name: str, ink: np.ndarray) -> Picture:
     return Picture(kind="picture", name=name, width=width, height=height, pixels=pixels)
 
 
-def _kind(value: Any) -> Any:
-    if isinstance(value, dict):
-        return value.get("kind", "digit")
-    return getattr(value, "kind", None)
-
-
 Target = Annotated[
     Annotated[Digit, Tag("digit")] | Annotated[Picture, Tag("picture")],
-    Discriminator(
-        _kind,
-        custom_error_type="unknown_picture",
-        custom_error_message="`kind` must be one of digit, picture",
-    ),
+    *one_of("kind", ("digit", "picture"), name_in("kind", "digit")),
 ]
-"""A picture to fold into."""
 
 
 class Folding(Part):

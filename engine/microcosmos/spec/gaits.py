@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Self, get_args
 from pydantic import Field, ValidationInfo, model_validator
 
 from ..plugins import is_plugin
-from .base import Part, field, unit
+from .base import Part, field
 from .body import Body, PluginBody, Swimmer, SwimmerBody, is_unavailable, resolved
 from .coupling import Coupling
 from .plugins import OR_PLUGIN, PluginVersion, PluginVersions, pinned
@@ -23,7 +23,7 @@ FORMS = {
 """Forms of the coupling, by name."""
 
 Form = Literal["ours", "strong", "paper"]
-Viscosity = Annotated[float, Field(ge=1e-3, le=2.0, json_schema_extra=unit("cells²/step"))]
+Viscosity = Annotated[float, Field(ge=1e-3, le=2.0, json_schema_extra={"unit": "cells²/step"})]
 
 
 class Gaits(Part):

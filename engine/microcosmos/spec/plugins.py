@@ -9,7 +9,7 @@ from pydantic.json_schema import SkipJsonSchema
 
 from .. import plugins
 from ..plugins import Catalogue, is_plugin
-from .base import Part
+from .base import Digest, Part
 
 CONTEXT = "plugins"
 """The key of the validation context under which `parse` passes a catalogue of plug-ins."""
@@ -18,7 +18,7 @@ CONTEXT = "plugins"
 class PluginVersion(Part):
     """The version and settings of a plug-in. All but the settings follows from its name."""
 
-    source: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+    source: Digest
     """SHA-256 of the module's source."""
     title: Annotated[str, Field(min_length=1, max_length=100)]
     """Title for people."""

@@ -5,11 +5,11 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from .base import Part, field, unit
+from .base import Part, field
 from .sources import PAPER
 from .world import Steric
 
-Nodes = Annotated[int, Field(ge=20, le=2_000_000, json_schema_extra=unit("nodes"))]
+Nodes = Annotated[int, Field(ge=20, le=2_000_000, json_schema_extra={"unit": "nodes"})]
 
 SPACING = 0.35
 """Cells between nodes, along a filament and across: 500,000 nodes fill a box of 256²."""

@@ -6,10 +6,10 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 
 from . import measures
-from .base import Part, field
+from .base import Digest, Part, after, field
 from .emitters import NUMBERING, WITHOUT_GRADIENT, Emitter, NeatEmitter, slots
 from .plugins import OR_PLUGIN, MaybePlugin, PluginVersion, complete_plugin, completed
-from .sources import CVT, MAP_ELITES, PAPER, REEVALUATION, after
+from .sources import CVT, MAP_ELITES, PAPER, REEVALUATION
 
 Fitness = Literal["displacement", "energy", "displacement+energy"]
 
@@ -177,8 +177,6 @@ MAX_INITIAL = 4096
 def _in_order(names: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(sorted(set(names)))
 
-
-Digest = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 
 InitialCreatures = Annotated[
     tuple[Digest, ...], Field(max_length=MAX_INITIAL), AfterValidator(_in_order)

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field, StringConstraints, ValidationError, model_validator
 
 from ...naming import LICENCE, name
-from ..base import Part, field_path
+from ..base import Digest, Part, field_path
 from ..plugins import PluginVersions
 from ..scene import Scene
 from ..search import Task
@@ -16,7 +16,6 @@ from .genomes import Network
 from .identity import Identity
 
 Room = Annotated[int, Field(ge=8, le=8192)]
-Digest = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 Figures = Annotated[dict[str, float], Field(max_length=1000)]
 Name = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=200)]
 Credit = Annotated[tuple[Name, ...], Field(max_length=50)]
