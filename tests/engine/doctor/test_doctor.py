@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import pytest
+from packaging.specifiers import SpecifierSet
 
 from microcosmos.doctor import devices, examination, memory, server, versions
 from microcosmos.doctor.finding import Finding, problem
@@ -87,7 +88,7 @@ def test_a_cache_that_cannot_be_is_a_problem(tmp_path):
     ],
 )
 def test_versions_are_compared_as_numbers(found, needed, satisfied):
-    assert versions.satisfied(found, needed) == satisfied
+    assert versions.satisfied(found, SpecifierSet(needed)) == satisfied
 
 
 def test_packages_that_lack_or_are_old_are_named(monkeypatch):
