@@ -223,5 +223,4 @@ def _column(time: np.ndarray) -> np.ndarray:
 
 
 def _still(time: np.ndarray, items: np.ndarray) -> np.ndarray:
-    """Return zero deviations of all joints or edges."""
     return np.zeros((len(time), len(items)))
