@@ -1,7 +1,7 @@
 """The common part of the specs of searches."""
 
 from abc import abstractmethod
-from typing import Generic, Self, TypeVar
+from typing import Any, Generic, Self, TypeVar
 
 from pydantic import model_validator
 
@@ -13,10 +13,25 @@ from .emitters import Emitter, PopulationEmitter, gradients, refuse_unfit_emitte
 from .encodings import Controller, refuse_cramped
 from .scene import Scene, refuse_misfit, refuse_senseless
 from .search import Archive, Generations, Task
-from .world import World
+from .world import Steric, World
 
 Name = TypeVar("Name", bound=str)
 How = TypeVar("How", bound=Generations)
+
+SMALL: dict[str, Any] = {
+    "world": World(width=32, height=32),
+    "body": Chain(nodes=16),
+    "control": Control(period=50, angle_scale=0.3, length_scale=0.2),
+    "task": Task(steps=100),
+}
+"""Parts of the demonstrations."""
+
+LITERAL: dict[str, Any] = {
+    "world": World(steric=Steric()),
+    "coupling": Coupling(projection="none", theta_feedback=0, layers=2),
+    "control": Control(timer="linear", position="unit", angle_scale=0.5, length_scale=0.3),
+}
+"""Parts as in the paper."""
 
 
 def refuse_crowd(
@@ -71,22 +86,22 @@ class Evolution(Part, Generic[Name, How]):
 
     @property
     def generations(self) -> int:
-        """Generations of the whole run."""
+        """Return the generations of the whole run."""
         return self.search.generations
 
     @property
     @abstractmethod
     def emitters(self) -> tuple[Emitter | PopulationEmitter, ...]:
-        """Sources of offspring."""
+        """Return the sources of offspring."""
 
     @property
     @abstractmethod
     def slots(self) -> tuple[int, ...]:
-        """Offspring per generation of each emitter."""
+        """Return the offspring per generation of each emitter."""
 
     @property
     def gradients(self) -> tuple[int, ...]:
-        """Gradients per generation that each emitter needs."""
+        """Return the gradients per generation that each emitter needs."""
         return tuple(map(gradients, self.emitters, self.slots))
 
     @property
