@@ -1,15 +1,25 @@
 """Fields of specs as people read them, taken from the JSON schemas."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 from ..experiments import EXPERIMENTS
-from .words import TAGS, Schema, default, items, kind, line, plain, range_of, refs, unit
+from .words import (
+    TAGS,
+    Schema,
+    default,
+    inner_of,
+    is_list,
+    kind,
+    range_of,
+    refs,
+    text_of,
+    unit,
+)
 
 
-@dataclass(frozen=True)
-class Field:
+class Field(NamedTuple):
     """One row of the reference."""
 
     name: str
@@ -21,9 +31,8 @@ class Field:
     source: str
 
 
-@dataclass(frozen=True)
-class Part:
-    """A part of specs, and at which paths it stands."""
+class Part(NamedTuple):
+    """A part of specs, with the paths at which it stands."""
 
     name: str
     text: str
@@ -33,13 +42,13 @@ class Part:
 
 
 def experiment(name: str) -> Part:
-    """An experiment's own fields."""
+    """Return an experiment as a part."""
     schema = _schemas()[name]
     return _part(name, schema, schema.get("$defs", {}))
 
 
 def parts() -> tuple[Part, ...]:
-    """Every part of every experiment, by name."""
+    """Return every part of every experiment, by name."""
     defined: Schema = {}
     paths: dict[str, list[str]] = {}
     for schema in _schemas().values():
@@ -58,30 +67,29 @@ def _schemas() -> dict[str, Schema]:
 
 
 def _walk(schema: Schema, defined: Schema, way: str = "") -> Iterator[tuple[str, str]]:
-    """(path, part) of every part below a schema."""
+    """Yield the path and the name of every part below a schema."""
     for name, field in schema.get("properties", {}).items():
         for part in refs(field):
-            path = f"{way}{name}" + ("[]" if items(field) else "")
+            path = f"{way}{name}" + ("[]" if is_list(field) else "")
             yield path, part
             yield from _walk(defined[part], defined, f"{path}.")
 
 
 def _part(name: str, schema: Schema, defined: Schema, paths: tuple[str, ...] = ()) -> Part:
     needed = schema.get("required", [])
-    own = schema["properties"].items()
-    rows = tuple(_field(key, field, defined, key in needed) for key, field in own)
-    text = line(schema.get("description", ""))
-    return Part(name, text, schema.get("source", ""), rows, paths)
+    fields = schema["properties"].items()
+    rows = tuple(_field(key, field, defined, key in needed) for key, field in fields)
+    return Part(name, text_of(schema), schema.get("source", ""), rows, paths)
 
 
 def _field(name: str, field: Schema, defined: Schema, required: bool) -> Field:
-    inner = plain(field)
+    inner = inner_of(field)
     parts = refs(field)
-    text = line(field.get("description", ""))
+    text = text_of(field)
     if not text and len(parts) == 1:
-        text = line(defined[parts[0]].get("description", ""))
+        text = text_of(defined[parts[0]])
     if not text and name in TAGS and "const" in field:
-        text = "Says which part this is."
+        text = f"Selects this {name}."
     return Field(
         name=name,
         kind=kind(field),

@@ -12,7 +12,7 @@ TAGS = ("experiment", "builder", "encoding", "operator", "kind")
 """Fields whose one value says which part it is."""
 
 
-def plain(field: Schema) -> Schema:
+def inner_of(field: Schema) -> Schema:
     """Return the inner schema: x of `x | None`, and the entry of a list."""
     options = [o for o in field.get("anyOf", [field]) if o.get("type") != "null"]
     inner = options[0] if len(options) == 1 else field
@@ -20,7 +20,7 @@ def plain(field: Schema) -> Schema:
     return items if isinstance(items, dict) and "prefixItems" not in inner else inner
 
 
-def items(field: Schema) -> bool:
+def is_list(field: Schema) -> bool:
     return any("items" in o for o in [field, *field.get("anyOf", [])])
 
 
@@ -37,17 +37,17 @@ def refs(field: Schema) -> list[str]:
 def kind(field: Schema) -> str:
     if names := refs(field):
         links = " or ".join(f"[{ref}](#{ref.lower()})" for ref in names)
-        said = f"list of {links}" if items(field) else links
+        text = f"list of {links}" if is_list(field) else links
     else:
-        said = _said(field)
+        text = _plain_kind(field)
     empty = any(o.get("type") == "null" for o in field.get("anyOf", []))
-    return f"{said} or none" if empty else said
+    return f"{text} or none" if empty else text
 
 
-def _said(field: Schema) -> str:
+def _plain_kind(field: Schema) -> str:
     options = [o for o in field.get("anyOf", []) if o.get("type") != "null"]
     if len(options) == 1:
-        return _said(options[0])
+        return _plain_kind(options[0])
     if "const" in field:
         return f"`{field['const']}`"
     if "enum" in field:
@@ -55,31 +55,31 @@ def _said(field: Schema) -> str:
     if field.get("type") == "array":
         if "prefixItems" in field:
             return f"{len(field['prefixItems'])} numbers"
-        return f"list of {_said(field['items'])}"
+        return f"list of {_plain_kind(field['items'])}"
     return TYPES.get(field.get("type", ""), "object")
 
 
-def unit(field: Schema, plain: Schema) -> str:
+def unit(field: Schema, inner: Schema) -> str:
     if "units" in field:
         return f"that of `{field['unit_of']}`"
-    return field.get("unit") or plain.get("unit", "")
+    return field.get("unit") or inner.get("unit", "")
 
 
-def range_of(plain: Schema, field: Schema) -> str:
-    low = plain.get("minimum", plain.get("exclusiveMinimum"))
-    high = plain.get("maximum", plain.get("exclusiveMaximum"))
-    found = ""
+def range_of(inner: Schema, field: Schema) -> str:
+    low = inner.get("minimum", inner.get("exclusiveMinimum"))
+    high = inner.get("maximum", inner.get("exclusiveMaximum"))
+    text = ""
     if low is not None or high is not None:
-        left = "(" if low is None or "exclusiveMinimum" in plain else "["
-        right = ")" if high is None or "exclusiveMaximum" in plain else "]"
-        found = f"{left}{_number(low, '−∞')}, {_number(high, '∞')}{right}"
+        left = "(" if low is None or "exclusiveMinimum" in inner else "["
+        right = ")" if high is None or "exclusiveMaximum" in inner else "]"
+        text = f"{left}{_number(low, '−∞')}, {_number(high, '∞')}{right}"
     length = [field.get("minItems"), field.get("maxItems")]
     if any(length):
         counted = f"{length[0] or 0} to {length[1]:,}" if length[1] else f"at least {length[0]}"
-        found = f"{counted} of them" + (f", each {found}" if found else "")
-    if plain.get("type") == "string" and "maxLength" in plain:
-        found = f"at most {plain['maxLength']:,} letters"
-    return found
+        text = f"{counted} of them" + (f", each {text}" if text else "")
+    if inner.get("type") == "string" and "maxLength" in inner:
+        return f"at most {inner['maxLength']:,} letters"
+    return text
 
 
 def _number(value: float | None, none: str) -> str:
@@ -91,26 +91,25 @@ def _number(value: float | None, none: str) -> str:
 
 def default(field: Schema, defined: Schema, required: bool) -> str:
     if "default" not in field:
-        return "to be given" if required else "the measure’s own"
+        return "required" if required else "that of the measure"
     value = field["default"]
     if isinstance(value, dict):
-        usual = _usual(field, value, defined)
+        usual = _defaults(field, value, defined)
         other = {k: v for k, v in value.items() if v != usual.get(k)}
-        named = [_tag(value)] if len(refs(field)) > 1 else []
-        said = named + [f"{name} {_word(given)}" for name, given in other.items()]
-        return ", ".join(said) or "its own"
+        words = [_tag(value)] if len(refs(field)) > 1 else []
+        words += [f"{name} {_word(given)}" for name, given in other.items()]
+        return ", ".join(words) or "all defaults"
     return _word(value)
 
 
-def _usual(field: Schema, value: Schema, defined: Schema) -> Schema:
+def _defaults(field: Schema, value: Schema, defined: Schema) -> Schema:
     """Return the defaults of the part to which a default belongs."""
     for ref in refs(field):
-        own = defined[ref]["properties"]
-        tagged = all(own[t].get("const") == value.get(t) for t in TAGS if t in own)
-        if set(own) == set(value) and tagged:
-            return {name: one.get("default") for name, one in own.items()} | {
-                t: value[t] for t in TAGS if t in own
-            }
+        fields = defined[ref]["properties"]
+        tags = {tag: value.get(tag) for tag in TAGS if tag in fields}
+        tagged = all(fields[tag].get("const") == tags[tag] for tag in tags)
+        if set(fields) == set(value) and tagged:
+            return {name: one.get("default") for name, one in fields.items()} | tags
     return {}
 
 
@@ -122,22 +121,16 @@ def _word(value: Any) -> str:
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, list):
-        if value and isinstance(value[0], dict):
-            words = [_tag(one) for one in value]
-        else:
-            words = [_word(one) for one in value]
-        text = ", ".join(words)
+        text = ", ".join(map(_word, value))
         return text if len(text) <= MAX_LENGTH else f"{text[:MAX_LENGTH].rpartition(', ')[0]} …"
     return _tag(value) if isinstance(value, dict) else str(value)
 
 
 def _tag(value: Schema) -> str:
-    """Name a part by its name or tag."""
-    named = next((str(value[t]) for t in ("name", *TAGS, "digit") if t in value), None)
-    if "digit" in value:
-        return f"{value['digit']}"
+    """Name a part by its digit, name or tag."""
+    named = next((str(value[tag]) for tag in ("digit", "name", *TAGS) if tag in value), None)
     return named or ", ".join(f"{k} {_word(v)}" for k, v in value.items())
 
 
-def line(text: str) -> str:
-    return " ".join(text.split())
+def text_of(schema: Schema) -> str:
+    return " ".join(schema.get("description", "").split())
