@@ -16,7 +16,7 @@ Source = bytes | str | os.PathLike
 
 
 def to_pandas(archive: Source) -> Any:
-    """A pandas `DataFrame` with pyribs' columns and types; see `export.columns`.
+    """Return a pandas `DataFrame` with pyribs' columns and types; see `export.columns`.
 
     `ribs.archives.ArchiveDataFrame` takes it as it is. Raises `ImportError` without pandas.
     """
@@ -24,7 +24,7 @@ def to_pandas(archive: Source) -> Any:
 
 
 def to_ribs(archive: Source) -> Any:
-    """A `GridArchive` or `CVTArchive` of pyribs with our elites and every measure as a field.
+    """Return pyribs' `GridArchive` or `CVTArchive` with our elites, measures as fields.
 
     A grid has ranges on the axes' own scales; with centroids they are 0 to 1 on those scales.
     pyribs rounds differently at the borders of bins, so an elite on a border moves to the
@@ -36,8 +36,8 @@ def to_ribs(archive: Source) -> Any:
     fields = list(found)[list(found).index("threshold") + 1 : -1]
     fields = {name: np.asarray(found[name]) for name in fields}
     filled = _empty(peer, data, solution.shape[1], fields)
-    strayed = filled.index_of(measures) != found["index"]
-    measures[strayed] = _middles(filled, found["index"])[strayed]
+    misplaced = filled.index_of(measures) != found["index"]
+    measures[misplaced] = _middles(filled, found["index"])[misplaced]
     filled.add(solution, found["objective"], measures, **fields)
     return filled
 
@@ -48,7 +48,10 @@ def _empty(peer: Any, data: bytes, genes: int, fields: dict[str, np.ndarray]) ->
     given = {
         "solution_dim": genes,
         "dtype": np.float32,
-        "extra_fields": {name: ((), _kind(values)) for name, values in fields.items()},
+        "extra_fields": {
+            name: ((), object if values.dtype.kind in "US" else values.dtype)
+            for name, values in fields.items()
+        },
     }
     axes, centroids = spec["descriptors"], tree["archive"].get("centroids")
     if centroids is not None:
@@ -62,10 +65,6 @@ def _middles(filled: Any, index: np.ndarray) -> np.ndarray:
         return filled.centroids[index]
     place = np.stack(np.unravel_index(index, filled.dims), 1) + 0.5
     return filled.lower_bounds + place / filled.dims * filled.interval_size
-
-
-def _kind(values: np.ndarray) -> Any:
-    return object if values.dtype.kind in "US" else values.dtype
 
 
 def _beside(found: dict[str, Any], prefix: str) -> np.ndarray:

@@ -60,36 +60,36 @@ def licensed(data: bytes, licence: str, credit: Sequence[str]) -> bytes:
 
 
 def centroids(data: bytes) -> np.ndarray:
-    """Centroids (cell, axis) of a CVT, from 0 to 1 on the axes' own scales."""
+    """Return the centroids (cell, axis) of a CVT, from 0 to 1 on the axes' own scales."""
     tree, _ = load(data)
     return tree["archive"]["centroids"]
 
 
 def repeated(archive: Tree) -> Columns:
-    """Results of reevaluation: count, failures, mean and standard deviation of fitness, and the
-    share that fell into the elite's own cell."""
+    """Return the results of reevaluation: count, failures, mean and standard deviation of
+    fitness, and the share that fell into the elite's own cell."""
     repeats = archive.get("repeats", {})
     if not np.any(repeats.get("count", 0)):
         return {}
-    count, sound = repeats["count"], repeats["count"] - repeats["failed"]
-    spread = np.sqrt(repeats["squares"] / np.maximum(sound - 1, 1))
+    count, valid = repeats["count"], repeats["count"] - repeats["failed"]
+    spread = np.sqrt(repeats["squares"] / np.maximum(valid - 1, 1))
     return {
         "repeats": count,
         "repeats_failed": repeats["failed"],
-        "repeats_mean": np.where(sound > 0, repeats["fitness"], np.nan),
-        "repeats_std": np.where(sound > 1, spread, np.nan),
+        "repeats_mean": np.where(valid > 0, repeats["fitness"], np.nan),
+        "repeats_std": np.where(valid > 1, spread, np.nan),
         "repeats_hit_rate": np.where(count > 0, repeats["hits"] / np.maximum(count, 1), np.nan),
     }
 
 
 def scaled(values: np.ndarray, axis: dict[str, Any]) -> np.ndarray:
-    """Values on an axis' own scale, cut at its ends."""
+    """Return values on an axis' own scale, cut at its ends."""
     values = np.clip(values, np.float32(axis["low"]), np.float32(axis["high"]))
     return np.log10(values) if axis["scale"] == "log10" else values
 
 
 def unit(values: np.ndarray, axis: dict[str, Any]) -> np.ndarray:
-    """Values from 0 to 1 on an axis' own scale."""
+    """Return values from 0 to 1 on an axis' own scale."""
     low, high = ends(axis)
     return ((scaled(values, axis) - low) / (high - low)).astype(values.dtype)
 

@@ -19,6 +19,7 @@ from rich.progress import (
     TransferSpeedColumn,
 )
 
+from ..archive.atomic import sync_folder
 from .connection import Connection
 from .errors import NotMicrocosmos, Refused, ServerError, unreachable
 
@@ -140,11 +141,7 @@ def _place(part: Path, to: Path) -> None:
             "way, and is not kept. Try again."
         )
     part.replace(to)
-    folder = os.open(to.parent, os.O_RDONLY)
-    try:
-        os.fsync(folder)
-    finally:
-        os.close(folder)
+    sync_folder(to.parent)
 
 
 def part_of(to: Path) -> Path | None:

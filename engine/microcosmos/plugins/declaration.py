@@ -31,11 +31,16 @@ class Axis(BaseModel):
 
     @model_validator(mode="after")
     def refuse_empty(self) -> Self:
-        if self.high <= self.low:
-            raise ValueError(f"`high` must be above `low` ({self.low:g}), got {self.high:g}")
-        if self.scale == "log10" and self.low <= 0:
-            raise ValueError(f"`low` must be above 0 where `scale` is log10, got {self.low:g}")
+        refuse_empty_axis(self.low, self.high, self.scale)
         return self
+
+
+def refuse_empty_axis(low: float, high: float, scale: str = "linear") -> None:
+    """Raise `ValueError` where an axis has no length, or no logarithm."""
+    if high <= low:
+        raise ValueError(f"`high` must be above `low` ({low:g}), got {high:g}")
+    if scale == "log10" and low <= 0:
+        raise ValueError(f"`low` must be above 0 where `scale` is log10, got {low:g}")
 
 
 class Declaration(BaseModel):

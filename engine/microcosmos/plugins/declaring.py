@@ -3,7 +3,7 @@
 import inspect
 import re
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Literal, TypeVar
 
 from pydantic import BaseModel
@@ -19,20 +19,15 @@ Settings = type[BaseModel] | None
 
 @dataclass(frozen=True)
 class Draft:
-    """A declaration before the name of its module is known."""
+    """A declaration before the module is known: fields of `Declaration`, and the settings."""
 
-    kind: Kind
-    name: str
-    title: str
-    unit: str = ""
-    axis: Axis | None = None
-    sizes: dict[str, int] = field(default_factory=dict)
-    settings: Settings = None
+    fields: dict[str, Any]
+    settings: Settings
 
 
 def fitness(name: str, *, title: str, unit: str = "", settings: Settings = None):
     """Declare a fitness: a JAX function from a `search.Motion` to one number."""
-    return _declared(Draft("fitness", name, title, unit, settings=settings))
+    return _declared("fitness", name, settings, title=title, unit=unit)
 
 
 def descriptor(
@@ -47,17 +42,17 @@ def descriptor(
 ):
     """Declare a descriptor: a JAX function from a `search.Motion` to one number."""
     axis = Axis(low=low, high=high, scale=scale)
-    return _declared(Draft("descriptor", name, title, unit, axis, settings=settings))
+    return _declared("descriptor", name, settings, title=title, unit=unit, axis=axis)
 
 
 def body(name: str, *, title: str, nodes: int, settings: Settings = None):
     """Declare a body: a NumPy function that returns a `bodies.Body` of at most `nodes`."""
-    return _declared(Draft("body", name, title, sizes={"nodes": nodes}, settings=settings))
+    return _declared("body", name, settings, title=title, sizes={"nodes": nodes})
 
 
 def gait(name: str, *, title: str, nodes: int, settings: Settings = None):
     """Declare a gait: a NumPy function that returns a `swimmers.Swimmer`."""
-    return _declared(Draft("gait", name, title, sizes={"nodes": nodes}, settings=settings))
+    return _declared("gait", name, settings, title=title, sizes={"nodes": nodes})
 
 
 def encoding(
@@ -77,34 +72,31 @@ def encoding(
     if genes + per_joint + per_edge < 1:
         raise ValueError(f"`genes` of {name!r} must be at least 1, or those per joint or edge")
     sizes = {"genes": genes, "per_joint": per_joint, "per_edge": per_edge}
-    return _declared(Draft("encoding", name, title, sizes=sizes, settings=settings))
+    return _declared("encoding", name, settings, title=title, sizes=sizes)
 
 
-def _declared(draft: Draft) -> Callable[[F], F]:
-    if not re.fullmatch(NAME, draft.name):
-        raise ValueError(f"`name` must be of a-z, 0-9 and _, got {draft.name!r}")
-    _refuse_unfit(draft)
+def _declared(kind: Kind, name: str, settings: Settings, **fields: Any) -> Callable[[F], F]:
+    if not re.fullmatch(NAME, name):
+        raise ValueError(f"`name` must be of a-z, 0-9 and _, got {name!r}")
+    if settings is not None:
+        _refuse_unfit(name, settings)
 
     def mark(function: F) -> F:
-        _refuse_arguments(draft, function)
-        setattr(function, MARK, draft)
+        _refuse_arguments(kind, name, settings is not None, function)
+        setattr(function, MARK, Draft({"kind": kind, "name": name, **fields}, settings))
         return function
 
     return mark
 
 
-def _refuse_unfit(draft: Draft) -> None:
+def _refuse_unfit(name: str, settings: type[BaseModel]) -> None:
     """Raise `ValueError` unless settings refuse unknown fields and have all defaults."""
-    model = draft.settings
-    if model is None:
-        return
-    if not issubclass(model, BaseModel) or model.model_config.get("extra") != "forbid":
-        raise ValueError(f"`settings` of {draft.name!r} must be a `microcosmos.spec.Part`")
-    needed = [name for name, one in model.model_fields.items() if one.is_required()]
+    if not issubclass(settings, BaseModel) or settings.model_config.get("extra") != "forbid":
+        raise ValueError(f"`settings` of {name!r} must be a `microcosmos.spec.Part`")
+    needed = [field for field, one in settings.model_fields.items() if one.is_required()]
     if needed:
         raise ValueError(
-            f"`settings` of {draft.name!r} must all have defaults, got none for "
-            f"{', '.join(needed)}"
+            f"`settings` of {name!r} must all have defaults, got none for {', '.join(needed)}"
         )
 
 
@@ -112,12 +104,14 @@ ARGUMENTS = {"fitness": 1, "descriptor": 1, "body": 0, "gait": 0, "encoding": 2}
 """Number of arguments of each kind of function, without settings."""
 
 
-def _refuse_arguments(draft: Draft, function: Callable[..., Any]) -> None:
-    needed = ARGUMENTS[draft.kind] + (draft.settings is not None)
+def _refuse_arguments(
+    kind: Kind, name: str, has_settings: bool, function: Callable[..., Any]
+) -> None:
+    needed = ARGUMENTS[kind] + has_settings
     try:
         inspect.signature(function).bind(*range(needed))
     except TypeError as error:
-        settings = ", its settings the last" if draft.settings else ""
+        settings = ", its settings the last" if has_settings else ""
         raise ValueError(
-            f"{draft.kind} {draft.name!r} must take {needed} arguments{settings}: {error}"
+            f"{kind} {name!r} must take {needed} arguments{settings}: {error}"
         ) from error

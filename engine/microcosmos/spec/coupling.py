@@ -51,13 +51,13 @@ class Coupling(Part):
         return self
 
     def displacement_limit(self, viscosity: float) -> float | None:
-        """Cells per step, or None where limits are off."""
+        """Return the cells per step, or None where limits are off."""
         if not self.limits:
             return None
         return self.max_displacement or (0.1 if viscosity >= 0.003 else 0.05)
 
     def force_limit(self, viscosity: float) -> float | None:
-        """Cells per step, or None where limits are off."""
+        """Return the cells per step, or None where limits are off."""
         if not self.limits:
             return None
         return self.max_force or (0.1 if viscosity >= 0.003 else 0.03)

@@ -7,6 +7,7 @@ from pydantic import Field, Tag, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
 from .. import bodies
+from ..plugins.declaration import refuse_empty_axis
 from .base import ENCODINGS, Part, field, name_in, one_of
 from .body import Body, is_unavailable, shape
 from .control import OUTPUTS, Actuation, Control, Genome, Sight
@@ -35,8 +36,7 @@ class Bounds(Part):
 
     @model_validator(mode="after")
     def refuse_empty(self) -> Self:
-        if self.high <= self.low:
-            raise ValueError(f"`high` must be above `low` ({self.low:g}), got {self.high:g}")
+        refuse_empty_axis(self.low, self.high)
         return self
 
 
@@ -64,7 +64,7 @@ class Shaping(Part):
 
     @property
     def traits(self) -> dict[str, tuple[float, float]]:
-        """Bounds of the inherited traits, by name."""
+        """Return the bounds of the inherited traits, by name."""
         found = {name: getattr(self, name) for name in TRAITS}
         return {name: (one.low, one.high) for name, one in found.items() if one is not None}
 
@@ -100,7 +100,7 @@ class Direct(Actuation, Shaping):
 
     @property
     def weights(self) -> int:
-        """Genes that control one joint or edge."""
+        """Return the number of genes that control one joint or edge."""
         return self.terms * (2 if self.waveform == "fourier" else 1)
 
     @model_validator(mode="after")
@@ -110,7 +110,7 @@ class Direct(Actuation, Shaping):
         return self
 
     def parts(self, body: bodies.Body) -> dict[str, int]:
-        """Number of genes of each trait, then of the control of angles and of lengths."""
+        """Return the genes of each trait, then of the control of angles and of lengths."""
         joints, edges = len(body.joints), len(body.edges)
         sizes = {name: joints if name in JOINT_TRAITS else edges for name in self.traits}
         if "rest_angle" in sizes:
@@ -138,7 +138,7 @@ class Weights(Sight):
 
     @property
     def sizes(self) -> tuple[int, ...]:
-        """Nodes of all layers."""
+        """Return the nodes of all layers."""
         return (len(self.inputs), *self.hidden, len(self.outputs))
 
 
@@ -171,7 +171,7 @@ class PluginControl(Actuation):
     complete = complete_plugin(("encoding",), "encoding")
 
     def genes(self, body: bodies.Body) -> int:
-        """Number of genes of a creature with such a body."""
+        """Return the number of genes of a creature with this body."""
         sizes = self.plugin.sizes
         each = {"genes": 1, "per_joint": len(body.joints), "per_edge": len(body.edges)}
         return sum(count * sizes.get(name, 0) for name, count in each.items())
@@ -239,7 +239,7 @@ def refuse_cramped(control: Controller, genome: Genome) -> None:
 
 
 def gene_count(control: Controller, body: bodies.Body) -> int:
-    """Length of a vector genome; 0 where the genome is a network."""
+    """Return the length of a vector genome; 0 where the genome is a network."""
     if isinstance(control, Direct):
         return sum(control.parts(body).values())
     if isinstance(control, PluginControl):

@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 
+from ..plugins.declaration import refuse_empty_axis
 from . import measures
 from .base import Digest, Part, after, field
 from .emitters import NUMBERING, WITHOUT_GRADIENT, Emitter, NeatEmitter, slots
@@ -70,10 +71,7 @@ class Descriptor(Part):
 
     @model_validator(mode="after")
     def refuse_empty(self) -> Self:
-        if self.high <= self.low:
-            raise ValueError(f"`high` must be above `low` ({self.low:g}), got {self.high:g}")
-        if self.scale == "log10" and self.low <= 0:
-            raise ValueError(f"`low` must be above 0 where `scale` is log10, got {self.low:g}")
+        refuse_empty_axis(self.low, self.high, self.scale)
         return self
 
 
@@ -99,7 +97,7 @@ class Archive(Part):
 
     @property
     def plugins(self) -> dict[str, PluginVersion]:
-        """Versions of the plug-ins among the descriptors, by name."""
+        """Return the versions of the plug-ins among the descriptors, by name."""
         return {axis.name: axis.plugin for axis in self.descriptors if axis.plugin}
 
     @property
@@ -212,7 +210,7 @@ class Search(Generations):
 
     @property
     def slots(self) -> tuple[int, ...]:
-        """Offspring per generation of each emitter."""
+        """Return the offspring per generation of each emitter."""
         return slots(self.batch, tuple(emitter.share for emitter in self.emitters))
 
     @model_validator(mode="after")

@@ -87,7 +87,7 @@ def test_a_spec_that_cannot_be_carried_out_is_refused_with_the_field_and_reason(
 
 
 def test_an_unknown_encoding_of_a_scene_is_refused_with_the_known_ones():
-    with pytest.raises(ValidationError, match="`encoding` must be .*direct.*got 'l-system'"):
+    with pytest.raises(ValidationError, match=r"`encoding` must be .*direct.*got 'l-system'"):
         Scene.model_validate({"control": {"encoding": "l-system"}})
 
 
