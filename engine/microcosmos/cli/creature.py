@@ -6,22 +6,23 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from typer import Option
 
 from ..archive.atomic import write_whole
 from ..archive.creature import parse
 from .app import CreaturePath, app, failing
 from .modules import Modules, prepare_engine
 
-Report = Annotated[Path | None, typer.Option(help="File to write the report to, as JSON.")]
+Report = Annotated[Path | None, Option(help="File to write the report to, as JSON.")]
 
 
 @app.command()
 def replay(
     file: CreaturePath,
     check: Annotated[
-        bool, typer.Option("--check", help="Evaluate again and compare bit for bit.")
+        bool, Option("--check", help="Evaluate again and compare bit for bit.")
     ] = False,
-    out: Annotated[Path | None, typer.Option(help="File to write the replay to.")] = None,
+    out: Annotated[Path | None, Option(help="File to write the replay to.")] = None,
     module: Modules = None,
 ) -> None:
     """Simulate a creature file again."""
@@ -55,14 +56,12 @@ def audit(file: CreaturePath, out: Report = None, module: Modules = None) -> Non
 @app.command()
 def gradient(
     file: CreaturePath,
-    of: Annotated[str, typer.Option(help="fitness, or a measure.")] = "fitness",
+    of: Annotated[str, Option(help="fitness, or a measure.")] = "fitness",
     by: Annotated[
         list[str] | None,
-        typer.Option(help="genes (default), rest_angle, rest_length, stretch, viscosity …"),
+        Option(help="genes (default), rest_angle, rest_length, stretch, viscosity …"),
     ] = None,
-    starts: Annotated[
-        int, typer.Option(min=1, help="Number of other starts to compare with.")
-    ] = 8,
+    starts: Annotated[int, Option(min=1, help="Number of other starts to compare with.")] = 8,
     out: Report = None,
     module: Modules = None,
 ) -> None:

@@ -3,6 +3,7 @@
 from typing import Annotated, Any
 
 import typer
+from typer import Argument, Option
 
 from ..client import Client, Run, Sweep, specs
 from . import overrides
@@ -10,22 +11,22 @@ from .app import Set
 from .monitor import watch_to_end
 from .remote import RUNS, Id, Ids, Json, describe, find, say, server_command, show, title
 
-Name = Annotated[str | None, typer.Option(help="Name of the run.")]
-Watch = Annotated[bool, typer.Option("--watch", "-w", help="Watch until it ends.")]
-Yes = Annotated[bool, typer.Option("--yes", "-y", help="Do not ask for confirmation.")]
+Name = Annotated[str | None, Option(help="Name of the run.")]
+Watch = Annotated[bool, Option("--watch", "-w", help="Watch until it ends.")]
+Yes = Annotated[bool, Option("--yes", "-y", help="Do not ask for confirmation.")]
 
 
 @server_command(RUNS)
 def submit(
     client: Client,
-    spec: Annotated[str, typer.Argument(help="Spec file, or name of a preset.")],
+    spec: Annotated[str, Argument(help="Spec file, or name of a preset.")],
     seeds: Annotated[
-        int | None, typer.Option(min=1, help="Queue a sweep with this number of seeds.")
+        int | None, Option(min=1, help="Queue a sweep with this number of seeds.")
     ] = None,
     settings: Set = None,
     sweep: Annotated[
         list[str] | None,
-        typer.Option(
+        Option(
             metavar="FIELD=A,B,...",
             help="Queue a run for each value of a field; several fields make a grid.",
         ),
@@ -48,7 +49,7 @@ def submit(
 def extend(
     client: Client,
     id: Id,
-    generations: Annotated[int, typer.Argument(min=1, help="Number of generations to add.")],
+    generations: Annotated[int, Argument(min=1, help="Number of generations to add.")],
     watch: Watch = False,
     json: Json = False,
 ) -> None:
@@ -61,25 +62,21 @@ def fork(
     client: Client,
     id: Id,
     elite: Annotated[
-        list[str] | None,
-        typer.Option(metavar="SHA", help="Start from this creature; repeatable."),
+        list[str] | None, Option(metavar="SHA", help="Start from this creature; repeatable.")
     ] = None,
     cells: Annotated[
-        str | None,
-        typer.Option(metavar="N,N,...", help="Start from the elites of these cells."),
+        str | None, Option(metavar="N,N,...", help="Start from the elites of these cells.")
     ] = None,
     region: Annotated[
         list[str] | None,
-        typer.Option(
+        Option(
             metavar="AXIS=LOW:HIGH",
             help="Start from the elites with measures in this range; repeatable.",
         ),
     ] = None,
-    whole: Annotated[
-        bool, typer.Option("--all", help="Start from all elites (default).")
-    ] = False,
+    whole: Annotated[bool, Option("--all", help="Start from all elites (default).")] = False,
     generation: Annotated[
-        int | None, typer.Option(min=0, help="Take the archive after this generation.")
+        int | None, Option(min=0, help="Take the archive after this generation.")
     ] = None,
     settings: Set = None,
     name: Name = None,

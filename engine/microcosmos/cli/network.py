@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Option
 
 from ..archive.atomic import write_whole
 from ..archive.creature import parse
@@ -26,14 +26,12 @@ def network(
     file: CreaturePath,
     form: Annotated[
         str,
-        typer.Option(
+        Option(
             "--as",
             help="formula, svg, dot (for Graphviz), python (with NumPy), or tensorneat (.npz).",
         ),
     ] = "formula",
-    out: Annotated[
-        Path | None, typer.Option(help="File to write; default: standard output.")
-    ] = None,
+    out: Annotated[Path | None, Option(help="File to write; default: standard output.")] = None,
 ) -> None:
     """Write the network of a creature file or of a TensorNEAT genome."""
     if form not in (*TEXTS, "tensorneat"):

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Option
 
 from ..archive.creature import parse
 from ..archive.file import read_table
@@ -20,18 +20,16 @@ def refine(
     file: CreaturePath,
     like: Annotated[
         str | None,
-        typer.Option(
+        Option(
             help="Spec or preset whose archive cells bound the search; default: 20 × 20 cells."
         ),
     ] = None,
-    steps: Annotated[int, typer.Option(min=1, help="Number of steps.")] = 20,
-    length: Annotated[float, typer.Option(help="Length of the first step.")] = 0.2,
-    out: Annotated[
-        Path | None, typer.Option(help="Archive file; default: NAME.refined.h5.")
-    ] = None,
+    steps: Annotated[int, Option(min=1, help="Number of steps.")] = 20,
+    length: Annotated[float, Option(help="Length of the first step.")] = 0.2,
+    out: Annotated[Path | None, Option(help="Archive file; default: NAME.refined.h5.")] = None,
     segment: Annotated[
         int | None,
-        typer.Option(
+        Option(
             min=1,
             help="Simulation steps whose states the gradient keeps in memory; default: all.",
         ),

@@ -14,6 +14,7 @@ from rich.progress import (
     TextColumn,
     TimeRemainingColumn,
 )
+from typer import Argument, Option
 
 from ..doctor.memory import memory_bytes
 from ..spec import Spec, estimate
@@ -25,19 +26,19 @@ from .specs import changed, presets, read_spec, with_generations
 
 @app.command()
 def evolve(
-    spec: Annotated[str, typer.Argument(help="Spec file, or name of a preset.")],
+    spec: Annotated[str, Argument(help="Spec file, or name of a preset.")],
     archive: Annotated[
-        Path | None, typer.Option("--out", help="Archive file; default: beside the spec.")
+        Path | None, Option("--out", help="Archive file; default: beside the spec.")
     ] = None,
     generations: Annotated[
         int | None,
-        typer.Option(
+        Option(
             help="Total number of generations; extends a finished archive. Default: the spec's."
         ),
     ] = None,
     settings: Set = None,
     checkpoint_seconds: Annotated[
-        float, typer.Option(min=0.0, help="Seconds between two checkpoints.")
+        float, Option(min=0.0, help="Seconds between two checkpoints.")
     ] = 60.0,
     other_device: OtherDevice = False,
     begin_from: From = None,
