@@ -7,9 +7,7 @@ from . import (
     manage,
     modules,
     monitor,
-    network,
     pictures,
-    refine,
     run,
     sharing,
 )

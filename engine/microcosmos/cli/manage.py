@@ -5,8 +5,9 @@ from typing import Annotated, Any
 import typer
 from typer import Argument, Option
 
-from ..client import Client, Run, Sweep, specs
-from . import overrides
+from ..client import Client, Run, Sweep
+from ..client import specs as server_specs
+from . import specs
 from .app import Set
 from .monitor import watch_to_end
 from .remote import RUNS, Id, Ids, Json, describe, find, say, server_command, show, title
@@ -36,8 +37,8 @@ def submit(
     json: Json = False,
 ) -> None:
     """Queue a run or a sweep, and print its id."""
-    grid = overrides.grid(sweep or [])
-    document = overrides.applied(specs.document(client.connection, spec), settings or [])
+    grid = specs.grid(sweep or [])
+    document = specs.applied(server_specs.document(client.connection, spec), settings or [])
     if seeds is None and not grid:
         made = client.submit(document, name=name)
     else:
@@ -87,11 +88,11 @@ def fork(
     chosen: dict[str, Any] = {
         "creatures": elite or None,
         "cells": _numbers(cells),
-        "region": overrides.region(region) if region else None,
+        "region": specs.region(region) if region else None,
     }
     if whole + sum(what is not None for what in chosen.values()) > 1:
         raise typer.BadParameter("fork takes one of --elite, --cells, --region and --all")
-    patch = overrides.patch(settings or [])
+    patch = specs.patch(settings or [])
     run = client.run(id).fork(**chosen, generation=generation, spec=patch, name=name)
     _report(run, watch, json)
 
