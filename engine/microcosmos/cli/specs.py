@@ -36,7 +36,7 @@ def changed(spec: Spec, settings: Sequence[str], option: str = "--set") -> Spec:
 
 
 def presets() -> dict[str, Spec]:
-    """By experiment and name; those of quality-diversity by their name alone as well."""
+    """Return presets by experiment and name, those of quality-diversity also by name alone."""
     named = {f"{e.name}/{p.name}": p.spec for e in EXPERIMENTS.values() for p in e.presets}
     return {p.name: p.spec for p in EXPERIMENTS["quality-diversity"].presets} | named
 

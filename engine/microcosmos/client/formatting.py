@@ -74,6 +74,5 @@ def speed(record: Mapping[str, Any]) -> str:
     """Format the rate of a run and its remaining time."""
     rate, remaining = record.get("evaluations_per_second"), record.get("eta_seconds")
     parts = [f"{rate:.3g} evaluations/s"] if rate and record["status"] == "running" else []
-    return "   ".join(
-        [*parts, *([f"{duration(remaining)} left"] if remaining is not None else [])]
-    )
+    parts += [f"{duration(remaining)} left"] if remaining is not None else []
+    return "   ".join(parts)

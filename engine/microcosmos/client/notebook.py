@@ -58,9 +58,8 @@ class Page:
 def html(state: RunState) -> str:
     record = state.record
     colour = COLOURS.get(record["status"], "#2f7ec0")
-    figures = [
-        f"{escape(name)} <b>{escape(value)}</b>" for name, value in formatting.figures(record)
-    ]
+    pairs = formatting.figures(record)
+    figures = [f"{escape(name)} <b>{escape(value)}</b>" for name, value in pairs]
     words = [formatting.done(record), *figures, formatting.speed(record)]
     problems = " ".join(filter(None, [record.get("warning"), state.problem]))
     curves = (
