@@ -127,7 +127,6 @@ def _refuse_joints(joints: np.ndarray, edges: np.ndarray) -> None:
 
 
 def _refuse_pairs(name: str, pairs: np.ndarray, of: str, count: int) -> None:
-    """Raise `ValueError` unless pairs are distinct and of two different existing items."""
     if not pairs.size:
         return
     low, high = pairs.min(), pairs.max()

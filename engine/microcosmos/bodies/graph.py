@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from .checks import refuse_malformed
-from .colouring import Colour, colour_parts
+from .colouring import Colour, colour
 
 
 @dataclass(frozen=True)
@@ -51,10 +51,10 @@ class Body:
 
     @cached_property
     def edge_colours(self) -> tuple[Colour, ...]:
-        return colour_parts(self.edges, self.member)
+        return colour(self.edges, self.member)
 
     @cached_property
     def joint_colours(self) -> tuple[Colour, ...]:
         if not len(self.joints):
             return ()
-        return colour_parts(self.joints, self.member[self.edges[:, 0]])
+        return colour(self.joints, self.member[self.edges[:, 0]])

@@ -106,3 +106,20 @@ def _arc(nodes: int, edges: np.ndarray, length: np.ndarray) -> np.ndarray:
     way = distances(nodes, edges, length)
     way[np.isinf(way)] = 0
     return way / max(way.max(), 1e-12)
+
+
+def extent(body: Body) -> float:
+    """Return the longest path along edges between two nodes, in cells.
+
+    The path is found from the node farthest from the first node: exact without loops, and for
+    one loop, of which the shorter way counts.
+    """
+    farthest, _ = _farthest(body, 0)
+    return _farthest(body, farthest)[1]
+
+
+def _farthest(body: Body, start: int) -> tuple[int, float]:
+    way = distances(len(body.positions), body.edges, body.rest_length, start)
+    way[np.isinf(way)] = -1.0
+    last = int(np.argmax(way))
+    return last, float(way[last])

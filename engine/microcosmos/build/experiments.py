@@ -151,7 +151,6 @@ def with_initial(
 
 
 def _counters(plan: Plan, genes: list[dict[str, Any]]) -> neat.Counters:
-    """Return the next gene numbers after those of the initial creatures."""
     if plan.encoding.room is None:
         return plan.counters
     connections, nodes = counters(genes)

@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .. import bodies, coupling, fields, filaments, fluid, groups, search, spec, world
-from ..bodies.extent import extent
+from ..bodies import extent
 from .encodings import build_encoding
 from .plugins import build_measures, strokes_of
 

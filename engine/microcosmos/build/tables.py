@@ -7,7 +7,7 @@ import jax.numpy as jnp
 
 from .. import bodies, device, filaments, spec, units, world
 from ..archive.report import Row
-from ..bodies.extent import extent
+from ..bodies import extent
 from ..experiments import gaits, scaling
 from ..experiments.table_file import TableRun
 from ..spec.scaling import SPACING

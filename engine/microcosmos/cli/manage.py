@@ -143,7 +143,6 @@ def _each(client: Client, ids: list[str], action: str) -> None:
 
 
 def _report(made: Run | Sweep, watch: bool, json: bool) -> None:
-    """Print the id for scripts and a hint for people; watch it if asked to."""
     if json:
         show(made.record)
     else:

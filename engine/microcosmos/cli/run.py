@@ -168,7 +168,6 @@ def carry_on(
 
 
 def _summary(report: Any) -> str:
-    """Summarise a generation in a few words."""
     if report.qd_score is None:
         values = (report.summary or {}).items()
         shown = ((name, value) for name, value in values if value is not None)
@@ -192,7 +191,6 @@ def _archive(like: str | None) -> Archive:
 
 
 def _print_comparison(path: Path) -> None:
-    """Print the creature before and after the refinement."""
     rows = read_table(path.read_bytes()).rows
     before, after = rows[0], rows[-1]
     print(f"{'':>20}  {'before':>12}  {'after':>12}")

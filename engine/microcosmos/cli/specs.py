@@ -108,7 +108,6 @@ def region(bounds: Sequence[str]) -> dict[str, list[float]]:
 
 
 def _part(place: Any, name: str, path: str) -> Any:
-    """Return an existing part of a spec, or add it."""
     key = _key(place, name, path)
     if isinstance(place, dict) and place.get(name) is None:
         place[name] = {}

@@ -54,7 +54,6 @@ def _bar(state: RunState, width: int) -> RenderableType:
 
 
 def _curves(state: RunState, width: int) -> list[RenderableType]:
-    """Draw the curves that have points, side by side."""
     curves = {}
     for name, title in formatting.MEASURES.items():
         known = [value for value in state.curves.get(name, []) if value is not None]

@@ -125,7 +125,6 @@ def _load_entry(entry: EntryPoint) -> None:
 
 
 def _declared(module: ModuleType) -> list[tuple[Draft, Any]]:
-    """Return the declared functions that were defined in this module, in their order."""
     found = [
         one for one in vars(module).values() if isinstance(getattr(one, MARK, None), Draft)
     ]

@@ -34,25 +34,6 @@ LITERAL: dict[str, Any] = {
 """Parts as in the paper."""
 
 
-def refuse_crowd(
-    emitters: tuple[Emitter | PopulationEmitter, ...], search: Generations
-) -> None:
-    """Raise `ValueError` where a population cannot hold all initial creatures."""
-    populations = [one for one in emitters if isinstance(one, PopulationEmitter)]
-    if not search.initial or not populations:
-        return
-    if len(emitters) > 1 or populations[0].backend != "microcosmos":
-        raise ValueError(
-            "`search.initial` must be empty for a population beside other emitters or with "
-            f"another program's backend, got {len(search.initial)} creatures"
-        )
-    if len(search.initial) > search.batch:
-        raise ValueError(
-            f"`search.initial` must have at most `search.batch` ({search.batch}) creatures for "
-            f"a population, got {len(search.initial)}"
-        )
-
-
 class Evolution(Part, Generic[Name, How]):
     """A search over generations of creatures in one scene, with an archive of elites."""
 
@@ -80,8 +61,21 @@ class Evolution(Part, Generic[Name, How]):
         return self
 
     @model_validator(mode="after")
-    def check_initial(self) -> Self:
-        refuse_crowd(self.emitters, self.search)
+    def refuse_crowd(self) -> Self:
+        emitters, batch, initial = self.emitters, self.search.batch, len(self.search.initial)
+        populations = [one for one in emitters if isinstance(one, PopulationEmitter)]
+        if not initial or not populations:
+            return self
+        if len(emitters) > 1 or populations[0].backend != "microcosmos":
+            raise ValueError(
+                "`search.initial` must be empty for a population beside other emitters or with "
+                f"another program's backend, got {initial} creatures"
+            )
+        if initial > batch:
+            raise ValueError(
+                f"`search.initial` must have at most `search.batch` ({batch}) creatures for a "
+                f"population, got {initial}"
+            )
         return self
 
     @property

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, Tag, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
-from ..bodies.extent import extent
+from ..bodies import extent
 from .base import ENCODINGS, Part, field, name_in, one_of
 from .body import SUPPORT, Body, Chain, Swimmer, is_unavailable, shape
 from .control import Control, Sight

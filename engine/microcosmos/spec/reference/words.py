@@ -127,7 +127,6 @@ def _word(value: Any) -> str:
 
 
 def _tag(value: Schema) -> str:
-    """Name a part by its digit, name or tag."""
     named = next((str(value[tag]) for tag in ("digit", "name", *TAGS) if tag in value), None)
     return named or ", ".join(f"{k} {_word(v)}" for k, v in value.items())
 
