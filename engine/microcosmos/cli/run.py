@@ -19,7 +19,7 @@ from typer import Argument, Option
 
 from ..archive.creature import parse
 from ..archive.file import read_table
-from ..doctor.memory import memory_bytes
+from ..doctor.machine import memory_bytes
 from ..spec import Archive, Refinement, Spec, estimate
 from .app import CACHE, CreaturePath, OtherDevice, Set, app, console, fail, failing
 from .fork import From, with_initial

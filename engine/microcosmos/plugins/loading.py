@@ -12,8 +12,7 @@ from types import ModuleType
 from typing import Any
 
 from . import registry
-from .declaration import NAME, Declaration
-from .declaring import MARK, Draft
+from .declaration import MARK, NAME, Declaration, Draft
 from .registry import Plugin
 
 GROUP = "microcosmos.plugins"

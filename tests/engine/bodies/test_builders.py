@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from microcosmos import bodies
-from microcosmos.bodies.refine import subdivided
+from microcosmos.bodies.resolution import subdivided
 
 pytestmark = pytest.mark.fast
 
