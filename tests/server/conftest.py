@@ -14,7 +14,7 @@ import pytest
 import reports
 from databases import Missing, own_postgresql, own_redis
 from installation import Installation, empty_redis, running
-from sqlalchemy import func, select
+from sqlalchemy import func, select, update
 
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, parse
@@ -140,20 +140,37 @@ def run_id(services, spec) -> UUID:
 
 
 @pytest.fixture
-def attempt(services, run_id) -> Attempt:
-    """A worker's claim on the queued run."""
-    return claim(services, run_id, "worker")
+def claim_run(services, run_id) -> Callable[..., Attempt | None]:
+    """Claims the queued run for a worker."""
+    return lambda worker="worker": claim(services, run_id, worker)
 
 
 @pytest.fixture
-def record(services, run_id, request) -> Callable[..., None]:
+def attempt(claim_run) -> Attempt:
+    """A worker's claim on the queued run."""
+    return claim_run()
+
+
+@pytest.fixture
+def record(request) -> Callable[..., None]:
     """Records a generation of the queued run, as `attempt`; takes what `report` does."""
 
-    def record(*said: Any, seconds: float = 1.0, **more: Any) -> None:
-        held = request.getfixturevalue("attempt")
-        held.record(reports.report(*said, **more), seconds)
+    def record(*figures: Any, seconds: float = 1.0, **more: Any) -> None:
+        attempt = request.getfixturevalue("attempt")
+        attempt.record(reports.report(*figures, **more), seconds)
 
     return record
+
+
+@pytest.fixture
+def update_rows(services) -> Callable[..., None]:
+    """Sets columns of a table, in all rows or where some conditions hold."""
+
+    def change(table: type[Base], *where: Any, **values: Any) -> None:
+        with services.sessions.write.begin() as session:
+            session.execute(update(table).where(*where).values(**values))
+
+    return change
 
 
 @pytest.fixture
@@ -198,6 +215,17 @@ def identity() -> Callable[[int], dict[str, Any]]:
 def file() -> dict[str, Any]:
     """A creature file."""
     return creature.document(reports.identity(3), None, None)
+
+
+@pytest.fixture
+def upload(api) -> Callable[..., str]:
+    """Uploads a creature with an identity, and returns its hash."""
+
+    def upload(identity: dict[str, Any], *more: Any) -> str:
+        file = creature.document(identity, *more or (None, None))
+        return api.post("creatures", json=file).json()["creature"]
+
+    return upload
 
 
 @pytest.fixture
