@@ -54,7 +54,7 @@ def main() -> None:
 
 
 def carry_out(place: Installation) -> None:
-    """After the demonstration of a new folder: first presets, a sweep, and the README's run."""
+    """Run the first preset of each experiment, a sweep, and the README's run."""
     experiments = place.http.get("/api/v1/experiments").raise_for_status().json()
     presets = {one["experiment"]: one["presets"] for one in experiments}
     for experiment, known in presets.items():
@@ -70,7 +70,7 @@ def carry_out(place: Installation) -> None:
 
 
 def take_all(browser: Browser, address: str) -> list[str]:
-    """A picture of every page in every theme and width; what is wrong with them."""
+    """Take a picture of every page in every theme and width, and return the faults."""
     FOLDER.mkdir(parents=True, exist_ok=True)
     wrong: list[str] = []
     for theme in THEMES:
@@ -96,7 +96,7 @@ def take_all(browser: Browser, address: str) -> list[str]:
 
 
 def photographed(page: Page, width: int, height: int) -> bytes:
-    """The page in a window so high that one sees all of it, or far down."""
+    """A picture of the page in a window as high as the page, within limits."""
     whole = page.evaluate("document.documentElement.scrollHeight")
     high = max(height, min(whole, AREA // width))
     page.set_viewport_size({"width": width, "height": high})
@@ -112,7 +112,7 @@ def photographed(page: Page, width: int, height: int) -> bytes:
 
 
 def await_motions(page: Page) -> None:
-    """Until a gallery asks for no more; what is being rendered it asks for every second."""
+    """Wait until a gallery has requested no motion for three seconds."""
     if page.locator(GALLERY).count():
         with suppress(TimeoutError):
             while True:

@@ -19,8 +19,6 @@ GUIDED = "localStorage.setItem('microcosmos:guided', '1')"
 
 
 class Place(NamedTuple):
-    """A page to visit."""
-
     name: str
     path: str
     press: str | None = None
@@ -99,7 +97,6 @@ def stage(page: Page) -> Locator:
 
 
 def best_of(product: Installation, run: str) -> str:
-    """The name of a run's best creature."""
     archive = product.get(f"runs/{run}/archive")
     return max(zip(archive["fitness"], archive["creature"], strict=True))[1]
 
@@ -137,12 +134,10 @@ def settle(page: Page, seconds: float) -> None:
 
 
 def pixels(page: Page) -> str:
-    """The picture of a creature's stage."""
     return page.evaluate("document.querySelector('.stage canvas').toDataURL()")
 
 
 def see_it_swim(page: Page, seconds: float) -> None:
-    """Wait for the creature, and see that its picture changes."""
     expect(stage(page)).to_be_visible(timeout=1000 * seconds)
     page.wait_for_timeout(300)
     before = pixels(page)

@@ -118,7 +118,7 @@ def test_the_gallery_moves_and_is_walked_by_keys(page, searched):
 
 @pytest.mark.parametrize("motion", ["no-preference", "reduce"])
 def test_a_cell_that_changes_live_flashes_once(page, idle, motion):
-    """Its outline, and nothing else; not for whom movement disturbs."""
+    """Only its outline flashes; nothing does where reduced motion is preferred."""
     run = Written(idle.services, seed=41)
     run.begin("worker 1")
     run.go_on(1, 3)

@@ -29,7 +29,7 @@ def test_every_page_fits_its_window_and_axe_finds_nothing(page, shared, idle, co
 
 
 def every_place(shared: Any, idle: Any) -> Iterator[tuple[str, Place]]:
-    """The shared pages, and what only a product without workers shows for long."""
+    """All pages of the shared product, and those that need a product without workers."""
     runs = {shared.finished(name): name for name in shared.submitted}
     voronoi = next(run for run, name in runs.items() if name == "voronoi")
     address = shared.product.url
@@ -64,7 +64,7 @@ def published(http: Any, run: str) -> list[dict[str, Any]]:
 
 
 def faults_of(page: Page) -> Iterator[str]:
-    """In every theme and width, what a person would see to be wrong; at a desk, also axe."""
+    """Faults of a page in every theme and width; at a desk, also those that axe finds."""
     for width, height in WIDTHS.items():
         page.set_viewport_size({"width": width, "height": height})
         for theme in THEMES:

@@ -66,7 +66,7 @@ def publish(page: Page, title: str, *, listed: bool) -> str:
 
 
 def requests_of(page: Page) -> list[tuple[str, str | None]]:
-    """The paths that a page asks for from now on, each with the share that it names."""
+    """Requests of a page from now on, as path and share."""
     asked: list[tuple[str, str | None]] = []
 
     def note(request: Request) -> None:
@@ -104,7 +104,7 @@ def tell_other_sites(stranger: Page, link: str) -> None:
 
 
 def import_it(stranger: Page, address: str, sha: str) -> None:
-    """The file that is handed out is taken again: the same name, licence and credit."""
+    """An imported download keeps name, licence and credit."""
     with stranger.expect_download() as event:
         stranger.get_by_role("link", name="JSON").click()
     text = event.value.path().read_text()

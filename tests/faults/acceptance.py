@@ -139,7 +139,6 @@ PARTS = {
 
 
 def main(names: list[str]) -> None:
-    """Carry out all parts, or those named."""
     if unknown := set(names) - PARTS.keys():
         sys.exit(f"parts must be of {', '.join(PARTS)}, got {', '.join(sorted(unknown))}")
     with (

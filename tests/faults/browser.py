@@ -34,7 +34,7 @@ def launched(path: str | None = None) -> Iterator[Browser]:
 
 
 def overhear(page: Page, complaints: list[str]) -> None:
-    """Note what a page complains of from now on: errors, and what it tells the console."""
+    """Collect the errors and warnings of a page."""
 
     def note(kind: str, text: str) -> None:
         if kind in ("error", "warning"):

@@ -50,8 +50,6 @@ SPEC = {
 
 @dataclass(frozen=True)
 class Sample:
-    """The memory of a page at a moment."""
-
     seconds: float
     parts: Sequence[float]
     """Bytes of each of `PARTS`."""
@@ -94,7 +92,6 @@ def watched(page: Page, place: Installation, run: str, seconds: float) -> list[S
 
 
 def look_at_gallery(page: Page) -> None:
-    """Open the gallery and return, within the page."""
     for query in ("?view=gallery", "?"):
         page.evaluate(MOVE, query)
         page.wait_for_timeout(1000 * HOVER_S)

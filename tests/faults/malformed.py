@@ -30,7 +30,7 @@ class Case:
 
 
 def good() -> dict[str, Any]:
-    """A creature file with a network of its own, and nothing that may be said freely."""
+    """A valid creature file with a network."""
     identity = example()
     genome = identity["genome"]
     inputs, outputs = len(genome["inputs"]), len(genome["outputs"])

@@ -32,7 +32,7 @@ def cases(canary: Path) -> Iterator[Case]:
 
 
 def damaged(file: bytes) -> Iterator[Case]:
-    """Cut off, turned over, and with addresses and lengths that lie."""
+    """Files cut off, with bits flipped, and with wrong addresses and lengths."""
     chance = random.Random(11)
     for at in sorted(chance.sample(range(8, len(file) - 1), 120)):
         yield Case(f"cut off at {at}", file[:at], "", HDF5)
@@ -57,7 +57,6 @@ def edited(file: bytes, edit: Edit) -> bytes:
 
 
 def members(file: bytes) -> list[str]:
-    """The paths of a file's datasets."""
     found: list[str] = []
     with h5py.File(BytesIO(file), "r") as opened:
         opened.visititems(lambda name, item: found.append(name) if is_data(item) else None)

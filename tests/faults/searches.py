@@ -55,7 +55,6 @@ SENSOR = 3
 
 
 def written(spec: dict[str, Any]) -> dict[str, Any]:
-    """The whole spec, with its defaults."""
     return parse({"experiment": "quality-diversity", **spec}).model_dump(mode="json")
 
 
@@ -110,7 +109,6 @@ def draw(runs: dict[str, list[dict]], path: Path) -> None:
 
 
 def fittest(place: Installation, run: str, count: int) -> list[dict]:
-    """The creature files of a run's fittest elites."""
     archive = place.http.get(f"/api/v1/runs/{run}/archive").raise_for_status().json()
     order = np.argsort(archive["fitness"])[::-1][:count]
     addresses = [f"/api/v1/creatures/{archive['creature'][i]}" for i in order]
@@ -264,7 +262,6 @@ def blinded(file: dict) -> dict:
 
 
 def collected(file: dict) -> float:
-    """The energy that a creature collects, measured again."""
     from microcosmos.audit.reproducibility import check
 
     return check(file).repeated["energy"]

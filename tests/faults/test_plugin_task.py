@@ -33,7 +33,7 @@ SMALL = {
 
 @pytest.fixture(scope="module")
 def own_place(installation_of_file):
-    """An installation whose worker has nothing of anybody's own."""
+    """An installation whose worker has no plug-in."""
     place = installation_of_file(WORKERS="1")
     place.start()
     wait_until(lambda: place.http.get("/api/v1/workers").json(), 60, "its worker lives")
@@ -47,7 +47,7 @@ def module(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def hire(own_place, module):
-    """Starts a worker beside it that has the example, and a module that is broken."""
+    """Starts a second worker, with the example module and a broken one."""
     hired = []
     broken = module.with_name("broken.py")
     broken.write_text("import os\nos.nothing\n")

@@ -172,7 +172,7 @@ def small_disk(tmp_path):
 
 
 def fill(folder):
-    """Leave not a byte; the file that takes it."""
+    """Fill the disk, and return the file that takes the space."""
     ballast = folder / "ballast"
     with suppress(OSError), ballast.open("wb", 0) as file:
         while True:

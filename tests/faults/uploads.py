@@ -26,8 +26,6 @@ OURS = ("Errno", "No module", "took too long", "cannot be read", "Traceback")
 
 @dataclass
 class Findings:
-    """The outcome of sending malformed files."""
-
     refused: int = 0
     wrong: list[str] = field(default_factory=list)
     slowest: float = 0.0
@@ -128,7 +126,7 @@ LIES = {
 
 
 def lie(port: int, sent: bytes) -> bytes:
-    """The first line of the answer to a request whose length is not what it says."""
+    """The first line of the answer to a request with a wrong length."""
     with socket.create_connection(("127.0.0.1", port), timeout=20) as connection:
         try:
             connection.sendall(HEAD + sent)

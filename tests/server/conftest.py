@@ -97,8 +97,6 @@ def flush(services) -> Callable[[], None]:
 
 @pytest.fixture
 def eventually() -> Callable[[Callable[[], Any]], None]:
-    """Waits until a condition holds, and fails after 20 seconds."""
-
     def wait(condition: Callable[[], Any]) -> None:
         deadline = time.monotonic() + 20
         while not condition():
@@ -116,7 +114,6 @@ def serve(services) -> Callable[[], Any]:
 
 @pytest.fixture
 def address(installation) -> str:
-    """The server that all tests share."""
     return installation.address
 
 
@@ -134,20 +131,17 @@ def spec() -> dict[str, Any]:
 
 @pytest.fixture
 def run_id(services, spec) -> UUID:
-    """A queued run."""
     demo = EXPERIMENTS["quality-diversity"].presets[0].spec
     return submit(services, demo)[0].id
 
 
 @pytest.fixture
 def claim_run(services, run_id) -> Callable[..., Attempt | None]:
-    """Claims the queued run for a worker."""
     return lambda worker="worker": claim(services, run_id, worker)
 
 
 @pytest.fixture
 def attempt(claim_run) -> Attempt:
-    """A worker's claim on the queued run."""
     return claim_run()
 
 
@@ -175,8 +169,6 @@ def update_rows(services) -> Callable[..., None]:
 
 @pytest.fixture
 def row(services, run_id) -> Callable[[], Run]:
-    """The run as the database has it now."""
-
     def read() -> Run:
         with services.sessions.read() as session:
             return session.get_one(Run, run_id)
@@ -186,8 +178,6 @@ def row(services, run_id) -> Callable[[], Run]:
 
 @pytest.fixture
 def count(services) -> Callable[[type[Base]], int]:
-    """Counts the rows of a table."""
-
     def count(table: type[Base]) -> int:
         with services.sessions.read() as session:
             return session.scalar(select(func.count()).select_from(table))
@@ -213,7 +203,6 @@ def identity() -> Callable[[int], dict[str, Any]]:
 
 @pytest.fixture
 def file() -> dict[str, Any]:
-    """A creature file."""
     return creature.document(reports.identity(3), None, None)
 
 

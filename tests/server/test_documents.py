@@ -88,7 +88,6 @@ def test_no_request_breaks_the_server_or_its_document(serve, services, known):
 def broken(
     operation: Any, address: str, known: dict[str, list[str]], reached: set[str]
 ) -> list[str]:
-    """Send requests to an operation and return wrong answers."""
     wrong: list[str] = []
     modes = [operation.as_strategy(generation_mode=mode) for mode in GenerationMode]
 

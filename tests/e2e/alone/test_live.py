@@ -55,7 +55,6 @@ def connection(page: Page) -> Locator:
 
 
 def figures_of(product: Installation, run: str) -> dict[str, Any]:
-    """The figures of a paused run in the API."""
     curves = product.get(f"runs/{run}/generations")
     return {
         "elites": len(product.get(f"runs/{run}/archive")["cell"]),
@@ -67,7 +66,6 @@ def figures_of(product: Installation, run: str) -> dict[str, Any]:
 
 
 def figures_on(page: Page) -> dict[str, Any]:
-    """The same figures on the page."""
     return {
         "elites": first_number(page.get_by_text(re.compile(r"^[\d,]+ elites"))),
         "generation": first_number(page.get_by_text(re.compile(r"^[\d,]+ / 5,000$"))),
@@ -78,7 +76,7 @@ def figures_on(page: Page) -> dict[str, Any]:
 
 
 def newest(page: Page, curve: str) -> float:
-    """The last value of a curve, which its picture is named with."""
+    """The last value of a curve, from the label of its plot."""
     picture = page.get_by_role("img", name=re.compile(f"^{curve} .*now "))
     name = picture.first.get_attribute("aria-label") or ""
     return rounded(number(name.partition("now")[2]))

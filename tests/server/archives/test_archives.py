@@ -17,7 +17,6 @@ from server.runs.submission import submit
 
 @pytest.fixture
 def saved(spec, attempt, record) -> bytes:
-    """The checkpoint of the run, an archive with one elite."""
     record(1)
     content = archive_file(spec)
     attempt.save(1, content)

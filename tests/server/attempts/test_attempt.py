@@ -18,8 +18,6 @@ from server.tables import Run
 
 
 class Disk(LocalFileSystem):
-    """A disk that can be full."""
-
     cachable = False
     full = False
 
@@ -150,7 +148,7 @@ def test_a_running_run_cannot_be_claimed(held):
 
 @pytest.fixture
 def away(monkeypatch):
-    """A database that is away for so many tries."""
+    """A database that fails a number of times."""
     monkeypatch.setattr(retry, "RETRY_SECONDS", 0)
 
     def leave(tries):

@@ -27,7 +27,6 @@ def damage_all(folder):
 
 @pytest.fixture
 def folder(services, run_id):
-    """The folder of the run's files."""
     return services.settings.data / "artifacts" / "runs" / str(run_id)
 
 

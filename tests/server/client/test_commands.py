@@ -153,7 +153,6 @@ def test_watching_ends_as_the_run_does(command, run_id, monkeypatch, attempt, re
 
 @pytest.mark.parametrize("terminal", [pytest.param(False, marks=pytest.mark.long), True])
 def test_ctrl_c_leaves_the_run_going(address, client, run, terminal):
-    """In a process of its own, as a person would."""
     # A shell's background jobs ignore SIGINT, and so would every process that they start.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     ours, theirs = os.openpty() if terminal else os.pipe()

@@ -148,7 +148,7 @@ def test_the_client_sends_its_token(serve, monkeypatch):
 
 
 class Kept:
-    """A view that keeps what it was shown."""
+    """A view that keeps the states that it was shown."""
 
     def __init__(self, react=lambda state: None):
         self.shown: list[tuple[str, int, list[int]]] = []
@@ -163,7 +163,7 @@ class Kept:
 
 @pytest.fixture
 def worked(attempt, record):
-    """The run goes on by a generation whenever it is shown, until its third."""
+    """Records a generation whenever the run is shown; finishes it after the third."""
     left = [1, 2, 3, None]
 
     def go_on(state: polling.RunState) -> None:

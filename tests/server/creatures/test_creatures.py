@@ -160,8 +160,6 @@ def test_a_lost_order_is_given_again(api, services, known, flush):
 
 @pytest.fixture
 def family(identity) -> list[dict]:
-    """A creature, a parent of it, and a parent of that."""
-
     def one(number: int, *parents: dict) -> dict:
         origin = {"operator": "neat", "generation": number, "seed": 1, "version": "0.1.0"}
         names = [parent["sha256"] for parent in parents]

@@ -14,8 +14,6 @@ DEVICE = "cpu, AMD EPYC avx2, microcosmos 0.1.0, jax 0.10.2"
 
 @pytest.fixture
 def measured(services, report):
-    """Leaves a run whose generations took so many seconds each, the first one more."""
-
     def run(document, seconds, first=10.0, device=DEVICE, generations=5):
         made, _ = submit(services, parse(document))
         attempt = claim(services, made.id, "worker")

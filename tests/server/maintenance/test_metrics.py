@@ -19,8 +19,6 @@ def address(serve):
 
 @pytest.fixture
 def scrape(address):
-    """A function that reads all samples: by name and labels, their values."""
-
     def read():
         answer = httpx.get(f"{address}/metrics", verify=False)
         assert answer.headers["content-type"].startswith("text/plain; version=0.0.4")

@@ -14,7 +14,7 @@ pytestmark = pytest.mark.postgresql
 
 @pytest.fixture
 def add(api, services, spec):
-    """Submits a run, says things of it and sets figures that only a worker would."""
+    """Submits a run, edits it and sets figures that only a worker sets."""
     count = iter(range(1000))
 
     def add(said=None, **figures):
@@ -208,7 +208,7 @@ def test_invalid_filters_and_orders_are_refused_by_field(api, add):
 
 
 def crafted(sort, value, last=None):
-    """A cursor that never came from the server; the value as JSON has it."""
+    """A cursor that the server never sent; `value` is JSON."""
     text = f'["{sort}", {value}, "{last or uuid4()}"]'
     return urlsafe_b64encode(text.encode()).decode()
 

@@ -10,7 +10,7 @@ from server.tables import PREVIEW, REPLAY
 
 @pytest.fixture
 def attempt(services, run_id, report):
-    """A run that has come to its second generation, with a file of it."""
+    """An attempt that has recorded two generations and saved a file."""
     held = claim(services, run_id, "worker")
     held.record(report(1, {3: 1.0}), 1.0)
     held.record(report(2, {3: 2.0, 7: 1.5}), 1.0)

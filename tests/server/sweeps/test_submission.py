@@ -166,7 +166,6 @@ def test_sweeps_take_integers_beyond_canonical_json(api, spec):
 
 @pytest.fixture
 def elite(claimed, run_id, report, identity):
-    """The name of a creature that lives in a finished run."""
     attempt = claimed(run_id)
     attempt.record(report(1, {0: 1.0}), 1.0)
     attempt.finish()

@@ -14,8 +14,6 @@ from server.workers import registry
 
 @pytest.fixture
 def alive(services):
-    """A worker that reports."""
-
     def alive(name="worker", status="idle", run=None, memory=1 << 40, **usage):
         registry.report(services.sessions, name, "some device", memory, status, run, **usage)
 
