@@ -55,8 +55,7 @@ def main() -> None:
 
 def carry_out(place: Installation) -> None:
     """Run the first preset of each experiment, a sweep, and the README's run."""
-    experiments = place.http.get("/api/v1/experiments").raise_for_status().json()
-    presets = {one["experiment"]: one["presets"] for one in experiments}
+    presets = {one["experiment"]: one["presets"] for one in place.get("experiments")}
     for experiment, known in presets.items():
         if experiment != "quality-diversity" and known:
             place.submit(known[0]["spec"])
@@ -64,7 +63,7 @@ def carry_out(place: Installation) -> None:
     standard = next(one for one in presets["quality-diversity"] if one["name"] == "standard")
     search = standard["spec"]["search"] | {"generations": 120}
     place.submit(standard["spec"] | {"search": search})
-    for run in place.http.get("/api/v1/runs").raise_for_status().json()["items"]:
+    for run in place.get("runs")["items"]:
         place.wait(run["id"], "finished", seconds=HOUR)
         print(f"{run['experiment']} is finished", flush=True)
 

@@ -41,4 +41,4 @@ def overhear(page: Page, complaints: list[str]) -> None:
             complaints.append(f"{kind}: {text}")
 
     page.on("pageerror", lambda error: note("error", str(error)))
-    page.on("console", lambda said: note(said.type, f"{said.text} at {said.location['url']}"))
+    page.on("console", lambda line: note(line.type, f"{line.text} at {line.location['url']}"))

@@ -110,9 +110,7 @@ class Installation:
         return self.http.get(f"/api/v1/{path}", params=query).raise_for_status().json()
 
     def submit(self, spec: dict[str, Any]) -> str:
-        answer = self.http.post("/api/v1/runs", json=spec)
-        answer.raise_for_status()
-        return answer.json()["id"]
+        return self.http.post("/api/v1/runs", json=spec).raise_for_status().json()["id"]
 
     def read(self, run: str) -> dict[str, Any]:
         """Read a run, retrying while the server is restarted."""
@@ -286,10 +284,7 @@ def interrupt(
     moments: Sequence[int],
     seconds: float = 120,
 ) -> None:
-    """Cause the faults, each to an attempt of its own that has reached a generation.
-
-    `seconds` is how long that may take.
-    """
+    """Cause the faults, each to an attempt of its own that has reached a generation."""
     attempt = 0
     for fault, generation in zip(faults, moments, strict=True):
         attempt = place.reach(run, generation, after=attempt, seconds=seconds)

@@ -192,18 +192,18 @@ def test_only_the_server_has_a_port_on_loopback(services):
 
 def test_a_local_proxy_names_the_client(services):
     """Otherwise all clients share one rate limit, and cookies lack `Secure`."""
-    seen: dict[str, Any] = {}
+    received: dict[str, Any] = {}
 
     async def app(scope, receive, send):
-        seen.update(scope)
+        received.update(scope)
 
-    told = {"x-forwarded-for": "10.0.0.7, 203.0.113.5", "x-forwarded-proto": "https"}
-    headers = [(name.encode(), value.encode()) for name, value in told.items()]
+    forwarded = {"x-forwarded-for": "10.0.0.7, 203.0.113.5", "x-forwarded-proto": "https"}
+    headers = [(name.encode(), value.encode()) for name, value in forwarded.items()]
     scope = {"type": "http", "scheme": "http", "client": ("172.18.0.1", 1), "headers": headers}
     trusted = services["server"]["environment"]["FORWARDED_ALLOW_IPS"]
     asyncio.run(ProxyHeadersMiddleware(app, trusted)(scope, None, None))
     # The client may have claimed the first address; the proxy added the second.
-    assert (seen["client"][0], seen["scheme"]) == ("203.0.113.5", "https")
+    assert (received["client"][0], received["scheme"]) == ("203.0.113.5", "https")
 
 
 def test_every_gpu_worker_has_a_device_of_its_own(services):

@@ -236,8 +236,8 @@ def with_settings(services, settings):
 
 def test_no_token_is_created_when_unneeded_or_given(rows, services, settings):
     assert bootstrap.create_first_token(services) is None
-    told = settings.model_copy(update={"host": "0.0.0.0", "token": SecretStr("secret")})
-    assert bootstrap.create_first_token(with_settings(services, told)) is None
+    given = settings.model_copy(update={"host": "0.0.0.0", "token": SecretStr("secret")})
+    assert bootstrap.create_first_token(with_settings(services, given)) is None
     assert rows() == []
 
 

@@ -67,8 +67,8 @@ def test_a_sweep_is_named_deleted_and_restored(command, client):
     assert "is restored" in command("restore", sweep.id[:8]).stderr
     assert (sweep.refresh().total, client.sweep(sweep.id[:8])) == (2, sweep)
     waiting = client.submit("demo", seeds=2)
-    told = command("delete", waiting.id[:8], "--yes").stderr
-    assert "2 queued; the other runs have not ended: cancel them first" in told
+    message = command("delete", waiting.id[:8], "--yes").stderr
+    assert "2 queued; the other runs have not ended: cancel them first" in message
     assert waiting.refresh().total == 2
 
 

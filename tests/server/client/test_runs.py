@@ -38,10 +38,10 @@ def test_invalid_fields_become_a_sentence(client, spec):
     wrong = spec | {"seed": -1, "world": {"viscosity": -2}}
     with pytest.raises(Refused) as caught:
         client.submit(wrong)
-    said = str(caught.value)
-    assert "seed: needs greater than or equal to 0; got -1" in said
-    assert "world.viscosity" in said
-    assert said.endswith(".")
+    message = str(caught.value)
+    assert "seed: needs greater than or equal to 0; got -1" in message
+    assert "world.viscosity" in message
+    assert message.endswith(".")
     assert {error["field"] for error in caught.value.errors} == {"seed", "world.viscosity"}
     assert caught.value.status == 422
 

@@ -179,12 +179,12 @@ def test_an_upload_keeps_ancestors_with_credit_and_licence(api, family):
     answer = api.get(f"creatures/{young['sha256']}", params=query)
     assert answer.json() == whole, "and can be handed on as it came"
     assert "attachment" in answer.headers["content-disposition"]
-    kin = api.get(f"creatures/{young['sha256']}/ancestors").json()["items"]
-    assert [(one["creature"], one["kept"]) for one in kin] == [
+    ancestors = api.get(f"creatures/{young['sha256']}/ancestors").json()["items"]
+    assert [(one["creature"], one["kept"]) for one in ancestors] == [
         (parent["sha256"], True),
         (oldest["sha256"], True),
     ]
-    assert (kin[1]["credit"], kin[1]["licence"]) == (["Ada"], "CC0-1.0")
+    assert (ancestors[1]["credit"], ancestors[1]["licence"]) == (["Ada"], "CC0-1.0")
 
 
 def test_false_ancestors_are_refused_and_nothing_is_kept(api, family, identity):
