@@ -177,7 +177,7 @@ def test_columns_are_a_data_frame_where_pandas_is_there():
 
 def test_without_pandas_it_is_said_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(ImportError, match="pip install .pandas"):
+    with pytest.raises(ImportError, match=r"pip install .pandas"):
         Columns({"a": [1]}).to_pandas()
 
 
