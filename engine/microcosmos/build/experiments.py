@@ -144,9 +144,7 @@ def with_initial(
     names = [np.frombuffer(bytes.fromhex(name), np.uint8) for name in chosen.search.initial]
     rows = jax.tree.map(lambda *parts: np.stack(parts), *genotypes)
     return replace(
-        plan,
-        initial=InitialCreatures(np.stack(names), rows),
-        counters=_counters(plan, genes),
+        plan, initial=InitialCreatures(np.stack(names), rows), counters=_counters(plan, genes)
     )
 
 

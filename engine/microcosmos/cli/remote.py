@@ -2,7 +2,7 @@
 
 import json
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Annotated, Any
 
@@ -13,7 +13,7 @@ from rich.text import Text
 from typer import Argument, Option
 
 from ..client import Client, NotFound, Refused, Run, ServerError, Sweep
-from ..client.formatting import counts_as_text, status_of
+from ..client.formatting import counts_as_text, quoted, status_of
 from .app import app, console, with_options
 
 RUNS = "Runs on a server"
@@ -128,8 +128,4 @@ def describe(thing: Run | Sweep) -> str:
 
 def title(thing: Run | Sweep) -> str:
     """Return the kind, the short id and the name of a run or a sweep."""
-    return f"{type(thing).__name__} {thing.id[:8]}{named(thing.record)}"
-
-
-def named(record: Mapping[str, Any]) -> str:
-    return f" “{record['name']}”" if record.get("name") else ""
+    return f"{type(thing).__name__} {thing.id[:8]}{quoted(thing.record)}"

@@ -13,10 +13,7 @@ class ServerError(Exception):
     """A failed request, with the HTTP `status` and the `errors` of fields."""
 
     def __init__(
-        self,
-        message: str,
-        status: int | None = None,
-        errors: Sequence[Mapping[str, Any]] = (),
+        self, message: str, status: int | None = None, errors: Sequence[Mapping[str, Any]] = ()
     ):
         super().__init__(message)
         self.status, self.errors = status, list(errors)
@@ -46,12 +43,7 @@ class Refused(ServerError):
     """The request is wrong."""
 
 
-KINDS: dict[int, type[ServerError]] = {
-    401: NotAllowed,
-    403: NotAllowed,
-    404: NotFound,
-    409: Conflict,
-}
+KINDS = {401: NotAllowed, 403: NotAllowed, 404: NotFound, 409: Conflict}
 
 
 def checked(answer: httpx.Response, url: str) -> httpx.Response:

@@ -45,8 +45,11 @@ def figures(record: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 def title(record: Mapping[str, Any]) -> str:
     """Return experiment, name and short id."""
-    name = f" “{record['name']}”" if record.get("name") else ""
-    return f"{record['experiment']}{name}  {record['id'][:8]}"
+    return f"{record['experiment']}{quoted(record)}  {record['id'][:8]}"
+
+
+def quoted(record: Mapping[str, Any]) -> str:
+    return f" “{record['name']}”" if record.get("name") else ""
 
 
 def status_of(record: Mapping[str, Any]) -> str:

@@ -78,12 +78,7 @@ PRESETS = {
     "demo": (
         "Up to 16,000 nodes in 128 × 128 cells, a minute on a laptop",
         Scaling(
-            nodes=NODES[:5],
-            width=128,
-            height=128,
-            steps=40,
-            part_steps=5,
-            all_pairs=4_000,
+            nodes=NODES[:5], width=128, height=128, steps=40, part_steps=5, all_pairs=4_000
         ),
     ),
     "paper": (

@@ -5,18 +5,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from ..experiments import EXPERIMENTS
-from .words import (
-    TAGS,
-    Schema,
-    default,
-    inner_of,
-    is_list,
-    kind,
-    range_of,
-    refs,
-    text_of,
-    unit,
-)
+from .words import TAGS, Schema, default, inner_of, is_list, kind, range_of, refs, text_of, unit
 
 
 class Field(NamedTuple):
