@@ -159,7 +159,6 @@ def _counters(plan: Plan, genes: list[dict[str, Any]]) -> neat.Counters:
 
 
 def build_limits(stop: spec.Stop) -> Limits:
-    """Build the conditions that end a run early."""
     given = {name: value for name, value in stop.model_dump().items() if value is not None}
     return Limits(**given)
 

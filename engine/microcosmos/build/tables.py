@@ -26,7 +26,6 @@ def build_gaits(chosen: spec.Gaits) -> TableRun:
 
 
 def build_strokes(chosen: spec.Gaits) -> tuple[gaits.Stroke, ...]:
-    """Build the strokes of a sweep, one per generation."""
     return tuple(_stroke(chosen, form, swimmer) for form, swimmer in chosen.strokes)
 
 

@@ -31,14 +31,11 @@ class QualityDiversity(Evolution[Literal["quality-diversity"], Search]):
         return self.search.slots
 
 
+EFFORTS = ("bending_effort", "stretching_effort")
+
 DEMO = QualityDiversity(
     **SMALL,
-    archive=Archive(
-        descriptors=(
-            Descriptor(name="bending_effort", bins=16),
-            Descriptor(name="stretching_effort", bins=16),
-        )
-    ),
+    archive=Archive(descriptors=tuple(Descriptor(name=name, bins=16) for name in EFFORTS)),
     search=Search(generations=400, batch=16),
 )
 
