@@ -39,10 +39,7 @@ def submit(
     """Queue a run or a sweep, and print its id."""
     grid = specs.grid(sweep or [])
     document = specs.applied(server_specs.document(client.connection, spec), settings or [])
-    if seeds is None and not grid:
-        made = client.submit(document, name=name)
-    else:
-        made = client.submit(document, seeds=seeds or 1, grid=grid, name=name)
+    made = client.submit(document, seeds=seeds, grid=grid or None, name=name)
     _report(made, watch, json)
 
 

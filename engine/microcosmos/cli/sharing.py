@@ -42,10 +42,8 @@ def share(
     json: Json = False,
 ) -> None:
     """Publish a creature or an archive; people without a token can open the link."""
-    options: dict[str, Any] = {"title": title, "credit": credit, "licence": licence}
-    if generation is not None:
-        options["generation"] = generation
-    made = client.share(what, listed=listed, days=days, **options)
+    texts = {"title": title, "credit": credit, "licence": licence}
+    made = client.share(what, generation=generation, listed=listed, days=days, **texts)
     if json:
         show(made.record)
         return
@@ -113,7 +111,6 @@ def _list(records: list[dict[str, Any]], json: bool, fields: str) -> None:
         show(records)
         return
     names = fields.split()
-    rows = [[one.get(name) for name in names] for one in records]
-    for row in rows:
-        row[0] = str(row[0])[:8] if names[0] == "id" else row[0]
+    short = [{**one, "id": str(one.get("id"))[:8]} for one in records]
+    rows = [[one.get(name) for name in names] for one in short]
     show_table([name.removesuffix("_at") for name in names], rows)

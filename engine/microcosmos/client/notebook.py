@@ -25,11 +25,12 @@ def notebook() -> Iterator[Show]:
 
     def draw(state: RunState) -> None:
         nonlocal handle
+        shown = import_module("IPython.display")
+        page = shown.HTML(html(state))
         if handle is None:
-            display = import_module("IPython.display").display
-            handle = display(Page(html(state)), display_id=True)
+            handle = shown.display(page, display_id=True)
         else:
-            handle.update(Page(html(state)))
+            handle.update(page)
 
     def show(state: RunState) -> None:
         nonlocal last, at
@@ -43,16 +44,6 @@ def notebook() -> Iterator[Show]:
     finally:
         if last is not None:
             draw(last)
-
-
-class Page:
-    """HTML that a notebook shows."""
-
-    def __init__(self, text: str):
-        self.text = text
-
-    def _repr_html_(self) -> str:
-        return self.text
 
 
 def html(state: RunState) -> str:

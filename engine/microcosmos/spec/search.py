@@ -111,14 +111,10 @@ class Archive(Part):
         return prod(self.shape)
 
     @model_validator(mode="after")
-    def refuse_repeated(self) -> Self:
+    def refuse_impossible(self) -> Self:
         names = [d.name for d in self.descriptors]
         if len(set(names)) < len(names):
             raise ValueError(f"`descriptors` must not repeat, got {names}")
-        return self
-
-    @model_validator(mode="after")
-    def refuse_too_many(self) -> Self:
         if self.cells > MAX_CELLS:
             product = " × ".join(map(str, self.shape))
             raise ValueError(

@@ -43,10 +43,9 @@ class Measured(Part):
     """Versions of the plug-ins among the measures."""
 
     @model_validator(mode="after")
-    def check_agreement(self) -> Self:
-        """Descriptors must equal the measures of their names."""
-        found = self.descriptors
-        if wrong := [name for name in found if found[name] != self.measures.get(name)]:
+    def refuse_disagreement(self) -> Self:
+        pairs = self.descriptors.items()
+        if wrong := [name for name, value in pairs if value != self.measures.get(name)]:
             raise ValueError(f"`measures` must hold descriptors; got other values of {wrong}")
         return self
 
@@ -73,8 +72,7 @@ class CreatureFile(Part):
     """Names to show with the creature."""
 
     @model_validator(mode="after")
-    def check_measured(self) -> Self:
-        """The measured arrays must have room for the genes; measures must give the fitness."""
+    def refuse_other_measures(self) -> Self:
         if self.measured is None:
             return self
         room_of(self.identity.genome, self.measured.room)
@@ -111,11 +109,10 @@ def check(data: Any) -> dict[str, Any]:
         named = re.match(r"`([\w.]+)`", needed)
         field = field_path(first["loc"]) or (named[1] if named else "file")
         raise CreatureError(field, needed, first["input"]) from error
-    whole = file.model_dump(mode="json")
-    expected = name(whole["identity"])
-    if expected != file.sha256:
+    document = file.model_dump(mode="json")
+    if (expected := name(document["identity"])) != file.sha256:
         raise CreatureError("sha256", f"the hash of the identity, {expected}", file.sha256)
-    return whole
+    return document
 
 
 def scene_of(file: Mapping[str, Any]) -> Scene:
