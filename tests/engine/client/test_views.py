@@ -120,7 +120,12 @@ def ipython(monkeypatch):
     shell = SimpleNamespace(kernel=None)
     library = SimpleNamespace(get_ipython=lambda: shell)
     monkeypatch.setitem(sys.modules, "IPython", library)
-    monkeypatch.setitem(sys.modules, "IPython.display", SimpleNamespace(display=display))
+
+    def html(text):
+        return SimpleNamespace(_repr_html_=lambda: text)
+
+    namespace = SimpleNamespace(display=display, HTML=html)
+    monkeypatch.setitem(sys.modules, "IPython.display", namespace)
     return shown
 
 
