@@ -106,5 +106,5 @@ def _join(places: np.ndarray, edges: np.ndarray, reach: float) -> tuple[np.ndarr
         nearest = int(np.argmin(gap))
         if gap[nearest] < reach and root(nearest) != end:
             same[end] = root(nearest)
-    kept, number = np.unique([root(node) for node in same], return_inverse=True)
-    return places[kept], number[edges]
+    merged, number = np.unique([root(node) for node in same], return_inverse=True)
+    return places[merged], number[edges]

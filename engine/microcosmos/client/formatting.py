@@ -5,6 +5,7 @@ from typing import Any
 
 MEASURES = {"qd_score": "QD score", "coverage": "coverage", "best": "best"}
 """Titles of the measures of an archive's quality."""
+UNITS = ((86400, "d", 3600, "h"), (3600, "h", 60, "min"), (60, "min", 1, "s"))
 COLOURS = {
     "finished": "green",
     "failed": "red",
@@ -19,13 +20,10 @@ def duration(seconds: float | None) -> str:
     if seconds is None:
         return ""
     whole = max(0, round(seconds))
-    if whole < 60:
-        return f"{whole} s"
-    if whole < 3600:
-        return f"{whole // 60} min {whole % 60} s"
-    if whole < 86400:
-        return f"{whole // 3600} h {whole % 3600 // 60} min"
-    return f"{whole // 86400} d {whole % 86400 // 3600} h"
+    for large, name, small, rest in UNITS:
+        if whole >= large:
+            return f"{whole // large} {name} {whole % large // small} {rest}"
+    return f"{whole} s"
 
 
 def figure(name: str, value: float | None) -> str:

@@ -23,14 +23,14 @@ def main(cache: Path) -> None:
 
 def _device(device: Any) -> dict[str, Any]:
     """Return the result of a small computation, and the memory of a device."""
-    told = {"platform": device.platform, "model": device.device_kind, "id": device.id}
+    record = {"platform": device.platform, "model": device.device_kind, "id": device.id}
     numbers = np.arange(64, dtype=np.float32)
     try:
         computed = float(jax.jit(lambda x: jnp.sum(x * x))(jax.device_put(numbers, device)))
     except Exception as error:  # Whatever a driver throws has to be reported.
-        return told | {"error": f"{type(error).__name__}: {error}"[:300]}
+        return record | {"error": f"{type(error).__name__}: {error}"[:300]}
     memory = device.memory_stats() or {}
-    return told | {
+    return record | {
         "right": computed == float(numbers @ numbers),
         "memory_bytes": memory.get("bytes_limit"),
         "memory_used_bytes": memory.get("bytes_in_use"),

@@ -42,11 +42,6 @@ def load(path: Path | str) -> tuple[Declaration, ...]:
     return _register(module, file.stem, sha256(source).hexdigest())
 
 
-def load_module(module: ModuleType, namespace: str) -> tuple[Declaration, ...]:
-    """Register the plug-ins of a module; `namespace` precedes their names."""
-    return _register(module, namespace, digest(Path(str(module.__file__))))
-
-
 def _run(path: Path | str, file: Path, source: bytes) -> ModuleType:
     name = f"microcosmos_plugin_{file.stem}"
     found = importlib.util.spec_from_file_location(name, file)
@@ -120,7 +115,7 @@ def _load_entry(entry: EntryPoint) -> None:
     module = entry.load()
     if not isinstance(module, ModuleType):
         raise ValueError(f"the entry point must name a module, got {type(module).__name__}")
-    load_module(module, entry.name)
+    _register(module, entry.name, digest(Path(str(module.__file__))))
 
 
 def _declared(module: ModuleType) -> list[tuple[Draft, Any]]:

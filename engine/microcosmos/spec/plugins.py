@@ -63,22 +63,16 @@ def pinned(
     found = [one for kind in kinds for one in known.versions(kind, name)]
     source = (given or {}).get("source")
     declared = next((one for one in found if source in (None, one.source)), None)
-    if declared is None and source is None:
+    if declared is None and source is not None:
+        return given, None
+    if declared is None:
         reason = known.explain_unknown(kinds[0], name)
         raise ValueError(f"`{field}` must be known, got {name!r}: {reason}")
-    if declared is None:
-        return given, None
     settings = (given or {}).get("settings") or {}
     if not isinstance(settings, Mapping):
         raise ValueError(f"`plugin.settings` must be an object, got {settings!r:.80}")
-    version = {
-        "source": declared.source,
-        "title": declared.title,
-        "unit": declared.unit,
-        "sizes": dict(declared.sizes),
-        "settings": known.settings(declared, settings),
-    }
-    return version, declared
+    version = declared.model_dump(include={"source", "title", "unit", "sizes"})
+    return version | {"settings": known.settings(declared, settings)}, declared
 
 
 def completed(
