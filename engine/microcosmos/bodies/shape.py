@@ -90,22 +90,22 @@ def distances(nodes: int, edges: np.ndarray, length: np.ndarray, start: int = 0)
     for (first, second), cells in zip(edges.tolist(), length.tolist(), strict=True):
         neighbours[first].append((second, cells))
         neighbours[second].append((first, cells))
-    way = np.full(nodes, np.inf)
-    way[start], waiting = 0, [(0.0, start)]
+    distance = np.full(nodes, np.inf)
+    distance[start], waiting = 0, [(0.0, start)]
     while waiting:
         here, node = heapq.heappop(waiting)
         for other, cells in neighbours[node]:
-            if here + cells < way[other]:
-                way[other] = here + cells
+            if here + cells < distance[other]:
+                distance[other] = here + cells
                 heapq.heappush(waiting, (here + cells, other))
-    return way
+    return distance
 
 
 def _arc(nodes: int, edges: np.ndarray, length: np.ndarray) -> np.ndarray:
     """Return shares of the path from the first node to the furthest; 0 without a path."""
-    way = distances(nodes, edges, length)
-    way[np.isinf(way)] = 0
-    return way / max(way.max(), 1e-12)
+    distance = distances(nodes, edges, length)
+    distance[np.isinf(distance)] = 0
+    return distance / max(distance.max(), 1e-12)
 
 
 def extent(body: Body) -> float:
@@ -119,7 +119,7 @@ def extent(body: Body) -> float:
 
 
 def _farthest(body: Body, start: int) -> tuple[int, float]:
-    way = distances(len(body.positions), body.edges, body.rest_length, start)
-    way[np.isinf(way)] = -1.0
-    last = int(np.argmax(way))
-    return last, float(way[last])
+    distance = distances(len(body.positions), body.edges, body.rest_length, start)
+    distance[np.isinf(distance)] = -1.0
+    last = int(np.argmax(distance))
+    return last, float(distance[last])

@@ -203,24 +203,24 @@ def refuse_unfit(control: Controller, body: Body) -> None:
     """Raise `ValueError` where the encoding cannot control or shape the body."""
     if is_unavailable(body):  # A worker that can build it checks it.
         return
-    whole = shape(body)
+    graph = shape(body)
     if isinstance(control, Grown) and body.builder != "chain":
         raise ValueError(
             f"`body.builder` must be 'chain' where a CPPN grows the body, got {body.builder!r}"
         )
-    if isinstance(control, Grown) and control.min_nodes > len(whole.positions):
+    if isinstance(control, Grown) and control.min_nodes > len(graph.positions):
         raise ValueError(
-            f"`control.min_nodes` must be at most the body's {len(whole.positions)} nodes, got "
+            f"`control.min_nodes` must be at most the body's {len(graph.positions)} nodes, got "
             f"{control.min_nodes}"
         )
     if isinstance(control, Shaping) and {"rest_angle", "rest_length"} & set(control.traits):
         try:
-            bodies.unfolded(whole)
+            bodies.unfolded(graph)
         except ValueError as error:
             raise ValueError(
                 f"`control.rest_angle` and `rest_length` must be empty for this `body`: {error}"
             ) from error
-    if (count := gene_count(control, whole)) > MAX_GENES:
+    if (count := gene_count(control, graph)) > MAX_GENES:
         raise ValueError(f"a creature must have at most {MAX_GENES} genes, got {count}")
 
 

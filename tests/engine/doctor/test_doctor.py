@@ -23,7 +23,7 @@ def test_a_probe_finds_the_devices_and_a_cache_that_works(tmp_path):
     assert levels(found) == {"ok"}
     told = [finding.found for finding in found]
     assert any("× cpu" in text for text in told)
-    assert "a program that was kept is found again" in told
+    assert "a stored program is loaded again" in told
     assert list((tmp_path / "cache").iterdir()) == []  # It leaves nothing behind.
 
 
@@ -53,17 +53,17 @@ def test_an_error_of_jax_is_reported(tmp_path, monkeypatch):
 )
 def test_a_device_that_is_broken_is_told(tmp_path, monkeypatch, device, said):
     told = {"platform": "gpu", "model": "a model", "id": 0} | device
-    answer = {"kind": "gpu", "devices": [told], "cache": {"kept": True, "found": False}}
+    answer = {"kind": "gpu", "devices": [told], "cache": {"stored": True, "loaded": False}}
     monkeypatch.setattr(devices, "probed", lambda *_: answer)
     found = list(devices.devices(tmp_path))
     assert any(said in one.found and one.level == "problem" for one in found)
-    assert any("is not found again" in one.found for one in found)
+    assert any("is not loaded again" in one.found for one in found)
 
 
 def test_memory_of_a_gpu_is_told(tmp_path, monkeypatch):
     told = {"platform": "gpu", "model": "H", "id": 0, "right": True}
     told |= {"memory_bytes": 8 * GIB, "memory_used_bytes": 2 * GIB}
-    answer = {"kind": "gpu, H", "devices": [told], "cache": {"kept": True, "found": True}}
+    answer = {"kind": "gpu, H", "devices": [told], "cache": {"stored": True, "loaded": True}}
     monkeypatch.setattr(devices, "probed", lambda *_: answer)
     assert any("6.44 GB of 8.59 GB free" in f.found for f in devices.devices(tmp_path))
 

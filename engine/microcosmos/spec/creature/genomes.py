@@ -113,8 +113,8 @@ class Fold(Part):
     `control.lengths` says."""
 
     def refuse_other_length(self, body: Body) -> None:
-        whole = shape(body)
-        _refuse_count(self.values, len(whole.joints) + len(whole.edges))
+        graph = shape(body)
+        _refuse_count(self.values, len(graph.joints) + len(graph.edges))
 
 
 class Stroke(Gait):
