@@ -31,12 +31,11 @@ def devices(cache: Path, patience: float = PATIENCE) -> Iterator[Finding]:
         yield problem("devices", f"JAX fails: {error}", f"make install; {CPU}")
         return
     yield from _devices(found)
-    if found["cache"]["stored"] and found["cache"]["loaded"]:
+    program = found["cache"]
+    if program["stored"] and program["loaded"]:
         yield ok("compile cache", "a stored program is loaded again")
         return
-    text = (
-        f"a compiled program is not {'loaded again' if found['cache']['stored'] else 'stored'}"
-    )
+    text = f"a compiled program is not {'loaded again' if program['stored'] else 'stored'}"
     other = "choose another folder with JAX_COMPILATION_CACHE_DIR"
     yield warning(
         "compile cache", text, f"each start compiles anew; remove {cache}, or {other}"
