@@ -6,7 +6,7 @@ import type { LogEntry, Run } from "../api/types";
 import { type Loaded, SLOW_MS, useFetched } from "./fetch";
 import { useStore } from "./store";
 import { useThrottled } from "./timing";
-import { epochOf } from "./reducer";
+import { epochOf } from "./state";
 
 /** Entries per answer of the server. */
 const PAGE = 500;

@@ -5,7 +5,7 @@ import { readPrincipal } from "../api/client";
 import type { Principal, Owned } from "../api/types";
 import { SIGNED_OUT, isSignedOut } from "../api/signedOut";
 import { type Loaded, useFetched } from "./fetch";
-import { dispatch, useStore } from "./store";
+import { update, useStore } from "./store";
 import { text } from "./text";
 
 export function usePrincipal(): Loaded<Principal> {
@@ -15,7 +15,7 @@ export function usePrincipal(): Loaded<Principal> {
 /** Load the principal into the store; after a failure the event stream loads it again. */
 export async function loadPrincipal(): Promise<void> {
   const principal = await readPrincipal().catch(() => null);
-  if (principal) dispatch({ type: "principal", principal });
+  if (principal) update((state) => ({ ...state, principal }));
 }
 
 /** True if a request was refused because it had no valid token. */
