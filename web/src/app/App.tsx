@@ -1,11 +1,13 @@
 /** The frame around every page: navigation, connection, notes. */
 
+import type { FunctionComponent } from "preact";
 import { useEffect } from "preact/hooks";
 import { readHealth } from "../api/client";
 import { lazy } from "../ui/lazy";
 import { loadPrincipal, useRefusal, useSignedOut } from "../store/principal";
 import { useFetched } from "../store/fetch";
 import { useStore } from "../store/store";
+import { useListener } from "../store/timing";
 import { type Toast, dismissToast, undoLatest, useToasts } from "../store/toasts";
 import { DropTarget, OpenButton } from "../ui/DropTarget";
 import { NotFound } from "../ui/NotFound";
@@ -15,15 +17,19 @@ import { type PageLocation, useLocation } from "../store/router";
 import { text } from "./text";
 import "./app.css";
 
-const ComparePage = lazy(async () => (await import("../compare/ComparePage")).ComparePage);
-const CreaturePage = lazy(async () => (await import("../creature/CreaturePage")).CreaturePage);
-const NewRunPage = lazy(async () => (await import("../new-run/NewRunPage")).NewRunPage);
-const RunPage = lazy(async () => (await import("../run/RunPage")).RunPage);
-const SharesPage = lazy(async () => (await import("../shares/SharesPage")).SharesPage);
-const SettingsPage = lazy(async () => (await import("../settings/SettingsPage")).SettingsPage);
+/** The pages by the names of their routes. */
+const PAGES: Record<string, FunctionComponent<{ id: string; query: URLSearchParams }>> = {
+  runs: RunsPage,
+  new: lazy(async () => (await import("../new-run/NewRunPage")).NewRunPage),
+  compare: lazy(async () => (await import("../compare/ComparePage")).ComparePage),
+  workers: lazy(async () => (await import("../workers/WorkersPage")).WorkersPage),
+  shares: lazy(async () => (await import("../shares/SharesPage")).SharesPage),
+  settings: lazy(async () => (await import("../settings/SettingsPage")).SettingsPage),
+  run: lazy(async () => (await import("../run/RunPage")).RunPage),
+  sweep: lazy(async () => (await import("../sweeps/SweepPage")).SweepPage),
+  creature: lazy(async () => (await import("../creature/CreaturePage")).CreaturePage),
+};
 const SignInPage = lazy(async () => (await import("../settings/SignInPage")).SignInPage);
-const SweepPage = lazy(async () => (await import("../sweeps/SweepPage")).SweepPage);
-const WorkersPage = lazy(async () => (await import("../workers/WorkersPage")).WorkersPage);
 
 export function App() {
   const location = useLocation();
@@ -92,35 +98,16 @@ function Navigation({ page }: { page: string }) {
   );
 }
 
-function RoutedPage({ route, query }: PageLocation) {
-  switch (route.page) {
-    case "runs":
-      return <RunsPage query={query} />;
-    case "new":
-      return <NewRunPage query={query} />;
-    case "compare":
-      return <ComparePage query={query} />;
-    case "workers":
-      return <WorkersPage />;
-    case "settings":
-      return <SettingsPage />;
-    case "run":
-      return <RunPage key={route.id} id={route.id} query={query} />;
-    case "sweep":
-      return <SweepPage key={route.id} id={route.id} query={query} />;
-    case "creature":
-      return <CreaturePage key={route.sha} sha={route.sha} query={query} />;
-    case "shares":
-      return <SharesPage />;
-    default:
-      return (
-        <main>
-          <NotFound what={text.noSuchPage} reason={text.noSuchPageAbout}>
-            <a href="/">{text.allRuns}</a>
-          </NotFound>
-        </main>
-      );
-  }
+function RoutedPage({ route: { page, id = "" }, query }: PageLocation) {
+  const Shown = PAGES[page];
+  if (Shown) return <Shown key={`${page} ${id}`} {...{ id, query }} />;
+  return (
+    <main>
+      <NotFound what={text.noSuchPage} reason={text.noSuchPageAbout}>
+        <a href="/">{text.allRuns}</a>
+      </NotFound>
+    </main>
+  );
 }
 
 function Connection() {
@@ -136,10 +123,7 @@ function Connection() {
 
 export function Toasts() {
   const toasts = useToasts();
-  useEffect(() => {
-    document.addEventListener("keydown", undoLatest);
-    return () => document.removeEventListener("keydown", undoLatest);
-  }, []);
+  useListener("keydown", undoLatest);
   return (
     <div class="toasts" role="status" aria-live="polite">
       {toasts.map((toast) => (

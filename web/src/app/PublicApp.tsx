@@ -21,7 +21,7 @@ export function PublicApp() {
         </nav>
         <span class="spring" />
       </header>
-      {route.page === "share" && <SharedPage slug={route.slug} sha={route.sha} query={query} />}
+      {route.page === "share" && <SharedPage slug={route.slug!} sha={route.sha ?? null} query={query} />}
       {route.page === "commons" && <CommonsPage />}
       {route.page === "unknown" && (
         <main>

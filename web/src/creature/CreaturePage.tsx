@@ -31,11 +31,11 @@ import "./creature.css";
 import "./details.css";
 
 interface Props {
-  sha: string;
+  id: string;
   query: URLSearchParams;
 }
 
-export function CreaturePage({ sha, query }: Props) {
+export function CreaturePage({ id: sha, query }: Props) {
   const { value: creature, error } = useFetched(() => api.readCreature(sha), [sha]);
   useTitle(text.title(shortId(sha)));
   const run = query.get("run");

@@ -103,7 +103,7 @@ function RowNotes({ run }: { run: Run }) {
         <span class="row-note quiet">{text.compiling}</span>
       )}
       {run.purge_at && <span class="row-note gone quiet">{text.purged(dateTime(run.purge_at))}</span>}
-      {run.waiting_reason && <span class="row-note reason">{run.waiting_reason}</span>}
+      {run.waiting_reason && <span class="row-note reason quiet">{run.waiting_reason}</span>}
       {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}
       {run.warning && <span class="row-note warning-text">{run.warning}</span>}
     </>

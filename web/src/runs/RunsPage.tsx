@@ -162,7 +162,7 @@ function CompareBar({ ids, onClear }: { ids: string[]; onClear: () => void }) {
 function SweepBanner({ sweep }: { sweep: string }) {
   if (sweep === WITHOUT_SWEEP) return null;
   return (
-    <p class="banner reason">
+    <p class="banner reason quiet">
       {text.runsOf}
       <a href={`/sweeps/${sweep}`}>{text.oneSweep}</a>
       {text.sweepHint}

@@ -48,7 +48,7 @@ describe("pages for strangers", () => {
   });
 
   it("hold one thing, or a creature of an archive", () => {
-    expect(routeOf("/s/abc")).toEqual({ page: "share", slug: "abc", sha: null });
+    expect(routeOf("/s/abc")).toEqual({ page: "share", slug: "abc" });
     expect(routeOf("/s/abc/creatures/12")).toEqual({ page: "share", slug: "abc", sha: "12" });
     for (const path of ["/s", "/s/abc/runs/1", "/s/abc/creatures/1/2"]) {
       expect(routeOf(path)).toEqual({ page: "unknown" });

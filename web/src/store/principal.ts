@@ -7,6 +7,7 @@ import { SIGNED_OUT, isSignedOut } from "../api/signedOut";
 import { type Loaded, useFetched } from "./fetch";
 import { update, useStore } from "./store";
 import { text } from "./text";
+import { useListener } from "./timing";
 
 export function usePrincipal(): Loaded<Principal> {
   return useFetched(readPrincipal, []);
@@ -20,14 +21,11 @@ export async function loadPrincipal(): Promise<void> {
 
 /** True if a request was refused because it had no valid token. */
 export function useSignedOut(): boolean {
-  const [unknown, setUnknown] = useState(isSignedOut);
-  useEffect(() => {
-    const hear = () => setUnknown(isSignedOut());
-    hear();
-    window.addEventListener(SIGNED_OUT, hear);
-    return () => window.removeEventListener(SIGNED_OUT, hear);
-  }, []);
-  return unknown;
+  const [signedOut, setSignedOut] = useState(isSignedOut);
+  const read = () => setSignedOut(isSignedOut());
+  useEffect(read, []); // A request may have been refused since the component was drawn.
+  useListener(SIGNED_OUT, read);
+  return signedOut;
 }
 
 /** The reason that forbids creating, or changing `thing`; null if it is allowed. */

@@ -1,4 +1,4 @@
-/** Hooks that slow down values or repeat requests. */
+/** Hooks that slow down values, repeat requests or listen to the window. */
 
 import { useEffect, useRef, useState } from "preact/hooks";
 
@@ -25,6 +25,14 @@ export function useDebounced<T>(value: T | null, after: number, call: (value: T)
     const timer = setTimeout(() => call(value), after);
     return () => clearTimeout(timer);
   }, [value]);
+}
+
+/** Listen to events that reach the window while a component is shown. */
+export function useListener<E extends Event>(type: string, listener: (event: E) => void): void {
+  useEffect(() => {
+    window.addEventListener(type, listener as EventListener);
+    return () => window.removeEventListener(type, listener as EventListener);
+  });
 }
 
 /** A counter that increases in every interval while the tab is visible. */

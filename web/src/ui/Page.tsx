@@ -21,7 +21,7 @@ export function Page({ title, actions, crumbs, error, loading, children }: PageP
   return (
     <main>
       {crumbs && (
-        <nav class="crumbs" aria-label={text.breadcrumbs}>
+        <nav class="crumbs small" aria-label={text.breadcrumbs}>
           {crumbs.map(([href, name]) => (
             <a key={href} href={href}>
               {name}
