@@ -8,10 +8,9 @@ import { loadPrincipal, useRefusal, useSignedOut } from "../store/principal";
 import { useFetched } from "../store/fetch";
 import { useStore } from "../store/store";
 import { useListener } from "../store/timing";
-import { type Toast, dismissToast, undoLatest, useToasts } from "../store/toasts";
+import { type Toast, dismissToast, undoLatest } from "../store/toasts";
 import { DropTarget, OpenButton } from "../ui/DropTarget";
-import { NotFound } from "../ui/NotFound";
-import { useTitle } from "../ui/Page";
+import { NotFound, useTitle } from "../ui/Page";
 import { RunsPage } from "../runs/RunsPage";
 import { type PageLocation, useLocation } from "../store/router";
 import { text } from "./text";
@@ -122,7 +121,7 @@ function Connection() {
 }
 
 export function Toasts() {
-  const toasts = useToasts();
+  const toasts = useStore((state) => state.toasts);
   useListener("keydown", undoLatest);
   return (
     <div class="toasts" role="status" aria-live="polite">

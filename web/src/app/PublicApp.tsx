@@ -5,7 +5,7 @@ import { sharedSlug } from "../api/address";
 import { CommonsPage } from "../shares/CommonsPage";
 import { SharedPage } from "../shares/SharedPage";
 import { useLocation } from "../store/router";
-import { NotFound } from "../ui/NotFound";
+import { NotFound } from "../ui/Page";
 import { text } from "./text";
 
 export function PublicApp() {

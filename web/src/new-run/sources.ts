@@ -5,7 +5,7 @@ import { messageOf } from "../api/problem";
 import type { Experiment, Preset, Spec } from "../api/types";
 import { parseCells } from "../store/cellRanges";
 import { type Address, type Base, type ForkSource, FORK_PARAMETERS, forkAddress } from "../store/draft";
-import { completed } from "./form/defaults";
+import { completed } from "./form/schema";
 import { isSearch, withInitial } from "./initialCreatures";
 import { type ReadDocument, specOf } from "./readDocument";
 import { count, shortId } from "../ui/format";

@@ -1,8 +1,8 @@
 /** The settings page: the signed-in principal, and for admins all tokens. */
 
-import { signOut } from "../api/client";
+import { readPrincipal, signOut } from "../api/client";
 import type { Principal } from "../api/types";
-import { usePrincipal } from "../store/principal";
+import { useFetched } from "../store/fetch";
 import { showFailure } from "../store/toasts";
 import { Card, Page } from "../ui/Page";
 import { Tokens, day } from "./Tokens";
@@ -10,7 +10,7 @@ import { text } from "./text";
 import "./settings.css";
 
 export function SettingsPage() {
-  const { value, error } = usePrincipal();
+  const { value, error } = useFetched(readPrincipal, []);
   return (
     <Page title={text.settings} error={error} loading={!value}>
       {value && (

@@ -4,7 +4,7 @@ import { useState } from "preact/hooks";
 import { createToken, readTokens, revokeToken } from "../api/client";
 import type { Token, CreatedToken, TokenScope } from "../api/types";
 import { useFetched } from "../store/fetch";
-import { showFailure, showToast } from "../store/toasts";
+import { attempt, showToast } from "../store/toasts";
 import { ConfirmButton } from "../ui/ConfirmButton";
 import { Card } from "../ui/Page";
 import { Select } from "../ui/Select";
@@ -130,13 +130,9 @@ function TokenTable({ tokens, own, onRevoked }: TableProps) {
 }
 
 async function revoke({ id, name }: Token, onRevoked: () => void): Promise<void> {
-  try {
-    await revokeToken(id);
-    showToast({ kind: "note", text: text.revoked(name) });
-    onRevoked();
-  } catch (error) {
-    showFailure(error);
-  }
+  if ((await attempt(revokeToken(id))) === null) return;
+  showToast({ kind: "note", text: text.revoked(name) });
+  onRevoked();
 }
 
 export const day = (iso: string) =>

@@ -4,14 +4,9 @@ import { useEffect, useState } from "preact/hooks";
 import { readPrincipal } from "../api/client";
 import type { Principal, Owned } from "../api/types";
 import { SIGNED_OUT, isSignedOut } from "../api/signedOut";
-import { type Loaded, useFetched } from "./fetch";
 import { update, useStore } from "./store";
 import { text } from "./text";
 import { useListener } from "./timing";
-
-export function usePrincipal(): Loaded<Principal> {
-  return useFetched(readPrincipal, []);
-}
 
 /** Load the principal into the store; after a failure the event stream loads it again. */
 export async function loadPrincipal(): Promise<void> {

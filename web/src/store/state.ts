@@ -14,12 +14,14 @@ import type {
 } from "../api/types";
 import * as details from "./detail";
 import { withPoint } from "./curves";
+import type { Toast } from "./toasts";
 import { applyEvent, applyResponses, noteEvent } from "./reconcile";
 
 export type Connection = "connecting" | "live" | "lost";
 
 export interface State {
   connection: Connection;
+  toasts: readonly Toast[];
   /** The signed-in principal; null until it is loaded. */
   principal: Principal | null;
   runs: ReadonlyMap<string, Run>;
@@ -48,6 +50,7 @@ export interface State {
 
 export const INITIAL_STATE: State = {
   connection: "connecting",
+  toasts: [],
   principal: null,
   runs: new Map(),
   details: new Map(),

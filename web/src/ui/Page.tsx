@@ -2,6 +2,7 @@
 
 import type { ComponentChildren } from "preact";
 import { useEffect } from "preact/hooks";
+import { isId } from "../store/router";
 import { text } from "./text";
 
 interface PageProps {
@@ -99,6 +100,30 @@ export function Empty({ title, hint, children }: EmptyProps) {
     </section>
   );
 }
+
+interface NotFoundProps {
+  /** Title of the missing thing. */
+  what: string;
+  /** Message of the server. */
+  reason: string;
+  /** The id in the address; a malformed one is named instead of the server's message. */
+  id?: string;
+  children?: ComponentChildren;
+}
+
+/** A page for something that does not exist on the server. */
+export function NotFound({ what, reason, id, children }: NotFoundProps) {
+  return (
+    <section class="empty card">
+      <h1>{what}</h1>
+      <p role="alert">{reasonOf(reason, id)}</p>
+      {children}
+    </section>
+  );
+}
+
+export const reasonOf = (reason: string, id?: string) =>
+  id === undefined || isId(id) ? reason : text.unknownId(id);
 
 interface ProgressProps {
   label: string;

@@ -3,8 +3,7 @@
 import { useMemo, useState } from "preact/hooks";
 import type { ResultRow } from "../../api/types";
 import { setQuery } from "../../store/router";
-import { formOf } from "../../ui/coupling";
-import { NotForceFree } from "../../ui/NotForceFree";
+import { NotForceFree, formOf } from "../../ui/coupling";
 import { Plot, type Point } from "../../charts/plot/Plot";
 import { formsOf, reynoldsAxis, sweepAxes, sweepLines } from "./gaits";
 import { Card } from "../../ui/Page";

@@ -1,4 +1,4 @@
-/** Descriptions of the coupling between bodies and fluid. */
+/** Descriptions of the coupling between bodies and fluid, and a badge for results that are not force-free. */
 
 import type { Json, Spec } from "../api/types";
 import { number } from "./format";
@@ -39,4 +39,12 @@ export function couplingFacts(coupling: Json | undefined): [string, string][] {
     [text.deltaKernel, String(kernel ?? "peskin")],
     [text.limits, limits === false ? text.off : text.on],
   ];
+}
+
+export function NotForceFree({ some = false }: { some?: boolean }) {
+  return (
+    <span class="badge not-force-free" title={text.notForceFreeAbout}>
+      {some ? text.partlyNotForceFree : text.notForceFree}
+    </span>
+  );
 }
