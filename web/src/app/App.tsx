@@ -7,7 +7,7 @@ import { lazy } from "../ui/lazy";
 import { loadPrincipal, useRefusal, useSignedOut } from "../store/principal";
 import { useFetched } from "../store/fetch";
 import { useStore } from "../store/store";
-import { useListener } from "../store/timing";
+import { useListener } from "../store/polling";
 import { type Toast, dismissToast, undoLatest } from "../store/toasts";
 import { DropTarget, OpenButton } from "../ui/DropTarget";
 import { NotFound, useTitle } from "../ui/Page";
@@ -28,7 +28,7 @@ const PAGES: Record<string, FunctionComponent<{ id: string; query: URLSearchPara
   sweep: lazy(async () => (await import("../sweeps/SweepPage")).SweepPage),
   creature: lazy(async () => (await import("../creature/CreaturePage")).CreaturePage),
 };
-const SignInPage = lazy(async () => (await import("../settings/SignInPage")).SignInPage);
+const SignInPage = lazy(async () => (await import("../settings/SettingsPage")).SignInPage);
 
 export function App() {
   const location = useLocation();

@@ -2,8 +2,7 @@
 
 import { Brand, Toasts } from "./App";
 import { sharedSlug } from "../api/address";
-import { CommonsPage } from "../shares/CommonsPage";
-import { SharedPage } from "../shares/SharedPage";
+import { CommonsPage, SharedPage } from "../shares/SharedPage";
 import { useLocation } from "../store/router";
 import { NotFound } from "../ui/Page";
 import { text } from "./text";

@@ -1,9 +1,8 @@
 /** Draw the visible part of a gallery at one moment. */
 
 import type { Motion } from "../decode/motion";
-import { type Size, prepare } from "../ui/canvas";
+import { type Size, type Theme, prepare } from "../ui/canvas";
 import { css, sequential } from "../ui/colours";
-import type { Theme } from "../ui/theme";
 import { type Colouring, colourPosition } from "./colouring";
 import { FADED } from "./drawMap";
 import { type Shape, cornerOf } from "./geometry";

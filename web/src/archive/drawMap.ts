@@ -1,8 +1,7 @@
 /** Draw the cells of an archive on a canvas, and flashes above them. */
 
-import { type Size, prepare } from "../ui/canvas";
+import { type Size, type Theme, prepare } from "../ui/canvas";
 import { type Rgb, pixel } from "../ui/colours";
-import type { Theme } from "../ui/theme";
 import { type Colouring, binColours } from "./colouring";
 import { type Layout, rasterOf } from "./layout";
 import type { Tiles } from "./projection";

@@ -3,9 +3,8 @@
 import type { RefObject } from "preact";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import type { Elites } from "../store/elites";
-import { useSize } from "../ui/canvas";
-import { prefersReducedMotion, useTheme } from "../ui/theme";
-import { FLASH_MS, MapPainter, type Picture } from "./drawMap";
+import { useSize, prefersReducedMotion, useTheme } from "../ui/canvas";
+import { type Picture, FLASH_MS, MapPainter } from "./drawMap";
 
 type MapContent = Pick<Picture, "layout" | "tiles" | "colouring" | "selected">;
 

@@ -16,7 +16,7 @@ import { newMoment } from "../replay/moment";
 import { AuditCard } from "./AuditCard";
 import { FactsCard } from "./FactsCard";
 import { FamilyCard } from "./FamilyCard";
-import { ForkLink } from "../ui/ForkLink";
+import { ForkLink } from "../ui/links";
 import { GenomeCard } from "./GenomeCard";
 import { Downloads } from "./Downloads";
 import { RemeasureCard } from "./RemeasureCard";

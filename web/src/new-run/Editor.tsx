@@ -3,7 +3,7 @@
 import { useMemo, useRef, useState } from "preact/hooks";
 import type { Experiment, Json } from "../api/types";
 import { useRefusal } from "../store/principal";
-import { useListener } from "../store/timing";
+import { useListener } from "../store/polling";
 import type { Draft } from "../store/draft";
 import { Segments } from "../ui/Select";
 import { BodyDrawing } from "./BodyDrawing";
@@ -12,8 +12,7 @@ import type { DraftState } from "./draftState";
 import { type EditorState, useEditor } from "./editorState";
 import { ForkCard } from "./ForkCard";
 import { JsonView } from "./form/JsonView";
-import { Outline } from "./form/Outline";
-import { SpecForm, partsOf } from "./form/SpecForm";
+import { Outline, SpecForm, partsOf } from "./form/SpecForm";
 import { isSweep } from "./sweep";
 import { SweepCard, goToSweep } from "./SweepCard";
 import { text } from "./text";

@@ -3,13 +3,12 @@
 import { useState } from "preact/hooks";
 import { messageOf } from "../api/problem";
 import type { Experiment } from "../api/types";
-import { useListener } from "../store/timing";
+import { useListener } from "../store/polling";
 import { showToast } from "../store/toasts";
 import { FileButton, useFileDrop } from "../ui/DropTarget";
 import type { CreatureFile } from "./BaseBar";
 import type { DraftState } from "./draftState";
-import { readText } from "./readDocument";
-import { completeSpec, baseOfDocument } from "./sources";
+import { readText, completeSpec, baseOfDocument } from "./sources";
 import { text } from "./text";
 
 /** Take a document; return what is wrong with it, or null. */

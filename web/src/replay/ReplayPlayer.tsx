@@ -3,7 +3,7 @@
 import type { ComponentChildren, RefObject } from "preact";
 import { useMemo, useRef, useState } from "preact/hooks";
 import type { Replay } from "../decode/replay";
-import { type Theme, useTheme } from "../ui/theme";
+import { type Theme, useTheme } from "../ui/canvas";
 import { CanvasStage } from "./CanvasStage";
 import { useClock, useKeys } from "./clock";
 import { FieldLegend, LookChoice, Speed } from "./Controls";

@@ -2,9 +2,8 @@
 
 import { useEffect, useRef } from "preact/hooks";
 import type { Motion } from "../decode/motion";
-import { prepare, useSize } from "../ui/canvas";
+import { prepare, useSize, prefersReducedMotion, useTheme } from "../ui/canvas";
 import { useClock } from "./clock";
-import { prefersReducedMotion, useTheme } from "../ui/theme";
 import { traceBody } from "./bodyPath";
 import "./replay.css";
 

@@ -11,7 +11,7 @@ import { Select } from "../ui/Select";
 import { type Column, Table } from "../ui/Table";
 import { copyText } from "../ui/clipboard";
 import { inDays } from "../ui/format";
-import { useSubmit } from "../ui/submit";
+import { useSubmit } from "../ui/forms";
 import { text } from "./text";
 
 export function Tokens({ own }: { own: string | null }) {

@@ -40,7 +40,7 @@ describe("an answer that nobody is signed in", () => {
     vi.resetModules();
     const told = vi.fn();
     vi.stubGlobal("dispatchEvent", told);
-    const { isSignedOut: isUnknown, noteStatus } = await import("../api/signedOut");
+    const { isSignedOut: isUnknown, noteStatus } = await import("../api/http");
     noteStatus(403);
     expect([isUnknown(), told.mock.calls.length]).toEqual([false, 0]);
     noteStatus(401);

@@ -6,10 +6,9 @@ import { messageOf } from "../api/problem";
 import type { Archive, Experiment, History, Results, Run, SpeciesHistory } from "../api/types";
 import type { Curves } from "./curves";
 import type { Elites } from "./elites";
-import { usePolled } from "./polling";
+import { usePolled, useThrottled, useTick } from "./polling";
 import { epochOf, withSnapshot } from "./state";
 import { applyResponse, currentState, retain, update, useEach, useStore } from "./store";
-import { useThrottled, useTick } from "./timing";
 
 /** True if a run searches for elites; others produce a table of results. */
 export const hasArchive = ({ spec }: Run) => "search" in spec;

@@ -5,7 +5,7 @@ import * as api from "../api/client";
 import type { LogEntry, Run } from "../api/types";
 import { type Loaded, SLOW_MS, useFetched } from "./fetch";
 import { useStore } from "./store";
-import { useThrottled } from "./timing";
+import { useThrottled } from "./polling";
 import { epochOf } from "./state";
 
 /** Entries per answer of the server. */

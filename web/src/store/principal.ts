@@ -3,10 +3,10 @@
 import { useEffect, useState } from "preact/hooks";
 import { readPrincipal } from "../api/client";
 import type { Principal, Owned } from "../api/types";
-import { SIGNED_OUT, isSignedOut } from "../api/signedOut";
+import { SIGNED_OUT, isSignedOut } from "../api/http";
 import { update, useStore } from "./store";
 import { text } from "./text";
-import { useListener } from "./timing";
+import { useListener } from "./polling";
 
 /** Load the principal into the store; after a failure the event stream loads it again. */
 export async function loadPrincipal(): Promise<void> {

@@ -1,7 +1,7 @@
 /** Routes, navigation, and the view in the query of the address. */
 
 import { useState } from "preact/hooks";
-import { useListener } from "./timing";
+import { useListener } from "./polling";
 
 /** A page, with the run, sweep or creature that it shows, or the share and a creature in it. */
 export interface Route {

@@ -6,7 +6,7 @@ import type { Run, RunPage, RunQuery } from "../api/types";
 import { type Loaded, useFetched } from "./fetch";
 import { currentState, update, useStore } from "./store";
 import { withList, withMore } from "./state";
-import { useThrottled, useTick } from "./timing";
+import { useThrottled, useTick } from "./polling";
 
 const PAGE = 30;
 const MAX_PAGE = 200;

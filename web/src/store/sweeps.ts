@@ -4,7 +4,7 @@ import * as api from "../api/client";
 import type { Sweep, SweepChanged, SweepCurves, SweepPage, SweepSummary } from "../api/types";
 import { type Loaded, useFetched } from "./fetch";
 import { useStore } from "./store";
-import { useThrottled } from "./timing";
+import { useThrottled } from "./polling";
 import { attempt, delayWithUndo, showToast, offerUndo } from "./toasts";
 import { text } from "./text";
 

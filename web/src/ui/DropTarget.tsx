@@ -5,7 +5,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { importCreature } from "../api/client";
 import { messageOf } from "../api/problem";
 import { showToast } from "../store/toasts";
-import { useListener } from "../store/timing";
+import { useListener } from "../store/polling";
 import { navigate } from "../store/router";
 import { text } from "./text";
 

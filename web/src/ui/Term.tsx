@@ -1,9 +1,8 @@
-/** A title that shows the definition of its term when it is pointed at or has the focus. */
+/** A title that shows the definition of its term in docs/glossary.md. */
 
 import type { ComponentChildren } from "preact";
 import { useId, useState } from "preact/hooks";
-import { define } from "./glossary";
-import { px } from "./px";
+import { px } from "./canvas";
 
 /** Pixels that a definition is wide at most. */
 const WIDTH = 320;
@@ -45,3 +44,22 @@ export function Term({ name, children }: Props) {
     </span>
   );
 }
+
+import text from "../../../docs/glossary.md?raw";
+
+/** Each `## term` with its paragraph, as plain text. */
+export function parse(markdown: string): Map<string, string> {
+  const entries = markdown.split(/^## /m).slice(1);
+  return new Map(
+    entries.map((entry) => {
+      const [term, ...lines] = entry.trim().split("\n");
+      const plain = lines.join(" ").replace(/`|\[([^\]]*)\]\([^)]*\)/g, "$1");
+      return [term!.toLowerCase(), plain.trim()];
+    }),
+  );
+}
+
+const GLOSSARY = parse(text);
+
+/** The definition of a term, ignoring case; undefined for an unknown term. */
+export const define = (term: string): string | undefined => GLOSSARY.get(term.toLowerCase());

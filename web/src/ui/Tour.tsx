@@ -1,9 +1,9 @@
 /** A short tour: a panel beside the page explains its parts step by step. */
 
 import { useEffect, useRef, useState } from "preact/hooks";
-import { useListener } from "../store/timing";
+import { useListener } from "../store/polling";
 import { text } from "./text";
-import { prefersReducedMotion } from "./theme";
+import { prefersReducedMotion } from "./canvas";
 import "./tour.css";
 
 export interface Step {

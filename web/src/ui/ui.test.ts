@@ -2,7 +2,7 @@ import { describe, expect, it, vi } from "vitest";
 import type { Experiment, Run, Spec } from "../api/types";
 import { diverging, viridis } from "./colours";
 import { bytes, duration, labelOf, number, titleOf } from "./format";
-import { define, parse } from "./glossary";
+import { define, parse } from "./Term";
 import { reasonOf } from "./Page";
 
 describe("colours", () => {

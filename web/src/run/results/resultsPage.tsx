@@ -1,11 +1,11 @@
 /** The sortable table of results of a run, and its states before there are rows. */
 
 import type { ResultRow, Results, Run, Value } from "../../api/types";
-import { resultsUrl } from "../../api/urls";
+import { resultsUrl } from "../../api/files";
 import { useResults } from "../../store/fetch";
 import { setQuery } from "../../store/router";
 import { Card } from "../../ui/Page";
-import { Heading, type SortOrder } from "../../ui/Table";
+import { type SortOrder, Heading } from "../../ui/Table";
 import { shortId } from "../../ui/format";
 import { type Order, type Column, columnsOf, sortRows } from "./columns";
 import { text } from "./text";
