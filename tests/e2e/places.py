@@ -15,7 +15,7 @@ CALM_S = 0.3
 SCRUBBER = "input[aria-label='Time in the replay']"
 
 
-GUIDED = "localStorage.setItem('microcosmos:guided', '1')"
+TOUR_TAKEN = "localStorage.setItem('microcosmos:tour-taken', '1')"
 """Keeps the tour from opening by itself."""
 
 

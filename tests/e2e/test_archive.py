@@ -4,7 +4,7 @@ import re
 from typing import Any
 
 import pytest
-from places import GUIDED
+from places import TOUR_TAKEN
 from playwright.sync_api import Page, expect
 from small import CENTROIDS
 from written import Written
@@ -32,7 +32,7 @@ pytestmark = pytest.mark.e2e
 @pytest.fixture
 def searched(shared, shared_page: Page) -> str:
     """The address of a finished search; the tour does not open."""
-    shared_page.add_init_script(GUIDED)
+    shared_page.add_init_script(TOUR_TAKEN)
     return f"{shared.product.url}/runs/{shared.finished('search')}"
 
 
@@ -146,7 +146,7 @@ def test_a_cell_that_changes_live_flashes_once(idle_page: Page, idle, motion: st
     page, run = idle_page, Written(idle.services, seed=41)
     run.begin("worker 1")
     run.go_on(1, 3)
-    page.add_init_script(GUIDED)
+    page.add_init_script(TOUR_TAKEN)
     page.emulate_media(reduced_motion=motion)
     page.clock.install()
     page.goto(f"{idle.product.url}/runs/{run.id}")
@@ -190,7 +190,7 @@ def box_of(points: list[list[float]]) -> tuple[float, float, float, float]:
 
 def test_the_cells_of_a_tessellation_are_voronoi_cells(shared, shared_page: Page):
     page = shared_page
-    page.add_init_script(GUIDED)
+    page.add_init_script(TOUR_TAKEN)
     run = shared.finished("voronoi")
     with page.expect_response(re.compile("/archive/centroids$"), timeout=SLOW) as answer:
         page.goto(f"{shared.product.url}/runs/{run}")

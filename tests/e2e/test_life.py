@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 from looks import violations
-from places import GUIDED
+from places import TOUR_TAKEN
 from playwright.sync_api import Locator, Page, expect
 from small import TINY
 
@@ -21,7 +21,7 @@ def test_a_run_is_forked_extended_deleted_and_restored(
     shared_page: Page, shared: Any, complaints: list[str]
 ):
     page, address = shared_page, shared.product.url
-    page.add_init_script(GUIDED)
+    page.add_init_script(TOUR_TAKEN)
     run = shared.finished("voronoi")
     page.goto(f"{address}/runs/{run}")
     choose_by_keyboard(page)

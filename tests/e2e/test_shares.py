@@ -4,7 +4,7 @@ import re
 from urllib.parse import urlsplit
 
 import pytest
-from places import GUIDED
+from places import TOUR_TAKEN
 from playwright.sync_api import Page, Request, expect
 
 FAST, SLOW = 10_000, 300_000
@@ -39,8 +39,8 @@ def test_an_archive_is_published_and_its_elites_are_opened(
     shared, shared_page: Page, stranger: Page
 ):
     page, address = shared_page, shared.product.url
-    page.add_init_script(GUIDED)
-    stranger.add_init_script(GUIDED)
+    page.add_init_script(TOUR_TAKEN)
+    stranger.add_init_script(TOUR_TAKEN)
     page.goto(f"{address}/runs/{shared.finished('voronoi')}")
     link = publish(page, "Eels", listed=False)
     asked = requests_of(stranger)

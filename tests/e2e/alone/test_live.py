@@ -8,7 +8,7 @@ from typing import Any
 import psutil
 import pytest
 from drive import Installation, wait_until
-from places import GUIDED
+from places import TOUR_TAKEN
 from playwright.sync_api import Browser, Locator, Page, expect
 from small import TINY
 
@@ -24,7 +24,7 @@ def test_no_update_is_lost_while_the_server_is_started_again(
     product: Installation, page: Page, complaints: list[str], browser: Browser
 ):
     run = product.submit(SPEC)
-    page.add_init_script(GUIDED)
+    page.add_init_script(TOUR_TAKEN)
     page.goto(f"{product.url}/runs/{run}?colour=turning")  # Which is asked for as it grows.
     page.evaluate("window.neverReloaded = true")
     product.reach(run, 3)
@@ -115,7 +115,7 @@ def rounded(value: float) -> float:
 @contextmanager
 def opened_anew(browser: Browser, url: str) -> Iterator[Page]:
     context = browser.new_context(viewport=WINDOW)
-    context.add_init_script(GUIDED)
+    context.add_init_script(TOUR_TAKEN)
     page = context.new_page()
     page.goto(url)
     yield page

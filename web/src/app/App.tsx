@@ -16,7 +16,6 @@ import { type PageLocation, useLocation } from "../store/router";
 import { text } from "./text";
 import "./app.css";
 
-/** The pages by the names of their routes. */
 const PAGES: Record<string, FunctionComponent<{ id: string; query: URLSearchParams }>> = {
   runs: RunsPage,
   new: lazy(async () => (await import("../new-run/NewRunPage")).NewRunPage),

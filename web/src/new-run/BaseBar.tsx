@@ -55,7 +55,6 @@ export function BaseBar({ draft, current, experiments, file }: Props) {
   );
 }
 
-/** The creatures that the run starts from, with links. */
 function ForkSourceText({ fork: { run, creature, cells, at, creatures } }: { fork: ForkSource }) {
   const then = new URLSearchParams({
     ...(cells && { cells: formatCells(cells) }),

@@ -75,7 +75,6 @@ async function forkOf(
   return { kind: "run", name: id, spec, fork };
 }
 
-/** The elites of some or all cells, now or after a generation. */
 async function elitesOf(run: string, cells: string | null, at: number | null): Promise<ForkSource> {
   const { cell, creature, generation } = await api.readArchive(run, [], { generation: at ?? undefined });
   const selected = cells === null ? () => true : parseCells(cells);
@@ -143,7 +142,6 @@ function parsed(document: string): Json {
   }
 }
 
-/** The kind and the spec of a document; a creature becomes a search or a refinement. */
 export function readDocument(document: Json, refine = false): ReadDocument {
   if (!isObject(document)) throw new Error(text.notADocument(describe(document)));
   const { identity, spec, id } = document;
@@ -192,7 +190,6 @@ export function specOf(creature: Creature): Spec {
   };
 }
 
-/** Names of plug-ins contain a dot. */
 const isPlugin = (name: string) => name.includes(".");
 
 /** The room for nodes and connections with which the creature was evaluated. */

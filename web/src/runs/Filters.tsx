@@ -12,8 +12,7 @@ import type { SortOrder } from "../ui/Table";
 
 type Pair = [value: string, title: string];
 type Selection = [name: string, title: string, value: string | undefined, choices: Pair[]];
-/** Delay between the last key and the request. */
-const SETTLE_MS = 200;
+const TYPING_PAUSE_MS = 200;
 
 interface Props {
   query: RunQuery;
@@ -28,7 +27,7 @@ export function Filters({ query, experiments, tags, onChange }: Props) {
     setTyped(null);
     onChange({ q: query || null });
   };
-  useDebounced(typed, SETTLE_MS, find);
+  useDebounced(typed, TYPING_PAUSE_MS, find);
   return (
     <form
       class="filters row"

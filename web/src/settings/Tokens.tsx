@@ -148,5 +148,4 @@ export function tokenStatus(token: Token, now = Date.now()): string {
 export const isExpired = (token: Token, now = Date.now()) =>
   token.revoked_at !== null || (token.expires_at !== null && Date.parse(token.expires_at) <= now);
 
-/** The expiry of a token that is valid for this number of days; null for none. */
 export const endOf = (days: number, now = Date.now()) => (days > 0 ? inDays(days, now) : null);

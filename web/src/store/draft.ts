@@ -2,7 +2,6 @@
 
 import type { Spec } from "../api/types";
 
-/** The origin of a draft. */
 export interface Base {
   kind: "preset" | "run" | "creature" | "pasted";
   /** `experiment/name` of a preset, id of a run, hash of a creature, or name of a file. */
@@ -37,7 +36,6 @@ export interface Draft {
 const KEY = "microcosmos:draft";
 const QUERIES = { preset: "preset", run: "from", creature: "creature", pasted: null };
 
-/** The address of an origin; null if it has none. */
 export function addressOf({ kind, name, foreign, fork }: Omit<Base, "spec">): Address | null {
   if (fork) return addressOfFork(fork);
   const parameter = QUERIES[kind];
@@ -53,7 +51,6 @@ function addressOfFork({ run, creature, cells, at }: ForkSource): Address {
   });
 }
 
-/** The address of a fork of a run. */
 export function forkAddress(
   run: string,
   which: { [name in (typeof FORK_PARAMETERS)[number]]?: string | null },

@@ -42,9 +42,9 @@ export async function extendLog(
   readAll: boolean,
 ): Promise<LogEntry[]> {
   // Newer entries of the current attempt may replace older ones.
-  const kept = known.filter(({ attempt }) => attempt < known.at(-1)!.attempt);
-  const after = kept.at(-1)?.id ?? (readAll ? 0 : undefined);
-  return [...kept, ...(await readFollowing(id, after))];
+  const finished = known.filter(({ attempt }) => attempt < known.at(-1)!.attempt);
+  const after = finished.at(-1)?.id ?? (readAll ? 0 : undefined);
+  return [...finished, ...(await readFollowing(id, after))];
 }
 
 async function readFollowing(id: string, after: number | undefined): Promise<LogEntry[]> {

@@ -78,7 +78,6 @@ function stop(): void {
   dropOldest();
 }
 
-/** Add a motion as the newest. */
 function addMotion(sha: string, motion: Motion): void {
   cache.delete(sha);
   cache.set(sha, motion);

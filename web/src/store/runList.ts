@@ -54,7 +54,6 @@ export async function moreRuns(query: RunQuery): Promise<void> {
   update((state) => withMore(state, { query: JSON.stringify(query), page, cursor, sent }));
 }
 
-/** All tags of runs. */
 export function useTags(): string[] {
   const { value } = useFetched(api.readTags, [useListVersion()]);
   return (value ?? []).map(({ tag }) => tag);

@@ -104,7 +104,6 @@ export function withList(state: State, { query, page, known, sent }: Answer & { 
   return { ...next, query, listed: page.items.map((run) => run.id), next: page.next };
 }
 
-/** The part of a list after a cursor. */
 export function withMore(
   state: State,
   { query, page, cursor, sent }: Answer & { cursor: string | null },

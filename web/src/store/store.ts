@@ -53,7 +53,6 @@ export function useEach<T>(ids: readonly string[], select: (state: State, id: st
   });
 }
 
-/** Some runs, undefined if not loaded. */
 export const useRuns = (ids: readonly string[]) => useEach(ids, ({ runs }, id) => runs.get(id));
 
 /** Runs without a viewer stay in the store for this long. */

@@ -10,7 +10,6 @@ const CONNECT_TIMEOUT_MS = 500;
 /** A browser has six connections to a host for all tabs; hidden tabs close theirs. */
 const CLOSE_HIDDEN_MS = 10_000;
 
-/** The change of the state by each kind of event. */
 const CHANGES: Record<string, (state: changes.State, event: never) => changes.State> = {
   run: changes.withRunEvent,
   generation: changes.withGenerationEvent,

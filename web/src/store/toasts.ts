@@ -26,7 +26,6 @@ export function showToast(toast: Omit<Toast, "id">): number {
   return id;
 }
 
-/** Show what went wrong. */
 export function showFailure(error: unknown): void {
   showToast({ kind: "wrong", text: messageOf(error) });
 }

@@ -8,12 +8,10 @@ import { text } from "./text";
 interface PageProps {
   /** The heading; pages with a header of their own leave it out. */
   title?: string;
-  /** Beside the heading. */
   actions?: ComponentChildren;
   /** Links to the pages above this one. */
   crumbs?: (readonly [href: string, name: string])[];
   error?: string | null;
-  /** True until there is content. */
   loading?: boolean;
   children?: ComponentChildren;
 }
@@ -56,11 +54,8 @@ interface CardProps {
   /** Id of the section; links lead to it. */
   id: string;
   title: ComponentChildren;
-  /** CSS classes. */
   kind?: string;
-  /** Beside the title. */
   note?: ComponentChildren;
-  /** At the right end of the title. */
   actions?: ComponentChildren;
   children?: ComponentChildren;
 }
@@ -102,9 +97,7 @@ export function Empty({ title, hint, children }: EmptyProps) {
 }
 
 interface NotFoundProps {
-  /** Title of the missing thing. */
   what: string;
-  /** Message of the server. */
   reason: string;
   /** The id in the address; a malformed one is named instead of the server's message. */
   id?: string;

@@ -4,8 +4,7 @@ import type { ComponentChildren } from "preact";
 import { useId, useState } from "preact/hooks";
 import { px } from "./canvas";
 
-/** Pixels that a definition is wide at most. */
-const WIDTH = 320;
+const MAX_WIDTH_PX = 320;
 
 interface Props {
   name: string;
@@ -21,7 +20,7 @@ export function Term({ name, children }: Props) {
   if (!about) return <>{children ?? name}</>;
   const show = ({ currentTarget }: { currentTarget: HTMLElement }) => {
     const { left, bottom } = currentTarget.getBoundingClientRect();
-    setPlace({ left: Math.max(8, Math.min(left, window.innerWidth - WIDTH - 8)), top: bottom + 4 });
+    setPlace({ left: Math.max(8, Math.min(left, window.innerWidth - MAX_WIDTH_PX - 8)), top: bottom + 4 });
   };
   const hide = () => setPlace(null);
   return (
@@ -61,5 +60,4 @@ export function parse(markdown: string): Map<string, string> {
 
 const GLOSSARY = parse(text);
 
-/** The definition of a term, ignoring case; undefined for an unknown term. */
 export const define = (term: string): string | undefined => GLOSSARY.get(term.toLowerCase());

@@ -16,8 +16,8 @@ export function lazy<P extends object>(
     useEffect(() => {
       if (Loaded) return;
       load().then(
-        (found) => {
-          Loaded = found;
+        (component) => {
+          Loaded = component;
           redraw((count) => count + 1);
         },
         () => setFailed(true),

@@ -29,7 +29,6 @@ interface Props {
   cells?: string | null;
   at?: number | null;
   title: string;
-  /** Within a line of text. */
   inline?: boolean;
 }
 

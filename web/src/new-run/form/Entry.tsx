@@ -11,7 +11,6 @@ import { Options } from "../../ui/Select";
 
 export interface FormState {
   document: Json;
-  /** The values before all changes. */
   original: Json;
   changed: ReadonlySet<string>;
   messages: ReadonlyMap<string, string[]>;
@@ -86,7 +85,6 @@ function Reset({ path, state }: { path: string; state: FormState }) {
   );
 }
 
-/** Description of a plug-in, and the workers that offer it. */
 function aboutPlugin(field: Leaf, value: Json): string {
   const plugin = field.kind === "choice" ? field.plugins?.[String(value)] : undefined;
   return plugin ? text.plugin(String(value), plugin.about, plugin.workers.join(", ")) : "";
@@ -126,7 +124,6 @@ export function rangeText({ low, lowOpen, high, highOpen }: Range): string {
 
 const capital = (sentence: string) => sentence.charAt(0).toUpperCase() + sentence.slice(1);
 
-/** Errors, each once. */
 export function Messages({ messages = [] }: { messages?: readonly (string | null)[] }) {
   return [...new Set(messages.filter((message) => message !== null))].map((message) => (
     <p key={message} class="wrong-text small" role="alert">
@@ -207,7 +204,6 @@ interface Format {
 
 const TEXT: Format = { write: (value) => (typeof value === "string" ? value : ""), read: (text) => text };
 
-/** How values of a kind are written in a text field, and read from it. */
 const FORMATS: Partial<Record<Leaf["kind"], Format>> = {
   number: { write: (value) => (value === null ? "" : String(value)), read: typed },
   list: { write: (items) => (Array.isArray(items) ? items.join(", ") : ""), read: typedList },
