@@ -40,11 +40,11 @@ describe("an answer that nobody is signed in", () => {
     vi.resetModules();
     const dispatched = vi.fn();
     vi.stubGlobal("dispatchEvent", dispatched);
-    const { isSignedOut: isUnknown, noteStatus } = await import("../api/http");
+    const { isSignedOut, noteStatus } = await import("../api/http");
     noteStatus(403);
-    expect([isUnknown(), dispatched.mock.calls.length]).toEqual([false, 0]);
+    expect([isSignedOut(), dispatched.mock.calls.length]).toEqual([false, 0]);
     noteStatus(401);
     noteStatus(401);
-    expect([isUnknown(), dispatched.mock.calls.length]).toEqual([true, 1]);
+    expect([isSignedOut(), dispatched.mock.calls.length]).toEqual([true, 1]);
   });
 });
