@@ -2,7 +2,7 @@
 
 import * as api from "../api/client";
 import type { Share } from "../api/types";
-import { decodeMotion } from "../decode/motion";
+import { decodeMotion } from "../decode/replay";
 import { usePages } from "../store/paging";
 import { usePolled } from "../store/polling";
 import { Empty, Page, useTitle } from "../ui/Page";
