@@ -6,14 +6,12 @@ import { sharedSlug } from "../api/address";
 import type { Creature, Spec } from "../api/types";
 import type { Replay } from "../decode/replay";
 import { useFetched } from "../store/fetch";
-import { setQuery } from "../store/router";
 import { number, shortId, words } from "../ui/format";
 import { isForceFree } from "../ui/coupling";
 import { Page, useTitle } from "../ui/Page";
 import { reasonOf } from "../ui/NotFound";
 import { NotForceFree } from "../ui/NotForceFree";
 import { ReplayPlayer } from "../replay/ReplayPlayer";
-import { replayViewOf, queryOf } from "../replay/replayView";
 import { newMoment } from "../replay/moment";
 import { AuditCard } from "./AuditCard";
 import { FactsCard } from "./FactsCard";
@@ -74,13 +72,7 @@ export function CreatureView({ creature, query }: { creature: Creature; query: U
         <div class="motion stack">
           <section class="card" aria-label={text.replay}>
             <ReplayStatus {...rendering} what={text.recording} />
-            {replay && (
-              <ReplayPlayer
-                {...{ films, moment }}
-                view={replayViewOf(query)}
-                onLook={(change) => setQuery(queryOf(change))}
-              />
-            )}
+            {replay && <ReplayPlayer {...{ films, moment, query }} />}
             {replay && swims(creature) && <ReplayFitness replay={replay} task={identity.task} />}
             <Downloads sha={sha} />
           </section>
