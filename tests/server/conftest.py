@@ -14,7 +14,7 @@ import pytest
 import reports
 from databases import Missing, own_postgresql, own_redis
 from installation import Installation, empty_redis, running
-from sqlalchemy import func, select
+from sqlalchemy import func, select, update
 
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, parse
@@ -97,8 +97,6 @@ def flush(services) -> Callable[[], None]:
 
 @pytest.fixture
 def eventually() -> Callable[[Callable[[], Any]], None]:
-    """Waits until a condition holds, and fails after 20 seconds."""
-
     def wait(condition: Callable[[], Any]) -> None:
         deadline = time.monotonic() + 20
         while not condition():
@@ -116,7 +114,6 @@ def serve(services) -> Callable[[], Any]:
 
 @pytest.fixture
 def address(installation) -> str:
-    """The server that all tests share."""
     return installation.address
 
 
@@ -134,32 +131,44 @@ def spec() -> dict[str, Any]:
 
 @pytest.fixture
 def run_id(services, spec) -> UUID:
-    """A queued run."""
     demo = EXPERIMENTS["quality-diversity"].presets[0].spec
     return submit(services, demo)[0].id
 
 
 @pytest.fixture
-def attempt(services, run_id) -> Attempt:
-    """A worker's claim on the queued run."""
-    return claim(services, run_id, "worker")
+def claim_run(services, run_id) -> Callable[..., Attempt | None]:
+    return lambda worker="worker": claim(services, run_id, worker)
 
 
 @pytest.fixture
-def record(services, run_id, request) -> Callable[..., None]:
+def attempt(claim_run) -> Attempt:
+    return claim_run()
+
+
+@pytest.fixture
+def record(request) -> Callable[..., None]:
     """Records a generation of the queued run, as `attempt`; takes what `report` does."""
 
-    def record(*said: Any, seconds: float = 1.0, **more: Any) -> None:
-        held = request.getfixturevalue("attempt")
-        held.record(reports.report(*said, **more), seconds)
+    def record(*figures: Any, seconds: float = 1.0, **more: Any) -> None:
+        attempt = request.getfixturevalue("attempt")
+        attempt.record(reports.report(*figures, **more), seconds)
 
     return record
 
 
 @pytest.fixture
-def row(services, run_id) -> Callable[[], Run]:
-    """The run as the database has it now."""
+def update_rows(services) -> Callable[..., None]:
+    """Sets columns of a table, in all rows or where some conditions hold."""
 
+    def change(table: type[Base], *where: Any, **values: Any) -> None:
+        with services.sessions.write.begin() as session:
+            session.execute(update(table).where(*where).values(**values))
+
+    return change
+
+
+@pytest.fixture
+def row(services, run_id) -> Callable[[], Run]:
     def read() -> Run:
         with services.sessions.read() as session:
             return session.get_one(Run, run_id)
@@ -169,8 +178,6 @@ def row(services, run_id) -> Callable[[], Run]:
 
 @pytest.fixture
 def count(services) -> Callable[[type[Base]], int]:
-    """Counts the rows of a table."""
-
     def count(table: type[Base]) -> int:
         with services.sessions.read() as session:
             return session.scalar(select(func.count()).select_from(table))
@@ -196,8 +203,18 @@ def identity() -> Callable[[int], dict[str, Any]]:
 
 @pytest.fixture
 def file() -> dict[str, Any]:
-    """A creature file."""
     return creature.document(reports.identity(3), None, None)
+
+
+@pytest.fixture
+def upload(api) -> Callable[..., str]:
+    """Uploads a creature with an identity, and returns its hash."""
+
+    def upload(identity: dict[str, Any], *more: Any) -> str:
+        file = creature.document(identity, *more or (None, None))
+        return api.post("creatures", json=file).json()["creature"]
+
+    return upload
 
 
 @pytest.fixture

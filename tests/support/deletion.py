@@ -12,7 +12,6 @@ from server.tables import Base, Run
 
 
 def rows(services):
-    """The number of rows of each table."""
     with services.sessions.read() as session:
         return {
             table.name: session.scalar(select(func.count()).select_from(table))

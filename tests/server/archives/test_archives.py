@@ -17,7 +17,6 @@ from server.runs.submission import submit
 
 @pytest.fixture
 def saved(spec, attempt, record) -> bytes:
-    """The checkpoint of the run, an archive with one elite."""
     record(1)
     content = archive_file(spec)
     attempt.save(1, content)
@@ -163,8 +162,8 @@ def test_unknown_measures_and_too_long_histories_are_refused(api, run_id, record
 def test_elites_have_any_number_of_descriptors(api, run_id, descriptors, record, published):
     record(1, {5: 1.0}, descriptors)
     assert api.get(f"runs/{run_id}/archive").json()["descriptors"] == [list(descriptors)]
-    (told,) = [data for kind, data in published() if kind == "elites"]
-    assert told["descriptors"] == [list(descriptors)]
+    (event,) = [data for kind, data in published() if kind == "elites"]
+    assert event["descriptors"] == [list(descriptors)]
 
 
 @pytest.mark.parametrize(

@@ -129,10 +129,10 @@ def test_rows_and_run_are_written_in_one_transaction(
 
 def test_new_rows_are_published(services, sweep_id, table, published):
     claim(services, sweep_id, "worker").record(table(1, WORM, summary={"best": 1.0}), 1.0)
-    (told,) = [data for kind, data in published() if kind == "results"]
-    creature = told["rows"][0].pop("creature")
+    (event,) = [data for kind, data in published() if kind == "results"]
+    creature = event["rows"][0].pop("creature")
     assert len(creature) == 64
-    assert told == {
+    assert event == {
         "run": str(sweep_id),
         "generation": 1,
         "summary": {"best": 1.0},

@@ -166,7 +166,7 @@ def test_a_purge_keeps_what_others_use(api, services, spec, report, identity, ch
 
 
 def test_a_purge_may_be_killed_anywhere(api, services, spec, report, run_id, monkeypatch):
-    """After every single transaction; what was begun is not to be restored."""
+    """After every transaction. A run whose purge has begun is not restored."""
     monkeypatch.setattr(purge, "ROWS_PER_TRANSACTION", 2)
     monkeypatch.setattr("server.deletion.garbage.CREATURES_PER_TRANSACTION", 2)
     before = rows(services), files(services)

@@ -48,10 +48,10 @@ def test_the_stream_carries_every_change_of_a_run(address, services, run_id, rep
         attempt = claim(services, run_id, "worker")
         attempt.record(report(1, {3: 1.0, 9: 2.0}), 1.5)
         attempt.finish()
-        heard = take(found, 5)
-    kinds = [kind for _, kind, _ in heard]
+        received = take(found, 5)
+    kinds = [kind for _, kind, _ in received]
     assert kinds == ["run", "generation", "elites", "run", "run"]
-    data = [data for _, _, data in heard]
+    data = [data for _, _, data in received]
     assert data[0]["status"] == "running"
     assert data[1] == {
         "run": str(run_id),
@@ -93,7 +93,7 @@ def test_requested_actions_are_published(address, api, run_id):
 
 def test_the_last_event_of_a_run_is_its_current_state(services, run_id, monkeypatch):
     """A slow reader publishes a stale state after a newer one."""
-    told, publish = [], services.events.publish
+    sent, publish = [], services.events.publish
 
     def be_overtaken(kind, run, data):
         monkeypatch.setattr(services.events, "publish", note)
@@ -101,21 +101,21 @@ def test_the_last_event_of_a_run_is_its_current_state(services, run_id, monkeypa
         note(kind, run, data)
 
     def note(kind, run, data):
-        told.append(data["status"])
+        sent.append(data["status"])
         publish(kind, run, data)
 
     monkeypatch.setattr(services.events, "publish", be_overtaken)
     announce(services, run_id)
-    assert told == ["running", "queued", "running"]
+    assert sent == ["running", "queued", "running"]
 
 
 def test_an_unchanged_run_is_published_once(services, run_id, monkeypatch, record, attempt):
-    told = []
-    monkeypatch.setattr(services.events, "publish", lambda *event: told.append(event))
+    sent = []
+    monkeypatch.setattr(services.events, "publish", lambda *event: sent.append(event))
     record(1)
-    told.clear()
+    sent.clear()
     announce(services, run_id, without=["spec"])
-    assert len(told) == 1
+    assert len(sent) == 1
 
 
 def test_a_stream_of_one_run_excludes_others(address, services):
@@ -128,7 +128,7 @@ def test_a_stream_of_one_run_excludes_others(address, services):
 
 
 def test_nothing_is_lost_or_doubled_over_restarts_of_the_server(services, serve):
-    run_id, heard, last = uuid4(), [], None
+    run_id, received, last = uuid4(), [], None
     published, total = 0, 400
     done = threading.Event()
 
@@ -140,20 +140,20 @@ def test_nothing_is_lost_or_doubled_over_restarts_of_the_server(services, serve)
             time.sleep(0.002)
         done.set()
 
-    teller = threading.Thread(target=publish)
+    publisher = threading.Thread(target=publish)
     for _ in range(4):
         with serve() as address, stream(address, last) as found:
             if last is None:
                 last = next(found)[0]
-                teller.start()
+                publisher.start()
             for identifier, _, data in found:
                 last = identifier
-                heard.append(data["number"])
-                if len(heard) % 100 == 0:
+                received.append(data["number"])
+                if len(received) % 100 == 0:
                     break
-    teller.join()
+    publisher.join()
     assert done.is_set()
-    assert heard == list(range(total))
+    assert received == list(range(total))
 
 
 def test_stopping_the_server_ends_its_streams(serve):

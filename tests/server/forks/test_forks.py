@@ -78,7 +78,7 @@ def test_null_resets_a_field_to_its_default(fork):
 
 
 def test_null_clears_an_optional_field():
-    """As the form says that lengths are not driven: their default would drive them."""
+    """The form sends null for rest lengths that are not driven; the default drives them."""
     grown = {"experiment": "quality-diversity", "control": {"encoding": "cppn-body"}}
     before = parse(grown).model_dump(mode="json")
     patch = {
@@ -195,8 +195,6 @@ def run_id(services) -> UUID:
 
 @pytest.fixture
 def end(record, request):
-    """Carries the run out up to a generation and finishes it."""
-
     def end(generations, summary=None):
         for generation in range(1, generations + 1):
             record(generation, {generation: 1.0}, summary=summary)

@@ -17,10 +17,10 @@ def test_bands_are_quartiles_of_the_runs_that_reached_a_generation(api, services
     sweep = post(seeds=4, grid=VISCOSITIES).json()
     rng = np.random.default_rng(0)
     lengths = [5, 3, 4, 0]
-    told = {}
+    scores = {}
     for run, length in zip(sweep["cases"][1]["runs"], lengths, strict=True):
-        told[run] = rng.random((length, 3))
-        record(services, run, told[run])
+        scores[run] = rng.random((length, 3))
+        record(services, run, scores[run])
     found = api.get(f"sweeps/{sweep['id']}/summary").json()
     empty, case = found["cases"]
     assert (empty["generation"], empty["qd_score"]["median"]) == ([], [])
@@ -30,7 +30,7 @@ def test_bands_are_quartiles_of_the_runs_that_reached_a_generation(api, services
     for at, name in enumerate(("qd_score", "coverage", "best")):
         for generation in case["generation"]:
             known = [
-                rows[generation - 1, at] for rows in told.values() if len(rows) >= generation
+                rows[generation - 1, at] for rows in scores.values() if len(rows) >= generation
             ]
             for word, share in (
                 ("low", 25),
@@ -45,7 +45,7 @@ def test_bands_are_quartiles_of_the_runs_that_reached_a_generation(api, services
     assert [member["generation"] for member in case["members"]] == lengths
     final = case["finals"]["qd_score"]
     assert found["generation"] == 3, "the shortest of the runs that have begun"
-    common = [told[run][2, 0] for run in told if len(told[run])]
+    common = [scores[run][2, 0] for run in scores if len(scores[run])]
     assert final["values"] == [*common, None]
     assert final["median"] == pytest.approx(np.median(common))
     thin = api.get(f"sweeps/{sweep['id']}/summary", params={"points": 3}).json()["cases"][1]
@@ -54,7 +54,7 @@ def test_bands_are_quartiles_of_the_runs_that_reached_a_generation(api, services
     lines = api.get(f"sweeps/{sweep['id']}/curves").json()
     assert lines["generation"] == [1, 2, 3, 4, 5]
     (line,) = [one for one in lines["runs"] if one["run"] == sweep["cases"][1]["runs"][1]]
-    assert line["coverage"] == [*told[line["run"]][:, 1], None, None]
+    assert line["coverage"] == [*scores[line["run"]][:, 1], None, None]
 
 
 def test_a_run_restored_during_a_summary_is_not_mixed_up(api, services, post):
@@ -127,11 +127,11 @@ def test_finals_of_a_table_come_from_its_summary(claimed, api, sweep, table):
     attempt.record(table(1, {"number": 1}, summary={"points": 4, "note": "words"}), 1.0)
     name = api.get(f"runs/{found['cases'][0]['runs'][0]}").json()["name"]
     assert name == "period=40"
-    told = api.get(f"sweeps/{found['id']}/summary").json()["cases"]
-    assert told[0]["finals"]["points"]["values"] == [4.0]
-    assert set(told[0]["finals"]) == {"evaluations", "points"}
-    assert told[0]["qd_score"]["median"] == [None]
-    assert "points" not in told[1]["finals"]
+    cases = api.get(f"sweeps/{found['id']}/summary").json()["cases"]
+    assert cases[0]["finals"]["points"]["values"] == [4.0]
+    assert set(cases[0]["finals"]) == {"evaluations", "points"}
+    assert cases[0]["qd_score"]["median"] == [None]
+    assert "points" not in cases[1]["finals"]
     refused = api.post("sweeps", json={"spec": sweep, "seeds": 2}).json()
     assert "`gaits` has no seed" in refused["detail"]
 

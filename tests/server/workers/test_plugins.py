@@ -49,8 +49,8 @@ def test_a_run_pins_plug_in_versions_and_settings(api, have, mine):
     axis = spec["archive"]["descriptors"][0]
     assert (axis["low"], axis["high"], axis["scale"]) == (0.001, 1.0, "log10")
     run = answer.json()["id"]
-    told = {one["name"]: one for one in api.get(f"runs/{run}/archive").json()["recorded"]}
-    assert (told["mine.sway"]["title"], told["mine.sway"]["unit"]) == ("Sway", "cells")
+    measures = {one["name"]: one for one in api.get(f"runs/{run}/archive").json()["recorded"]}
+    assert (measures["mine.sway"]["title"], measures["mine.sway"]["unit"]) == ("Sway", "cells")
     again = api.post("runs", json=spec)
     assert again.json()["spec"] == spec, "what a run has is taken as it is"
     usual = {**spec, "task": {**spec["task"], "fitness": "displacement"}}
@@ -200,15 +200,15 @@ def test_a_run_names_the_plug_in_it_waits_for(api, services, have, mine):
 
 def test_a_run_refused_by_its_worker_fails_at_once_with_the_reason(api, services, run_id):
     claim(services, run_id, "worker").refuse("mine.straight must give one number")
-    told = api.get(f"runs/{run_id}").json()
-    assert (told["status"], told["attempt"]) == ("failed", 1)
-    assert told["error"] == "mine.straight must give one number"
+    run = api.get(f"runs/{run_id}").json()
+    assert (run["status"], run["attempt"]) == ("failed", 1)
+    assert run["error"] == "mine.straight must give one number"
 
 
 def test_a_run_set_aside_continues_when_resumed(api, services, run_id):
     claim(services, run_id, "worker").pause_until_resumed("mine.py is not what it was.")
-    told = api.get(f"runs/{run_id}").json()
-    assert (told["status"], told["warning"]) == (
+    run = api.get(f"runs/{run_id}").json()
+    assert (run["status"], run["warning"]) == (
         "paused",
         "mine.py is not what it was. Then resume the run.",
     )

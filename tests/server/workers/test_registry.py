@@ -14,8 +14,6 @@ from server.workers import registry
 
 @pytest.fixture
 def alive(services):
-    """A worker that reports."""
-
     def alive(name="worker", status="idle", run=None, memory=1 << 40, **usage):
         registry.report(services.sessions, name, "some device", memory, status, run, **usage)
 
@@ -125,8 +123,8 @@ def test_a_run_that_a_worker_has_taken_is_about_to_begin(api, spec, alive, waiti
     third = api.post("runs", json={**spec, "seed": 2}).json()["id"]
     busy = "Waits for a worker: the only one is busy; "
     assert waiting(third) == busy + "1 run is before it."
-    told = {run["id"]: run["waiting_reason"] for run in api.get("queue").json()["items"]}
-    assert told == {run: waiting(run) for run in (*ids, third)}
+    reasons = {run["id"]: run["waiting_reason"] for run in api.get("queue").json()["items"]}
+    assert reasons == {run: waiting(run) for run in (*ids, third)}
 
 
 def test_starting_workers_leave_no_run_ahead(api, spec, alive):

@@ -6,12 +6,10 @@ import { sharedSlug } from "../api/address";
 import type { Creature, Spec } from "../api/types";
 import type { Replay } from "../decode/replay";
 import { useFetched } from "../store/fetch";
-import { setQuery } from "../store/router";
 import { number, shortId, words } from "../ui/format";
 import { NotForceFree, isForceFree } from "../ui/coupling";
 import { Page, reasonOf, useTitle } from "../ui/Page";
 import { ReplayPlayer } from "../replay/ReplayPlayer";
-import { replayViewOf, queryOf } from "../replay/replayView";
 import { newMoment } from "../replay/moment";
 import { AuditCard } from "./AuditCard";
 import { FactsCard } from "./FactsCard";
@@ -72,13 +70,7 @@ export function CreatureView({ creature, query }: { creature: Creature; query: U
         <div class="motion stack">
           <section class="card" aria-label={text.replay}>
             <ReplayStatus {...rendering} what={text.recording} />
-            {replay && (
-              <ReplayPlayer
-                {...{ films, moment }}
-                view={replayViewOf(query)}
-                onLook={(change) => setQuery(queryOf(change))}
-              />
-            )}
+            {replay && <ReplayPlayer {...{ films, moment, query }} />}
             {replay && swims(creature) && <ReplayFitness replay={replay} task={identity.task} />}
             <Downloads sha={sha} />
           </section>

@@ -80,7 +80,7 @@ function Name({ relative, most, own, href }: NameProps) {
   const { creature, kept, fitness } = relative;
   const title = aboutOf(relative);
   const common = {
-    class: `family-name ${own ? "own" : kept ? "" : "lost"}`,
+    class: `family-name ${own ? "own" : kept ? "" : "unstored"}`,
     title,
     children: (
       <>

@@ -21,7 +21,7 @@ import { isObject } from "../run/spec/difference";
 export const MAX_CREATURES = 4096;
 
 export function sourceAddress(query: URLSearchParams): Address | null {
-  const word = ["fork", "begin", "from", "creature", "preset"].find((name) => query.get(name));
+  const word = ["fork", "initial", "from", "creature", "preset"].find((name) => query.get(name));
   if (!word) return null;
   const name = query.get(word)!;
   if (word !== "fork") return [[word, name]];
@@ -37,7 +37,7 @@ export async function load(address: Address, experiments: Experiment[]): Promise
   const [word, name] = address[0]!;
   if (word === "preset") return presetBase(name, experiments);
   try {
-    if (word === "begin") return await searchFromCreature(name, experiments);
+    if (word === "initial") return await searchFromCreature(name, experiments);
     if (word === "fork") return await forkOf(name, Object.fromEntries(address), experiments);
     if (word === "creature") {
       const spec = specOf(await api.readCreature(name));

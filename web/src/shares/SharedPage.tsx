@@ -13,7 +13,7 @@ import { FilesCard } from "../run/FilesCard";
 import { Card, Loading, NotFound, Page, useTitle, Empty } from "../ui/Page";
 import { copyText } from "../ui/clipboard";
 import { text } from "./text";
-import { decodeMotion } from "../decode/motion";
+import { decodeMotion } from "../decode/replay";
 import { usePages } from "../store/paging";
 import { usePolled } from "../store/polling";
 import { SwimmingBody } from "../replay/SwimmingBody";

@@ -43,7 +43,7 @@ export function addressOf({ kind, name, foreign, fork }: Omit<Base, "spec">): Ad
 }
 
 function addressOfFork({ run, creature, cells, at }: ForkSource): Address {
-  if (run === null) return [["begin", creature!]];
+  if (run === null) return [["initial", creature!]];
   return forkAddress(run, {
     creature,
     cells: cells && formatCells(cells),

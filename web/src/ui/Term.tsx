@@ -12,6 +12,9 @@ interface Props {
   children?: ComponentChildren;
 }
 
+/** Show a popover above everything: no ancestor moves or clips it. */
+const showAbove = (popover: HTMLElement | null) => popover?.showPopover();
+
 /** Additions, plurals and units are ignored: “Evaluations/s” is explained as “evaluation”. */
 export function Term({ name, children }: Props) {
   const about = define(name) ?? define(name.replace(/ (of|\().*$/, "").replace(/s?(\/s)?$/, ""));
@@ -36,7 +39,7 @@ export function Term({ name, children }: Props) {
     >
       {children ?? name}
       {place && (
-        <span id={id} role="tooltip" class="tooltip" style={px(place)}>
+        <span id={id} ref={showAbove} role="tooltip" popover="manual" class="tooltip" style={px(place)}>
           {about}
         </span>
       )}

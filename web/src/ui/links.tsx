@@ -35,7 +35,7 @@ interface Props {
 export function ForkLink({ run, creature, cells, at = null, title, inline = false }: Props) {
   if (useRefusal() || sharedSlug) return null;
   const which = { creature, cells, at: at === null ? null : String(at) };
-  const address = run ? forkAddress(run, which) : [["begin", creature!]];
+  const address = run ? forkAddress(run, which) : [["initial", creature!]];
   return (
     <a
       class={inline ? "" : "button"}

@@ -67,7 +67,7 @@ function Curve({ plot: { title, format, series, bands = NONE }, x, view }: Curve
   const label = text.label(title, text.over[over], now.map((each) => each.join(" ")).join(", "));
   return (
     <figure class="curve">
-      <figcaption>
+      <figcaption class="quiet small">
         <span>
           <Term name={title} />
         </span>
