@@ -99,10 +99,11 @@ class Gaits(Part):
 
     def scene(self, form: str, swimmer: str, viscosity: float) -> Scene:
         """Return the scene of one point of the sweep."""
-        plugin, size = self.plugins.get(swimmer), {"width": self.width, "height": self.height}
+        plugin = self.plugins.get(swimmer)
+        width, height, steric = self.width, self.height, self.steric
         gait = {"swimmer": swimmer, "period": self.period, "ramp": self.ramp, "plugin": plugin}
         return Scene(
-            world=World(**size, viscosity=viscosity, steric=self.steric),
+            world=World(width=width, height=height, viscosity=viscosity, steric=steric),
             body=swimmer_body(swimmer, plugin),
             coupling=self.coupling(form),
             control=Gait.model_validate(gait),
