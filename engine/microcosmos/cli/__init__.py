@@ -1,18 +1,4 @@
-"""The command line. JAX is loaded only to compute."""
+"""The command line: each module registers its commands. JAX is loaded only to compute."""
 
-from . import (  # noqa: F401  (Importing a module registers its commands.)
-    creature,
-    doctor,
-    draw,
-    manage,
-    modules,
-    monitor,
-    network,
-    pictures,
-    refine,
-    run,
-    sharing,
-)
+from . import creature, doctor, draw, manage, modules, monitor, pictures, run, sharing
 from .app import app
-
-__all__ = ["app"]

@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 import pytest
 
-from microcosmos.archive import creature, creature_h5, dataframe, export, file
+from microcosmos.archive import creature, creature_h5, export, file
 from microcosmos.archive.atomic import write_whole
 from microcosmos.naming import decode
 from microcosmos.spec import shape
@@ -168,4 +168,4 @@ def test_links_out_of_the_file_are_refused(newcomer, link):
 def test_a_missing_package_is_named_with_its_command(monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
     with pytest.raises(ImportError, match='pip install "pandas"'):
-        dataframe.to_pandas(b"")
+        export.to_pandas(b"")

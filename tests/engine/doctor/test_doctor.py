@@ -6,8 +6,9 @@ import subprocess
 import sys
 
 import pytest
+from packaging.specifiers import SpecifierSet
 
-from microcosmos.doctor import devices, examination, memory, server, versions
+from microcosmos.doctor import devices, examination, machine, server
 from microcosmos.doctor.finding import Finding, problem
 
 GIB = 1 << 30
@@ -22,7 +23,7 @@ def test_a_probe_finds_the_devices_and_a_cache_that_works(tmp_path):
     assert levels(found) == {"ok"}
     texts = [finding.found for finding in found]
     assert any("× cpu" in text for text in texts)
-    assert "a program that was kept is found again" in texts
+    assert "a stored program is loaded again" in texts
     assert list((tmp_path / "cache").iterdir()) == []  # It leaves nothing behind.
 
 
@@ -44,20 +45,20 @@ def test_an_error_of_jax_is_reported(tmp_path, monkeypatch):
 
 
 MEMORY = {"memory_bytes": 8 * GIB, "memory_used_bytes": 2 * GIB}
-LOST = ("warning", "is not found again")
+LOST = ("warning", "is not loaded again")
 
 
 @pytest.mark.parametrize(
-    ("device", "kept", "expected"),
+    ("device", "loaded", "expected"),
     [
         ({"error": "CUDA_ERROR_UNKNOWN"}, False, [("problem", "CUDA_ERROR_UNKNOWN"), LOST]),
         ({"right": False, "memory_bytes": None}, False, [("problem", "wrong numbers"), LOST]),
         ({"right": True} | MEMORY, True, [("ok", "6.44 GB of 8.59 GB free")]),
     ],
 )
-def test_a_device_is_reported_with_its_faults(tmp_path, monkeypatch, device, kept, expected):
+def test_a_device_is_reported_with_its_faults(tmp_path, monkeypatch, device, loaded, expected):
     whole = {"platform": "gpu", "model": "a model", "id": 0} | device
-    answer = {"kind": "gpu", "devices": [whole], "cache": {"kept": True, "found": kept}}
+    answer = {"kind": "gpu", "devices": [whole], "cache": {"stored": True, "loaded": loaded}}
     monkeypatch.setattr(devices, "probed", lambda *_: answer)
     found = list(devices.devices(tmp_path))
     for level, text in expected:
@@ -84,30 +85,30 @@ def test_a_cache_that_cannot_be_is_a_problem(tmp_path):
     ],
 )
 def test_versions_are_compared_as_numbers(found, needed, satisfied):
-    assert versions.satisfied(found, needed) == satisfied
+    assert machine.satisfied(found, SpecifierSet(needed)) == satisfied
 
 
 def test_packages_that_lack_or_are_old_are_named(monkeypatch):
     needed = ["nowhere-to-be-found>=1", "h5py>=999; python_version > '3'"]
     needed.append("absent>=1; extra == 'x'")
-    monkeypatch.setattr(versions, "requires", lambda _: needed)
-    _, *found = versions.packages()
+    monkeypatch.setattr(machine, "requires", lambda _: needed)
+    _, *found = machine.packages()
     assert [one.level for one in found] == ["problem", "problem"]
     assert "nowhere-to-be-found>=1 is needed and not installed" in found[0].found
     assert "h5py>=999 is needed" in found[1].found
 
 
 def test_this_installation_is_as_it_should_be():
-    assert levels([*versions.python(), *versions.packages()]) == {"ok"}
+    assert levels([*machine.python(), *machine.packages()]) == {"ok"}
 
 
 def test_a_container_has_the_memory_that_it_is_given(tmp_path):
     meminfo, limit = tmp_path / "meminfo", tmp_path / "max"
     meminfo.write_text("MemTotal:  8388608 kB\nMemAvailable:  4194304 kB\nHugePages: 0\n")
     limit.write_text("max\n")
-    assert memory.memory_bytes(meminfo, limit) == (8 * GIB, 4 * GIB)
+    assert machine.memory_bytes(meminfo, limit) == (8 * GIB, 4 * GIB)
     limit.write_text(f"{1 << 20}\n")
-    small, *presets = memory.memory(meminfo, limit)
+    small, *presets = machine.memory(meminfo, limit)
     assert (small.level, small.found) == ("warning", "1.05 MB of 1.05 MB available")
     assert any("quality-diversity/demo needs" in one.found for one in presets)
 
