@@ -180,7 +180,7 @@ def test_an_upload_keeps_ancestors_with_credit_and_licence(api, family):
     assert answer.json() == whole, "and can be handed on as it came"
     assert "attachment" in answer.headers["content-disposition"]
     ancestors = api.get(f"creatures/{young['sha256']}/ancestors").json()["items"]
-    assert [(one["creature"], one["kept"]) for one in ancestors] == [
+    assert [(one["creature"], one["stored"]) for one in ancestors] == [
         (parent["sha256"], True),
         (oldest["sha256"], True),
     ]

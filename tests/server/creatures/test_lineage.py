@@ -83,11 +83,11 @@ def test_a_missing_parent_is_listed_by_hash(api, bring, identity, enter):
     child = bring(2, 1)
     (only,) = api.get(f"creatures/{child}/ancestors").json()["items"]
     assert only["creature"] == creature.name(identity(1))
-    assert (only["kept"], only["fitness"], only["operator"]) == (False, None, None)
+    assert (only["stored"], only["fitness"], only["operator"]) == (False, None, None)
     parent = "ab" * 32
     elite = enter(1, 1.25, parent)
     (only,) = api.get(f"creatures/{elite}/ancestors").json()["items"]
-    assert (only["creature"], only["kept"]) == (parent, False)
+    assert (only["creature"], only["stored"]) == (parent, False)
 
 
 def test_children_are_counted_and_named_once_each(api, bring):
