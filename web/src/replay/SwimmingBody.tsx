@@ -5,7 +5,7 @@ import type { Motion } from "../decode/replay";
 import { prepare, useSize } from "../ui/canvas";
 import { px } from "../ui/px";
 import { useTheme } from "../ui/theme";
-import { BODY_INK, traceBody } from "./bodyPath";
+import { BODY_INK, traceBody } from "./motion";
 import { useLoop } from "./clock";
 import "./replay.css";
 
