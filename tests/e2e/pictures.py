@@ -18,7 +18,7 @@ from browser import launched, overhear
 from drive import ROOT, Installation, running
 from looks import THEMES, WIDTHS, faults
 from PIL import Image
-from places import GUIDED, NOWHERE, hold_still, places, visit
+from places import NOWHERE, TOUR_TAKEN, hold_still, places, visit
 from playwright.sync_api import Browser, Page, TimeoutError
 
 FOLDER = ROOT / "docs" / "pictures" / "page"
@@ -77,7 +77,7 @@ def take_all(browser: Browser, address: str) -> list[str]:
             context = browser.new_context(
                 viewport={"width": width, "height": height}, color_scheme=theme
             )
-            context.add_init_script(GUIDED)
+            context.add_init_script(TOUR_TAKEN)
             page = context.new_page()
             overhear(page, wrong)
             for place in places(address):

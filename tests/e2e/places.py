@@ -14,7 +14,7 @@ UNREST = ".loading, .rendering, [aria-busy=true], .waiting:has-text('…')"
 """Elements that stand for something that is loading."""
 CALM_S = 0.3
 SCRUBBER = "input[aria-label='Time in the replay']"
-GUIDED = "localStorage.setItem('microcosmos:guided', '1')"
+TOUR_TAKEN = "localStorage.setItem('microcosmos:tour-taken', '1')"
 """Keeps the tour from opening by itself."""
 
 

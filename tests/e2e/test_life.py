@@ -3,7 +3,7 @@
 import re
 
 from looks import violations
-from places import GUIDED, the_map
+from places import TOUR_TAKEN, the_map
 from playwright.sync_api import Locator, Page, expect
 from small import TINY
 
@@ -16,7 +16,7 @@ LAST = TINY["search"]["generations"]
 
 def test_a_run_is_forked_extended_deleted_and_restored(page, shared, complaints):
     address, run = shared.product.url, shared.finished("voronoi")
-    page.add_init_script(GUIDED)
+    page.add_init_script(TOUR_TAKEN)
     page.goto(f"{address}/runs/{run}")
     choose_by_keyboard(page)
     choose_by_mouse(page)

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from looks import THEMES, WIDTHS, faults, violations
-from places import GUIDED, Place, places, visit
+from places import TOUR_TAKEN, Place, places, visit
 from playwright.sync_api import Page, expect
 from small import CENTROIDS, TINY
 
@@ -16,7 +16,7 @@ REDRAWN_MS = 150
 
 
 def test_every_page_fits_its_window_and_axe_finds_nothing(page, shared, idle, complaints):
-    page.add_init_script(GUIDED)
+    page.add_init_script(TOUR_TAKEN)
     page.emulate_media(reduced_motion="reduce")
     wrong = []
     for address, place in every_place(shared, idle):
@@ -78,7 +78,7 @@ MOST_SHIFT = 0.05
 LEAST_CONTROL = 24
 
 SHIFT = """
-localStorage.setItem("microcosmos:guided", "1");
+localStorage.setItem("microcosmos:tour-taken", "1");
 window.shift = 0;
 new PerformanceObserver((list) => {
   for (const entry of list.getEntries()) if (!entry.hadRecentInput) window.shift += entry.value;

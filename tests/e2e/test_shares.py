@@ -3,7 +3,7 @@
 import re
 from urllib.parse import urlsplit
 
-from places import GUIDED, best_of, stage, the_map
+from places import TOUR_TAKEN, best_of, stage, the_map
 from playwright.sync_api import Page, Request, expect
 
 SLOW = 300_000
@@ -32,8 +32,8 @@ def test_a_creature_is_published_viewed_and_revoked(shared, page, stranger):
 
 def test_an_archive_is_published_and_its_elites_are_opened(shared, page, stranger):
     address = shared.product.url
-    page.add_init_script(GUIDED)
-    stranger.add_init_script(GUIDED)
+    page.add_init_script(TOUR_TAKEN)
+    stranger.add_init_script(TOUR_TAKEN)
     page.goto(f"{address}/runs/{shared.finished('voronoi')}")
     link = publish(page, "Eels", listed=False)
     asked = requests_of(stranger)

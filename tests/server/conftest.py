@@ -14,12 +14,13 @@ import pytest
 import reports
 from databases import Missing, own_postgresql, own_redis
 from installation import Installation, empty_redis, running
-from sqlalchemy import func, select, update
+from sqlalchemy import event, func, select, update
 
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, parse
 from server.attempts.attempt import Attempt
 from server.attempts.claim import claim
+from server.core.database import ago
 from server.runs.submission import submit
 from server.services.services import Services
 from server.settings import Settings
@@ -168,6 +169,18 @@ def update_rows(services) -> Callable[..., None]:
 
 
 @pytest.fixture
+def silence(services, update_rows) -> Callable[[], None]:
+    """Lets the leases of all runs expire."""
+
+    def silence() -> None:
+        with services.sessions.read() as session:
+            then = ago(session, services.settings.lease + 0.1)
+        update_rows(Run, heartbeat_at=then)
+
+    return silence
+
+
+@pytest.fixture
 def row(services, run_id) -> Callable[[], Run]:
     def read() -> Run:
         with services.sessions.read() as session:
@@ -181,6 +194,24 @@ def count(services) -> Callable[[type[Base]], int]:
     def count(table: type[Base]) -> int:
         with services.sessions.read() as session:
             return session.scalar(select(func.count()).select_from(table))
+
+    return count
+
+
+@pytest.fixture
+def statements(services) -> Callable[..., int]:
+    """Counts the statements that an action sends to the database."""
+
+    def count(action: Callable[..., Any], *arguments: Any) -> int:
+        sent = []
+
+        def note(_connection: Any, _cursor: Any, statement: str, *_: Any) -> None:
+            sent.append(statement)
+
+        event.listen(services.sessions.engine, "before_cursor_execute", note)
+        action(*arguments)
+        event.remove(services.sessions.engine, "before_cursor_execute", note)
+        return len(sent)
 
     return count
 

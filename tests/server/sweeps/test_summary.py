@@ -5,7 +5,7 @@ from uuid import UUID
 
 import numpy as np
 import pytest
-from sqlalchemy import event, insert, update
+from sqlalchemy import event, update
 
 from server.sweeps.summary import common_generation, summary
 from server.tables import Generation, Run, Sweep
@@ -29,16 +29,10 @@ def test_bands_are_quartiles_of_the_runs_that_reached_a_generation(api, services
     assert case["runs"] == [3, 3, 3, 2, 1]
     for at, name in enumerate(("qd_score", "coverage", "best")):
         for generation in case["generation"]:
-            known = [
-                rows[generation - 1, at] for rows in scores.values() if len(rows) >= generation
-            ]
-            for word, share in (
-                ("low", 25),
-                ("median", 50),
-                ("high", 75),
-                ("min", 0),
-                ("max", 100),
-            ):
+            long = [rows for rows in scores.values() if len(rows) >= generation]
+            known = [rows[generation - 1, at] for rows in long]
+            shares = {"low": 25, "median": 50, "high": 75, "min": 0, "max": 100}
+            for word, share in shares.items():
                 value = case[name][word][generation - 1]
                 assert value == pytest.approx(np.percentile(known, share))
     assert [member["seed"] for member in case["members"]] == [0, 1, 2, 3]
@@ -97,26 +91,19 @@ def record(services, run, rows):
         row.generation = len(rows)
         for generation, values in enumerate(rows.tolist(), 1):
             known = dict(zip(columns, values, strict=True))
-            at = {"run_id": row.id, "generation": generation}
-            session.execute(insert(Generation), [{**at, **known, **others}])
+            session.add(Generation(run_id=row.id, generation=generation, **known, **others))
             row.qd_score, row.coverage, row.best = values
 
 
-def test_a_summary_asks_the_database_as_often_for_many_runs_as_for_few(services, post):
+def test_a_summary_asks_the_database_as_often_for_many_runs_as_for_few(
+    services, post, statements
+):
     sizes = []
     for seeds in (1, 20):
         sweep_id = UUID(post(seeds=seeds, grid=VISCOSITIES).json()["id"])
-        asked = []
-
-        def note(_connection, _cursor, statement, *_, asked=asked):
-            asked.append(statement)
-
         with services.sessions.read() as session:
             sweep = session.get_one(Sweep, sweep_id)
-            event.listen(services.sessions.engine, "before_cursor_execute", note)
-            summary(session, sweep, None)
-            event.remove(services.sessions.engine, "before_cursor_execute", note)
-        sizes.append(len(asked))
+            sizes.append(statements(lambda: summary(session, sweep, None)))  # noqa: B023
     assert sizes == [2, 2]
 
 

@@ -11,7 +11,7 @@ import { TimeSlider } from "./TimeSlider";
 import { count } from "../ui/format";
 import { Segments } from "../ui/Select";
 import { Tour } from "../ui/Tour";
-import { ForkLink } from "../ui/ForkLink";
+import { ForkLink } from "../ui/links";
 import { SelectToggle, SelectionBar, useSelection } from "./SelectionBar";
 import { stepsOf, useTour } from "./tour";
 import { ElitePreview } from "./ElitePreview";

@@ -1,9 +1,8 @@
 /** Draw the visible part of a gallery at one moment. */
 
 import type { Motion } from "../decode/replay";
-import { type Size, prepare } from "../ui/canvas";
+import { type Size, type Theme, prepare } from "../ui/canvas";
 import { css, sequential } from "../ui/colours";
-import type { Theme } from "../ui/theme";
 import { type Colouring, colourPosition } from "./colouring";
 import { type Shape, cornerOf } from "./layout";
 import { FADED } from "./mapCanvas";

@@ -1,6 +1,15 @@
 import { describe, expect, it } from "vitest";
-import { type Direction, cellAt, cellOf, columnAndRow, cornerOf } from "./layout";
-import { gridLayout, nextBin, rectangle, visibleBins } from "./layout";
+import {
+  type Direction,
+  cellAt,
+  cellOf,
+  columnAndRow,
+  cornerOf,
+  gridLayout,
+  nextBin,
+  rectangle,
+  visibleBins,
+} from "./layout";
 
 const SHAPE = [4, 3] as const;
 

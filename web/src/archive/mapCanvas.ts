@@ -3,9 +3,8 @@
 import type { RefObject } from "preact";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import type { Elites } from "../store/elites";
-import { type Size, prepare, useSize } from "../ui/canvas";
+import { type Size, type Theme, prepare, useSize, prefersReducedMotion, useTheme } from "../ui/canvas";
 import { type Rgb, pixel } from "../ui/colours";
-import { type Theme, prefersReducedMotion, useTheme } from "../ui/theme";
 import { type Colouring, binColours } from "./colouring";
 import { type Layout, rasterOf } from "./layout";
 import type { Tiles } from "./projection";

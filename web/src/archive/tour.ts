@@ -8,7 +8,7 @@ import type { Step } from "../ui/Tour";
 import type { ArchiveView } from "./archiveView";
 import { text } from "./text";
 
-const STORAGE_KEY = "microcosmos:guided";
+const STORAGE_KEY = "microcosmos:tour-taken";
 
 /** True if this browser has shown the tour; false if it forbids storage. */
 export function hasTakenTour(): boolean {

@@ -1,7 +1,7 @@
 /** The genome of a creature: a network, or a row of numbers. */
 
 import { useMemo, useState } from "preact/hooks";
-import { type NetworkFormat, networkUrl } from "../api/urls";
+import { type NetworkFormat, networkUrl } from "../api/files";
 import type { Creature, Spec, Vector } from "../api/types";
 import { layeredOf } from "../decode/layers";
 import { type Network as Graph, networkOf } from "../decode/network";
@@ -10,7 +10,7 @@ import { NetworkGraph } from "./NetworkGraph";
 import { NetworkOutputs } from "./NetworkOutputs";
 import type { Moment } from "../replay/moment";
 import { Card } from "../ui/Page";
-import { FileLink } from "../ui/FileLink";
+import { FileLink } from "../ui/links";
 import { text } from "./text";
 
 const FORMATS: [NetworkFormat, string][] = [

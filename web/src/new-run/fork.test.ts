@@ -5,7 +5,7 @@ import type { Json, Spec } from "../api/types";
 import { addressOf } from "../store/draft";
 import { forkOf, isForkField } from "./ForkCard";
 import { MAX_CREATURES, sourceAddress, load } from "./sources";
-import { EXPERIMENTS, experiment } from "./form/presets.fixture";
+import { EXPERIMENTS, experiment } from "./form/form.fixture";
 import { type Section, formOf } from "./form/fields";
 import { messagePaths } from "./form/document";
 import { mergePatch, withInitial, withoutInitial } from "./initialCreatures";

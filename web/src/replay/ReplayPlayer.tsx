@@ -4,7 +4,7 @@ import type { ComponentChildren, RefObject } from "preact";
 import { useMemo, useRef } from "preact/hooks";
 import type { Replay } from "../decode/replay";
 import { Select } from "../ui/Select";
-import { type Theme, useTheme } from "../ui/theme";
+import { type Theme, useTheme } from "../ui/canvas";
 import { CanvasStage } from "./CanvasStage";
 import { useClock, useKeys } from "./clock";
 import { type Field, fieldOf, fieldsOf } from "./fields";

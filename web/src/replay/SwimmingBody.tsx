@@ -2,9 +2,7 @@
 
 import { useRef } from "preact/hooks";
 import type { Motion } from "../decode/replay";
-import { prepare, useSize } from "../ui/canvas";
-import { px } from "../ui/px";
-import { useTheme } from "../ui/theme";
+import { prepare, useSize, px, useTheme } from "../ui/canvas";
 import { BODY_INK, traceBody } from "./motion";
 import { useLoop } from "./clock";
 import "./replay.css";

@@ -2,7 +2,7 @@
 
 import type { RefObject } from "preact";
 import { useEffect, useRef } from "preact/hooks";
-import { prefersReducedMotion } from "../ui/theme";
+import { prefersReducedMotion } from "../ui/canvas";
 
 /** While running, call `tick` in every frame with the seconds since the last one. */
 export function useClock(running: boolean, tick: (seconds: number) => void): void {

@@ -2,7 +2,7 @@
 
 import type { Replay } from "../decode/replay";
 import { type Rgb, diverging, table, viridis } from "../ui/colours";
-import type { Theme } from "../ui/theme";
+import type { Theme } from "../ui/canvas";
 import { text } from "./text";
 
 export type FieldName = "vorticity" | "speed" | "energy" | "none";

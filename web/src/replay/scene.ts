@@ -1,8 +1,7 @@
 /** Draw one moment of a replay: flow, path, body, and the copies of the body in other tiles. */
 
 import type { Replay } from "../decode/replay";
-import { type Size, prepare } from "../ui/canvas";
-import type { Theme } from "../ui/theme";
+import { type Size, type Theme, prepare } from "../ui/canvas";
 import type { FluidPainter } from "./fluid";
 import { type Point, BODY_INK, chainsOf, meanOf, positionsAt, splineOf } from "./motion";
 import { type Tracers, drawTracers } from "./tracers";

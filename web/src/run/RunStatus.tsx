@@ -3,7 +3,7 @@
 import type { Run } from "../api/types";
 import { cancelWithUndo, sendCommand } from "../store/commands";
 import { useRunRefresh } from "../store/fetch";
-import { useTick } from "../store/timing";
+import { useTick } from "../store/polling";
 import { Progress } from "../ui/Page";
 import { DASH, duration } from "../ui/format";
 import { text } from "./text";

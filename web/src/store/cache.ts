@@ -1,7 +1,6 @@
 /** A cache of replays and motions, limited by their size. */
 
-import type { Motion } from "../decode/replay";
-import type { Replay } from "../decode/replay";
+import type { Motion, Replay } from "../decode/replay";
 
 const MAX_BYTES = 64e6;
 

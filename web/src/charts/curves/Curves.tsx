@@ -2,8 +2,7 @@
 
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import uPlot from "uplot";
-import { useSize } from "../../ui/canvas";
-import { useTheme } from "../../ui/theme";
+import { useSize, useTheme } from "../../ui/canvas";
 import { type CurveView, tableOf } from "./curveView";
 import { optionsOf } from "./options";
 import { type Band, type Plot, type Series, newest } from "./plots";

@@ -1,7 +1,7 @@
 /** Axes, grid and titles of a plot. */
 
 import { Term } from "../../ui/Term";
-import { px } from "../../ui/px";
+import { px } from "../../ui/canvas";
 import type { Axis } from "./Plot";
 import { positionOf, ticksOf } from "./scale";
 import "./plot.css";

@@ -2,7 +2,7 @@
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import { useSize } from "../../ui/canvas";
-import { AxisTitles, Frame, type Room, type Upper } from "./Frame";
+import { type Room, type Upper, AxisTitles, Frame } from "./Frame";
 import { Mark } from "./Mark";
 import { type Scale, positionOf } from "./scale";
 import "../lineStyle.css";

@@ -3,15 +3,14 @@
 import { useMemo, useState } from "preact/hooks";
 import type { ResultRow } from "../../api/types";
 import { setQuery } from "../../store/router";
-import { formOf } from "../../ui/coupling";
-import { NotForceFree } from "../../ui/NotForceFree";
-import { Plot, type Point } from "../../charts/plot/Plot";
+import { NotForceFree, formOf } from "../../ui/coupling";
+import { type Point, Plot } from "../../charts/plot/Plot";
 import { formsOf, reynoldsAxis, sweepAxes, sweepLines } from "./gaits";
 import { Card } from "../../ui/Page";
 import { Segments } from "../../ui/Select";
 import { ReplayLoop } from "../../replay/Loop";
 import { ReplayStatus, useReplays } from "../../replay/replays";
-import { useDebounced } from "../../store/timing";
+import { useDebounced } from "../../store/polling";
 import { type ResultsProps, TableCard, hrefOf, useTable } from "../results/resultsPage";
 import { text } from "./text";
 import "./gaits.css";

@@ -6,9 +6,8 @@ import type { Replay } from "../../decode/replay";
 import { CanvasStage } from "../../replay/CanvasStage";
 import { StepRange } from "../../replay/Transport";
 import { useClock } from "../../replay/clock";
-import { BODY_INK, chainsOf, type Point, positionsAt } from "../../replay/motion";
-import { type Size, prepare } from "../../ui/canvas";
-import { prefersReducedMotion, useTheme } from "../../ui/theme";
+import { type Point, BODY_INK, chainsOf, positionsAt } from "../../replay/motion";
+import { type Size, prepare, prefersReducedMotion, useTheme } from "../../ui/canvas";
 import { text } from "./text";
 
 /** Seconds of playback, and of rest at the end. */

@@ -1,7 +1,7 @@
 /** The sortable table of results of a run, and its states before there are rows. */
 
 import type { ResultRow, Run, Value } from "../../api/types";
-import { resultsUrl } from "../../api/urls";
+import { resultsUrl } from "../../api/files";
 import { useResults } from "../../store/fetch";
 import { setQuery } from "../../store/router";
 import { Card } from "../../ui/Page";
