@@ -87,16 +87,16 @@ def uploads(place: Installation) -> bool:
     """Tell whether thousands of malformed files are refused in time, and no other is read."""
     canary = place.folder / "canary.h5"
     canary.write_bytes(malformed_hdf5.whole())
-    with watched(canary) as events:
+    with watched(canary) as readings:
         found = send(place, all_cases(canary))
     rich.print(
         f"{found.refused} malformed files: {len(found.wrong)} not refused as they should be, "
         f"the slowest in {found.slowest:.2f} s, {found.growth >> 20} MiB more memory at most, "
-        f"{len(events)} readings of other files"
+        f"{len(readings)} readings of other files"
     )
     print(*found.wrong, sep="\n")
     in_time, little = found.slowest < 2, found.growth < 300 << 20
-    return found.refused >= 1000 and in_time and little and not found.wrong and not events
+    return found.refused >= 1000 and in_time and little and not found.wrong and not readings
 
 
 PARTS = {

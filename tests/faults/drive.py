@@ -97,9 +97,7 @@ class Installation:
         return self.http.get(f"/api/v1/{path}", params=query).raise_for_status().json()
 
     def submit(self, spec: dict[str, Any]) -> str:
-        answer = self.http.post("/api/v1/runs", json=spec)
-        answer.raise_for_status()
-        return answer.json()["id"]
+        return self.http.post("/api/v1/runs", json=spec).raise_for_status().json()["id"]
 
     def read(self, run: str) -> dict[str, Any]:
         """Read a run, retrying while the server is restarted."""

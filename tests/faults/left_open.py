@@ -57,7 +57,7 @@ def leave_open(place: Installation) -> bool:
     place.reach(run, 2, seconds=300)
     with launched() as browser:
         page = browser.new_page(viewport={"width": 1280, "height": 900})
-        page.add_init_script("localStorage.setItem('microcosmos:guided', '1')")
+        page.add_init_script("localStorage.setItem('microcosmos:tour-taken', '1')")
         page.goto(f"{place.url}/runs/{run}")
         page.evaluate("window.neverReloaded = true")
         samples = measured(page, place, run)

@@ -33,12 +33,12 @@ def test_the_original_files_are_valid(place):
 
 @pytest.mark.parametrize("every", [FEW, pytest.param(MANY, marks=pytest.mark.long)])
 def test_malformed_files_are_refused_with_the_reason_and_read_no_other(place, canary, every):
-    with watched(canary) as events:
+    with watched(canary) as readings:
         found = send(place, islice(all_cases(canary), 0, None, every))
     assert found.wrong == []
     assert found.refused > 2400 / every
     assert found.growth < 100 << 20
-    assert events == []
+    assert readings == []
 
 
 def test_a_false_content_length_does_no_harm(place):
@@ -49,9 +49,9 @@ def test_a_false_content_length_does_no_harm(place):
 
 
 def test_the_file_watch_notices_readings(canary):
-    with watched(canary) as events:
+    with watched(canary) as readings:
         canary.read_bytes()
-    assert events
+    assert readings
 
 
 REFUSED = {

@@ -37,16 +37,16 @@ class Findings:
 @contextmanager
 def watched(canary: Path) -> Iterator[list[str]]:
     """Collect the kernel's events of opening or reading a file."""
-    libc, events = ctypes.CDLL(None, use_errno=True), []
+    libc, readings = ctypes.CDLL(None, use_errno=True), []
     watch = libc.inotify_init1(os.O_NONBLOCK | os.O_CLOEXEC)
     assert watch >= 0
     added = libc.inotify_add_watch(watch, os.fsencode(canary), IN_ACCESS | IN_OPEN)
     assert added >= 0, os.strerror(ctypes.get_errno())
     try:
-        yield events
+        yield readings
         with suppress(BlockingIOError):
             data = os.read(watch, 1 << 16)
-            events += [f"event {kind:#x}" for _, kind, _, _ in EVENT.iter_unpack(data)]
+            readings += [f"event {kind:#x}" for _, kind, _, _ in EVENT.iter_unpack(data)]
     finally:
         os.close(watch)
 
@@ -104,7 +104,7 @@ LIES = {
 
 
 def lie(port: int, sent: bytes) -> bytes:
-    """The first line of the answer to a request with a false length."""
+    """The first line of the answer to a request with a wrong length."""
     with socket.create_connection(("127.0.0.1", port), timeout=20) as connection:
         try:
             connection.sendall(HEAD + sent)

@@ -5,6 +5,7 @@ from contextlib import nullcontext
 
 import numpy as np
 import pytest
+from pydantic import SecretStr
 
 from microcosmos.client import Client, Conflict, NoAnswer, NotFound, Refused, polling
 from microcosmos.client.views import watch
@@ -38,10 +39,10 @@ def test_invalid_fields_become_a_sentence(client, spec):
     wrong = spec | {"seed": -1, "world": {"viscosity": -2}}
     with pytest.raises(Refused) as caught:
         client.submit(wrong)
-    said = str(caught.value)
-    assert "seed: needs greater than or equal to 0; got -1" in said
-    assert "world.viscosity" in said
-    assert said.endswith(".")
+    message = str(caught.value)
+    assert "seed: needs greater than or equal to 0; got -1" in message
+    assert "world.viscosity" in message
+    assert message.endswith(".")
     assert {error["field"] for error in caught.value.errors} == {"seed", "world.viscosity"}
     assert caught.value.status == 422
 
@@ -135,8 +136,6 @@ def test_a_table_comes_as_rows(client, services, sweep_id, table):
 
 
 def test_the_client_sends_its_token(serve, monkeypatch):
-    from pydantic import SecretStr
-
     with serve(token=SecretStr("sesame")) as address:
         monkeypatch.delenv("MICROCOSMOS_TOKEN", raising=False)
         with pytest.raises(Exception, match=r"token is needed.*MICROCOSMOS_TOKEN"):
@@ -148,7 +147,7 @@ def test_the_client_sends_its_token(serve, monkeypatch):
 
 
 class Kept:
-    """A view that keeps what it was shown."""
+    """A view that keeps the states that it was shown."""
 
     def __init__(self, react=lambda state: None):
         self.shown: list[tuple[str, int, list[int]]] = []
@@ -163,7 +162,7 @@ class Kept:
 
 @pytest.fixture
 def worked(attempt, record):
-    """The run goes on by a generation whenever it is shown, until its third."""
+    """Records a generation whenever the run is shown; finishes it after the third."""
     left = [1, 2, 3, None]
 
     def go_on(state: polling.RunState) -> None:
@@ -180,12 +179,9 @@ def worked(attempt, record):
 
 def test_a_run_is_followed_by_events(client, run, worked):
     view = Kept(worked)
-    assert (
-        watch(polling.follow(client.connection, run.id), "Run x", nullcontext(view))
-        == "finished"
-    )
-    status, generation, curve = view.shown[-1]
-    assert (status, generation, curve) == ("finished", 3, [1, 2, 3])
+    states = polling.follow(client.connection, run.id)
+    assert watch(states, "Run x", nullcontext(view)) == "finished"
+    assert view.shown[-1] == ("finished", 3, [1, 2, 3])
     curves = [curve for _, _, curve in view.shown]
     assert curves == sorted(curves)  # Nothing twice, nothing out of order.
 

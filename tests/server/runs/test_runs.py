@@ -162,9 +162,8 @@ def test_a_run_must_fit_the_largest_live_worker(api, services, spec):
 def test_the_same_key_at_once_gives_one_run(api, services, spec):
     headers = {"Idempotency-Key": "a key"}
     with ThreadPoolExecutor(8) as pool:
-        answers = list(
-            pool.map(lambda _: api.post("runs", json=spec, headers=headers), range(8))
-        )
+        sent = [pool.submit(api.post, "runs", json=spec, headers=headers) for _ in range(8)]
+    answers = [one.result() for one in sent]
     assert sorted(answer.status_code for answer in answers) == [200] * 7 + [202]
     assert len({answer.json()["id"] for answer in answers}) == 1
     assert len(api.get("runs").json()["items"]) == 1
@@ -195,22 +194,6 @@ def test_an_accepted_key_is_not_refused_later(api, services, spec):
     registry.report(services.sessions, "large", "cpu", 1000, "idle")
     assert api.post("runs", json=spec).status_code == 422
     assert api.post("runs", json=spec, headers=headers).json()["id"] == first.json()["id"]
-
-
-def test_runs_are_listed_newest_first_in_pages(api, spec):
-    ids = [api.post("runs", json={**spec, "seed": i}).json()["id"] for i in range(5)]
-    seen, cursor = [], None
-    while True:
-        query = {"limit": 2, **({"cursor": cursor} if cursor else {})}
-        page = api.get("runs", params=query).json()
-        seen += [run["id"] for run in page["items"]]
-        cursor = page["next"]
-        if cursor is None:
-            break
-    assert seen == ids[::-1]
-    api.post(f"runs/{ids[2]}/cancel")
-    found = api.get("runs", params={"status": "cancelled"}).json()["items"]
-    assert [run["id"] for run in found] == [ids[2]]
 
 
 def test_a_database_without_a_free_connection_is_unavailable(api, run_id, monkeypatch):

@@ -20,8 +20,8 @@ def test_a_sweep_runs_each_case_with_each_seed_in_order(api, services, six):
         {"world.viscosity": 0.1},
     ]
     found = api.get("runs", params={"sweep": six["id"], "sort": "created"}).json()["items"]
-    told = [(run["spec"]["world"]["viscosity"], run["spec"]["seed"]) for run in found]
-    assert told == [(nu, seed) for seed in (0, 1, 2) for nu in (0.05, 0.1)]
+    inputs = [(run["spec"]["world"]["viscosity"], run["spec"]["seed"]) for run in found]
+    assert inputs == [(nu, seed) for seed in (0, 1, 2) for nu in (0.05, 0.1)]
     assert found[3]["name"] == "thick and thin · world.viscosity=0.1 · seed 1"
     assert {run["sweep"] for run in found} == {six["id"]}
     ids = [run["id"] for run in found]
@@ -59,11 +59,7 @@ def test_a_path_reaches_into_lists_whole_parts_and_parts_that_are_off(api, post)
         ({"grid": {"viscosity": [1]}}, "grid.viscosity", "did you mean `world.viscosity`"),
         ({"grid": {"archive.descriptors.2.bins": [4]}}, "grid.archive.descriptors.2.bins", ""),
         ({"grid": {"seed": [1]}}, "grid.seed", "`seeds`"),
-        (
-            {"grid": {"experiment": ["folding"]}},
-            "grid.experiment",
-            "cannot contain",
-        ),
+        ({"grid": {"experiment": ["folding"]}}, "grid.experiment", "cannot contain"),
         ({"grid": {"seed.low": [1]}}, "grid.seed.low", "no field"),
         ({"grid": {"world.viscosity": []}}, "grid.world.viscosity", "at least 1 item"),
         ({"grid": {"world.viscosity": [1, 1.0]}}, "grid.world.viscosity[1]", "viscosity[0]"),
@@ -141,12 +137,10 @@ def test_a_write_that_fails_half_way_leaves_nothing(services, post, monkeypatch)
 
 @pytest.mark.postgresql
 def test_the_same_key_at_once_gives_one_sweep(api, services, spec):
-    headers = {"Idempotency-Key": "a key"}
-    asked = {"spec": spec, "seeds": 2}
+    headers, asked = {"Idempotency-Key": "a key"}, {"spec": spec, "seeds": 2}
     with ThreadPoolExecutor(4) as pool:
-        answers = list(
-            pool.map(lambda _: api.post("sweeps", json=asked, headers=headers), range(4))
-        )
+        sent = [pool.submit(api.post, "sweeps", json=asked, headers=headers) for _ in range(4)]
+    answers = [one.result() for one in sent]
     assert sorted(answer.status_code for answer in answers) == [200] * 3 + [202]
     assert len({answer.json()["id"] for answer in answers}) == 1
     assert services.jobs.sweeps.count == 2
@@ -166,7 +160,6 @@ def test_sweeps_take_integers_beyond_canonical_json(api, spec):
 
 @pytest.fixture
 def elite(claimed, run_id, report, identity):
-    """The name of a creature that lives in a finished run."""
     attempt = claimed(run_id)
     attempt.record(report(1, {0: 1.0}), 1.0)
     attempt.finish()

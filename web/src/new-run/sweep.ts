@@ -3,7 +3,7 @@
 import { useEffect, useMemo, useState } from "preact/hooks";
 import type { Experiment, FieldError, Spec, SweepRequest, Json } from "../api/types";
 import { words } from "../ui/format";
-import { numberError, leavesOf, typed } from "./form/document";
+import { leavesOf, numberError, typed, typedJson } from "./form/document";
 import type { Leaf, Section } from "./form/fields";
 import { text } from "./text";
 
@@ -53,13 +53,11 @@ export function errorsAt(errors: readonly FieldError[], path: string): string[] 
   return mine.map(({ message }) => message);
 }
 
-/** One field of a grid, with the typed values. */
 export interface Axis {
   path: string;
   text: string;
 }
 
-/** Fields that a grid can run over; seeds have an entry of their own. */
 export function sweepable(form: Section, spec: Spec): Leaf[] {
   const leaves = leavesOf(form, spec) as Leaf[];
   return leaves.filter(({ kind, path }) => (kind as string) !== "constant" && path !== "seed");
@@ -73,7 +71,6 @@ export function nameOf({ path, title }: Leaf): string {
 
 export interface ParsedValues {
   values: Json[];
-  /** The error; null for valid values. */
   problem: string | null;
 }
 
@@ -99,27 +96,17 @@ function valuesOf(field: Leaf, text: string): Json[] | null {
 }
 
 function listOf(text: string): Json[] | null {
-  if (text === "") return [];
-  try {
-    const found = JSON.parse(text) as Json;
-    return Array.isArray(found) ? found : null;
-  } catch {
-    return null;
-  }
+  const list = text === "" ? [] : typedJson(text);
+  return Array.isArray(list) ? list : null;
 }
 
-const FLAG_WORDS: Record<string, boolean> = {
-  true: true,
-  on: true,
-  yes: true,
-  false: false,
-  off: false,
-  no: false,
-};
+const TRUE_WORDS = ["true", "on", "yes"];
+const FALSE_WORDS = ["false", "off", "no"];
 const NULL_WORDS = ["null", "none", "auto"];
 
 function valueOf(field: Leaf, word: string): Json {
-  if (field.kind === "flag") return FLAG_WORDS[word.toLowerCase()] ?? word;
+  if (field.kind === "flag" && TRUE_WORDS.includes(word.toLowerCase())) return true;
+  if (field.kind === "flag" && FALSE_WORDS.includes(word.toLowerCase())) return false;
   if ("nullable" in field && field.nullable && NULL_WORDS.includes(word)) return null;
   if (field.kind === "number") return typed(word);
   if (field.kind !== "choice") return word;
@@ -136,7 +123,6 @@ function valueError(field: Leaf, value: Json): string | null {
 
 const same = (one: Json, other: Json) => JSON.stringify(one) === JSON.stringify(other);
 
-/** The typed number of seeds, or an error. */
 export function readSeeds(input: string): { seeds: number; problem: string | null } {
   const seeds = typed(input);
   const whole = typeof seeds === "number" && Number.isInteger(seeds);
@@ -147,5 +133,4 @@ export function readSeeds(input: string): { seeds: number; problem: string | nul
 /** The largest number of runs in one request. */
 const MAX_RUNS = 1000;
 
-/** True if an experiment depends on a random seed. */
 const hasSeed = ({ schema }: Experiment) => "seed" in ((schema.properties ?? {}) as Record<string, Json>);

@@ -1,10 +1,9 @@
 /** Draw one moment of a replay: flow, path, body, and the copies of the body in other tiles. */
 
 import type { Replay } from "../decode/replay";
-import { type Size, prepare } from "../ui/canvas";
-import type { Theme } from "../ui/theme";
+import { type Size, type Theme, prepare } from "../ui/canvas";
 import type { FluidPainter } from "./fluid";
-import { type Point, chainsOf, meanOf, positionsAt, splineOf } from "./motion";
+import { type Point, BODY_INK, chainsOf, meanOf, positionsAt, splineOf } from "./motion";
 import { type Tracers, drawTracers } from "./tracers";
 
 /** Cells between points of the grid, which is fixed in the world. */
@@ -24,8 +23,8 @@ interface Scene {
 }
 
 const INK = {
-  light: { body: "#12222c", halo: "rgb(255 255 255 / 0.85)", faint: "rgb(18 34 44 / 0.28)" },
-  dark: { body: "#fdf8ec", halo: "rgb(4 10 14 / 0.75)", faint: "rgb(230 240 245 / 0.26)" },
+  light: { body: BODY_INK.light, halo: "rgb(255 255 255 / 0.85)", faint: "rgb(18 34 44 / 0.28)" },
+  dark: { body: BODY_INK.dark, halo: "rgb(4 10 14 / 0.75)", faint: "rgb(230 240 245 / 0.26)" },
 };
 
 export function sceneOf(replay: Replay, view: Pick<Scene, "painter" | "follow" | "theme">): Scene {
@@ -51,9 +50,9 @@ export function drawScene(canvas: HTMLCanvasElement, size: Size, scene: Scene, t
     drawTracers(context, scene.tracers, { time, camera, scale, colour: INK[scene.theme].body });
   }
   for (const shift of tiles(mean, camera, [width, height])) {
-    const moved = (point: Point) => screen([point[0] + shift[0], point[1] + shift[1]]);
-    drawPath(context, [...scene.path.slice(0, Math.floor(time) + 1), mean].map(moved), scene.theme);
-    const lines = scene.chains.map((chain) => chain.map((node) => moved(points[node]!)));
+    const place = (point: Point) => screen([point[0] + shift[0], point[1] + shift[1]]);
+    drawPath(context, [...scene.path.slice(0, Math.floor(time) + 1), mean].map(place), scene.theme);
+    const lines = scene.chains.map((chain) => chain.map((node) => place(points[node]!)));
     drawBody(context, lines, Math.min(11, Math.max(3, 0.6 * scale)), scene.theme);
   }
 }

@@ -49,7 +49,11 @@ export function LogCard({ run, query }: { run: Run; query: URLSearchParams }) {
       )}
       {shown.length > 0 && (
         <div class="log-scroll" tabIndex={0} role="group" aria-label={text.logOrder}>
-          <LogList entries={shown} />
+          <ol class="log" reversed>
+            {shown.toReversed().map((entry) => (
+              <Line key={entry.id} {...entry} />
+            ))}
+          </ol>
         </div>
       )}
     </Card>
@@ -69,21 +73,11 @@ export function textOf(entries: readonly LogEntry[]): string {
     .join("\n");
 }
 
-function LogList({ entries }: { entries: readonly LogEntry[] }) {
-  return (
-    <ol class="log" reversed>
-      {[...entries].reverse().map((entry) => (
-        <Line key={entry.id} {...entry} />
-      ))}
-    </ol>
-  );
-}
-
 function Line({ at, level, attempt, text: message }: LogEntry) {
   const [first, ...more] = summaryOf(message);
   return (
     <li class={`log-${level}`}>
-      <time dateTime={at} title={dateTime(at)}>
+      <time class="quiet" dateTime={at} title={dateTime(at)}>
         {new Date(at).toLocaleTimeString(undefined, { hour12: false })}
       </time>
       <span class="quiet log-attempt">{attempt > 0 ? text.attempt(attempt) : ""}</span>

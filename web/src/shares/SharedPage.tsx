@@ -1,19 +1,22 @@
-/** The public page of a share: a creature, or an archive and its elites. */
+/** The public pages: shares, and the commons with listed shares as moving tiles. */
 
 import { SHARE_HEADER } from "../api/address";
 import * as api from "../api/client";
-import { creatureFileUrl } from "../api/urls";
+import { creatureFileUrl } from "../api/files";
 import type { Share } from "../api/types";
 import { useFetched, useRunDetail } from "../store/fetch";
 import { useStore } from "../store/store";
 import { count, dateTime, shortId } from "../ui/format";
-import { NotFound } from "../ui/NotFound";
 import { ArchiveRun } from "../run/ArchiveRun";
 import { CreatureView } from "../creature/CreaturePage";
 import { FilesCard } from "../run/FilesCard";
-import { Card, Loading, Page, useTitle } from "../ui/Page";
+import { Card, Loading, NotFound, Page, useTitle, Empty } from "../ui/Page";
 import { copyText } from "../ui/clipboard";
 import { text } from "./text";
+import { decodeMotion } from "../decode/replay";
+import { usePages } from "../store/paging";
+import { usePolled } from "../store/polling";
+import { SwimmingBody } from "../replay/SwimmingBody";
 import "./shares.css";
 
 interface Props {
@@ -37,12 +40,10 @@ export function SharedPage({ slug, sha, query }: Props) {
   const creature = sha ?? share.creature;
   const [title, id] = headingOf(share, creature, sha !== null);
   return (
-    <Page crumbs={share.run && sha ? [[`/s/${slug}`, share.title]] : undefined}>
-      <header class="page-head">
-        <h1>
-          {title} {id && <code>{id}</code>}
-        </h1>
-      </header>
+    <Page
+      title={[title, " ", id && <code>{id}</code>]}
+      crumbs={share.run && sha ? [[`/s/${slug}`, share.title]] : undefined}
+    >
       <Terms share={share} />
       {creature && <SharedCreature key={creature} {...{ share, query }} id={creature} />}
       {share.run && !sha && <SharedArchive {...{ share, query }} id={share.run} />}
@@ -135,3 +136,39 @@ function SharedArchive({ share, id, query }: PartProps) {
     </>
   );
 }
+
+export function CommonsPage() {
+  const { items: shares, error, more } = usePages(api.readCommons, ({ slug }) => slug);
+  useTitle(text.commons);
+  return (
+    <Page title={text.commons} error={error} loading={!shares}>
+      {shares?.length === 0 && <Empty title={text.nothingListed} hint={text.nothingListedHint} />}
+      <ul class="commons">
+        {shares?.map((share) => (
+          <li key={share.slug}>
+            <Tile share={share} />
+          </li>
+        ))}
+      </ul>
+      {more && <button onClick={more}>{text.showMore}</button>}
+    </Page>
+  );
+}
+
+function Tile({ share }: { share: Share }) {
+  // Without a motion the tile stays empty; the page of the share shows the error.
+  const { value: motion } = usePolled(async () => decoded(await api.readCover(share)), [share.slug]);
+  return (
+    <a class="commons-tile card" href={`/s/${share.slug}`} target="_self">
+      <SwimmingBody motion={motion} />
+      <strong>{share.title}</strong>
+      <span class="quiet small">
+        {share.run ? text.archive(share.generation) : text.creature}
+        {share.credit.length > 0 && ` · ${share.credit.join(", ")}`}
+      </span>
+      <span class="quiet small licence">{share.licence.slice(0, 60)}</span>
+    </a>
+  );
+}
+
+const decoded = (bytes: ArrayBuffer | null) => bytes && decodeMotion(bytes);

@@ -17,12 +17,11 @@ import { Curves } from "../charts/curves/Curves";
 import { type ShownCase, summaryPlotsOf, caseName } from "./summaryPlots";
 import { SweepProgress, SweepStates, sizeText, sweepTitle } from "./SweepStatus";
 import { dateTime } from "../ui/format";
-import { Card, Page, useTitle } from "../ui/Page";
+import { Card, NotFound, Page, useTitle } from "../ui/Page";
 import { ConfirmButton } from "../ui/ConfirmButton";
-import { NotFound } from "../ui/NotFound";
 import { NameField } from "../run/NameField";
 import { MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
-import { CurveBar, Check } from "../charts/curves/CurveOptions";
+import { CurveBar, QueryCheck } from "../charts/curves/CurveOptions";
 import { Cases, Finals, Members } from "./CaseTables";
 import { text } from "./text";
 
@@ -54,7 +53,7 @@ function LoadedSweep({ value, query, each }: { value: SweepDetail; query: URLSea
       </section>
       <Card id="curves" kind="wide-curves" title={text.curves} note={text.curvesAbout}>
         <CurveBar log={query.get("log") === "1"}>
-          <Check title={text.eachRun} name="each" on={each} />
+          <QueryCheck title={text.eachRun} name="each" on={each} />
         </CurveBar>
         {cases.length > 1 && <Cases cases={cases} selected={selected} onSelect={choose} />}
         <CaseCurves {...{ shown, query }} curves={each ? curves : null} />
@@ -93,11 +92,8 @@ function CaseCurves({ shown, query, curves }: CurvesProps) {
   const plots = summaryPlotsOf(shown, curves);
   if (shown.length === 0) return <p class="quiet">{text.chooseCase}</p>;
   if (plots.length === 0) return <p class="quiet waiting">{text.noCurves}</p>;
-  return <Curves plots={plots} x={NO_X} view={{ over: "generation", log, smooth: 1 }} />;
+  return <Curves plots={plots} view={{ over: "generation", log, smooth: 1 }} />;
 }
-
-/** Each case has its own x values. */
-const NO_X: readonly number[] = [];
 
 function Head({ sweep }: { sweep: Sweep }) {
   const experiments = useExperiments().value ?? [];

@@ -11,7 +11,7 @@ export interface Series {
   y: Column;
   /** Dots in place of a line, for rare values. */
   dots?: boolean;
-  /** Its own x values, if it has any. */
+  /** The x values, once the view is known. */
   x?: Column;
   dash?: number[];
   /** Measured values behind a smooth line. */
@@ -49,29 +49,18 @@ export function scoresOf(curves: Curves): Plot[] {
   return [
     { title: text.qdScore, format: number, series: [score, ...reevaluated(curves, "corrected_qd_score")] },
     { title: text.coverage, format: percent, series: [share, ...reevaluated(curves, "corrected_coverage")] },
-    {
-      title: text.bestFitness,
-      format: number,
-      series: [{ name: "best", colour: "--curve-3", y: best }],
-    },
+    { title: text.bestFitness, format: number, series: [{ name: "best", colour: "--curve-3", y: best }] },
   ];
 }
 
 /** Work of the search: insertions by emitter, re-evaluations, time, diverged evaluations. */
 export function workOf(curves: Curves): Plot[] {
+  const deviceSeconds = one(withoutFirst(curves), "device_seconds", "--curve-2", false);
   const plots: Plot[] = [
     { title: text.inserted, format: number, series: ofEmitters(curves, ": inserted") },
     { title: text.improved, format: number, series: ofEmitters(curves, ": improved") },
-    {
-      title: text.hitRate,
-      format: percent,
-      series: one(curves, "hit_rate", "--series-3", true),
-    },
-    {
-      title: text.deviceSeconds,
-      format: number,
-      series: one(withoutFirst(curves), "device_seconds", "--curve-2", false),
-    },
+    { title: text.hitRate, format: percent, series: one(curves, "hit_rate", "--series-3", true) },
+    { title: text.deviceSeconds, format: number, series: deviceSeconds },
     { title: text.diverged, format: number, series: divergedSoFar(curves) },
   ];
   return plots.filter(({ series }) => series.length > 0);
@@ -124,9 +113,8 @@ function withoutFirst(curves: Curves): Curves {
 }
 
 /** The newest value up to an index; null after the last value. */
-export function valueAt(x: readonly number[], y: Column, i: number): number | null {
-  const last = y.findLastIndex((value) => value !== null);
-  if (i > last || x.length === 0) return null;
+export function valueAt(y: Column, i: number): number | null {
+  if (i > y.findLastIndex((value) => value !== null)) return null;
   return y.slice(0, i + 1).findLast((value) => value !== null) ?? null;
 }
 

@@ -4,7 +4,7 @@ import { useMemo, useRef, useState } from "preact/hooks";
 import type { SpeciesHistory } from "../../api/types";
 import { type Size, useSize } from "../../ui/canvas";
 import { count } from "../../ui/format";
-import { AxisTitles, Frame, type Room } from "../../charts/plot/Frame";
+import { type Room, AxisTitles, Frame } from "../../charts/plot/Frame";
 import type { Axis } from "../../charts/plot/Plot";
 import { positionOf } from "../../charts/plot/scale";
 import { type Stack, colourOf, pathOf, speciesAt, stackOf } from "./speciesStack";
@@ -27,12 +27,9 @@ function axesOf({ generation, size }: Stack): { x: Axis; y: Axis } {
   };
 }
 
-const roomOf = ({ width, height }: Size): Room => ({
-  left: 78,
-  right: width - 14,
-  top: 8,
-  bottom: height - 48,
-});
+const roomOf = ({ width, height }: Size): Room => {
+  return { left: 78, right: width - 14, top: 8, bottom: height - 48 };
+};
 
 /** The generation and the members at a point of the plot. */
 function pointedAt(stack: Stack, room: Room, left: number, top: number): Pointed {
