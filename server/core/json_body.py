@@ -97,6 +97,8 @@ def parse(body: bytes) -> Any:
 def _place(error: ValueError) -> str:
     """Return the place of the error, without the parser's words."""
     if isinstance(error, json.JSONDecodeError):
+        if error.doc.startswith("\ufeff"):
+            return "the body begins with a byte order mark (BOM)"
         return f"the body is not JSON at line {error.lineno}, column {error.colno}"
     if isinstance(error, UnicodeDecodeError):
         return f"the body is not UTF-8 at byte {error.start}"

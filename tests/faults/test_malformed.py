@@ -41,6 +41,11 @@ def test_malformed_files_are_refused_with_the_reason_and_read_no_other(place, ca
     assert readings == []
 
 
+def test_a_byte_order_mark_is_named(place):
+    answer = place.http.post("/api/v1/creatures", content=b"\xef\xbb\xbf{}")
+    assert "byte order mark (BOM)" in answer.json()["detail"]
+
+
 def test_a_false_content_length_does_no_harm(place):
     for name, (sent, status) in LIES.items():
         answer = lie(place.port, sent)
