@@ -5,9 +5,8 @@ import sys
 import uvicorn
 
 from .auth import bootstrap
-from .core.folders import create_private
 from .services.services import connect
-from .settings import Settings
+from .settings import Settings, create_private
 from .tables import migrations
 
 SHUTDOWN_SECONDS = 5

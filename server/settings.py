@@ -78,3 +78,8 @@ class Settings(BaseSettings):
     @property
     def needs_token(self) -> bool:
         return bool(self.token) or self.auth == "required" or self.host not in LOOPBACK
+
+
+def create_private(folder: Path) -> None:
+    """Create a folder that no other user can read; leave an existing one as it is."""
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)

@@ -17,7 +17,7 @@ from ..auth.authorize import MAY_READ, MAY_READ_SHARED
 from ..auth.share_access import ShareAccessDep
 from ..core.errors import ProblemError, invalid_field
 from ..runs.deps import RunDep
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from ..storage import ranges
 from ..tables import Artifact, Elite, Result, Run
 from . import elites

@@ -1,5 +1,6 @@
 """Record the report of a generation: rows of the database, and events."""
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from operator import itemgetter
@@ -13,7 +14,6 @@ from microcosmos.archive.creature import LICENCE
 from microcosmos.archive.report import Report
 
 from ..creatures.storage import creature_columns, insert_and_lock, link
-from ..services.event_stream import finite
 from ..tables import Elite, Generation, Result
 
 
@@ -69,6 +69,11 @@ def rows_of(report: Report, seconds: float) -> Rows:
             for one in found
         ],
     )
+
+
+def finite(value: float | None) -> float | None:
+    """Return the value, or None where JSON and SQL cannot hold it (NaN, infinity)."""
+    return value if value is not None and math.isfinite(value) else None
 
 
 def plain(values: Mapping[str, Any] | None) -> dict[str, Any] | None:

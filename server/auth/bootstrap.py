@@ -6,9 +6,8 @@ from pathlib import Path
 from sqlalchemy import exists, select
 
 from ..core.errors import ProblemError
-from ..core.folders import create_private
 from ..services.services import Services
-from ..settings import Settings
+from ..settings import Settings, create_private
 from ..tables import Token
 from .principal import ADMIN
 from .tokens import create, has_admin

@@ -6,7 +6,7 @@ from uuid import UUID
 from fastapi import APIRouter, Request, Response
 
 from ..core.json_body import json_route
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from . import tokens
 from .authenticate import Authenticator, Credentials
 from .authorize import MAY_ADMINISTER, PUBLIC, Reader

@@ -7,8 +7,7 @@ from fastapi.responses import JSONResponse
 from fastapi.routing import iter_route_contexts
 from starlette.routing import compile_path
 
-from .errors import MEDIA_TYPE, ProblemError
-from .schemas import Problem
+from .errors import MEDIA_TYPE, Problem, ProblemError
 
 PROBLEMS: dict[int | str, dict[str, Any]] = {
     "default": {"model": Problem, "description": "A problem (RFC 9457)"}

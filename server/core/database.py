@@ -12,7 +12,7 @@ from sqlalchemy.orm import Session, sessionmaker
 from sqlalchemy.sql.expression import FunctionElement
 from sqlalchemy.types import TypeDecorator
 
-from .folders import create_private
+from ..settings import create_private
 
 TIMEOUT_MS = 15_000
 

@@ -8,7 +8,7 @@ from typing import Any, Self
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 from redis import RedisError
 from sqlalchemy.exc import OperationalError, SQLAlchemyError, TimeoutError
 from starlette.exceptions import HTTPException
@@ -16,7 +16,7 @@ from starlette.exceptions import HTTPException
 from microcosmos.archive.creature import CreatureError
 from microcosmos.spec import field_path
 
-from .schemas import FieldError, Problem
+from .schemas import Wire
 
 log = logging.getLogger(__name__)
 MOST_ERRORS = 50
@@ -24,6 +24,23 @@ MOST_ERRORS = 50
 RETRY_AFTER = {"Retry-After": "2"}
 MEDIA_TYPE = "application/problem+json"
 FIELD_IN_MESSAGE = re.compile(r"`([a-z_0-9.]+)` (?:must|needs|was)")
+
+
+class FieldError(Wire):
+    field: str
+    message: str
+    needed: str | None = None
+    got: Any = None
+
+
+class Problem(BaseModel):
+    """RFC 9457."""
+
+    type: str = "about:blank"
+    title: str
+    status: int
+    detail: str
+    errors: list[FieldError] | None = None
 
 
 class ProblemError(Exception):

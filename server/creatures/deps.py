@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session
 
 from ..auth.share_access import ShareAccess, ShareAccessDep
 from ..core.errors import ProblemError
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from ..tables import Creature
 
 Sha = Annotated[str, Path(pattern="^[0-9a-f]{64}$")]

@@ -13,7 +13,7 @@ from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE
 from ..auth.share_access import ShareAccessDep
 from ..core.json_body import limited
 from ..core.static_files import IMMUTABLE
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from ..tables import Creature
 from . import lineage, networks
 from . import storage as creatures

@@ -11,8 +11,7 @@ from functools import cache
 from threading import Lock
 from typing import Any
 
-from ..core.errors import RETRY_AFTER, ProblemError
-from ..core.schemas import Problem
+from ..core.errors import RETRY_AFTER, Problem, ProblemError
 from .sandbox_process import CPU_SECONDS, LENGTH, PROBLEM, RESULT
 
 START_SECONDS = 30.0

@@ -23,8 +23,7 @@ from microcosmos.archive import creature, creature_h5
 from microcosmos.archive.creature import CreatureError
 
 from ..core import errors
-from ..core.errors import ProblemError
-from ..core.schemas import Problem
+from ..core.errors import Problem, ProblemError
 from . import networks
 from .files import HDF5, creature_file
 from .probe import example

@@ -5,7 +5,7 @@ from fastapi import APIRouter
 from ..runs.commands import changed
 from ..runs.deps import OwnRunId
 from ..runs.schemas import RunRead
-from ..services.deps import ServicesDep
+from ..services.services import ServicesDep
 from . import bin
 
 router = APIRouter(prefix="/runs/{run_id}", tags=["runs"])

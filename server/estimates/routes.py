@@ -6,7 +6,7 @@ from fastapi import APIRouter, Query
 from sqlalchemy import select
 
 from ..auth.authorize import MAY_READ
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from ..tables import QUEUED, Run
 from ..workers.brief import brief
 from . import position

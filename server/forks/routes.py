@@ -12,7 +12,7 @@ from ..runs.commands import SPEC_BYTES, IdempotencyKey, changed, submitted
 from ..runs.deps import OwnRunId, find_run
 from ..runs.schemas import Extension, Fork, RunRead
 from ..runs.submission import IdempotentRequest, earlier_run, refuse_too_large, submit
-from ..services.deps import ServicesDep
+from ..services.services import ServicesDep
 from ..specs import parsing
 from . import extending, forking
 

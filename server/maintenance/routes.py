@@ -9,7 +9,7 @@ from prometheus_client.exposition import CONTENT_TYPE_PLAIN_0_0_4
 from ..auth.authorize import MAY_ADMINISTER, MAY_READ, PUBLIC
 from ..core import static_files
 from ..core.schemas import Wire
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from . import health
 
 router = APIRouter(tags=["health"])

@@ -10,7 +10,7 @@ from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE
 from ..auth.share_access import ShareAccessDep
 from ..core.errors import ProblemError
 from ..creatures.deps import CreatureDep
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from ..tables import AUDIT, MEASUREMENT, PREVIEW, REPLAY
 from . import storage
 from .responses import MEDIA_TYPES, NOUNS, ON_REQUEST, existing, existing_motion, order

@@ -10,7 +10,7 @@ from microcosmos.spec import Folding, parse, targets
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED
 from ..core.errors import ProblemError
 from ..core.schemas import MAX_INTEGER
-from ..services.deps import SessionDep
+from ..services.services import SessionDep
 from ..tables import Generation
 from . import curves, listing, log
 from .curves import evenly

@@ -16,7 +16,7 @@ from ..estimates import position
 from ..estimates.eta import speed_of
 from ..estimates.schemas import EstimateRead
 from ..queue.order import requeue
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from ..specs import parsing
 from ..specs.drawings import drawing_read
 from ..tables import Run, Status

@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 
 from ..core import static_files
 from ..core.errors import ProblemError
-from ..services.deps import SessionDep
+from ..services.services import SessionDep
 from ..tables import Creature, Share
 from . import publishing
 

@@ -19,8 +19,7 @@ from ..creatures.deps import find_creature
 from ..renderings import responses
 from ..renderings import storage as renderings
 from ..renderings.schemas import Rendering
-from ..services.deps import ServicesDep, SessionDep
-from ..services.services import Services
+from ..services.services import Services, ServicesDep, SessionDep
 from ..tables import PREVIEW, Share
 from . import archive_files, publishing
 from .page import base

@@ -7,8 +7,7 @@ from typing import Any
 from microcosmos import spec as specs
 from microcosmos.spec import PluginUse, Spec, plugins_in
 
-from ..core.errors import ProblemError
-from ..core.schemas import FieldError
+from ..core.errors import FieldError, ProblemError
 from ..services.services import Services
 from ..workers.plugins import INSTALL_HINT, KnownPlugins
 

@@ -7,7 +7,7 @@ from fastapi import APIRouter
 from microcosmos.spec import EXPERIMENTS, Experiment
 
 from ..auth.authorize import MAY_READ
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from ..workers.plugins import KnownPlugins
 from .plugin_schemas import with_plugins
 from .schemas import ExperimentRead, PresetRead

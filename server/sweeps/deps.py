@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session
 
 from ..auth.authorize import Writer, authorize_owner
 from ..core.errors import ProblemError
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from ..tables import Sweep
 
 

@@ -10,8 +10,7 @@ from pydantic import ValidationError
 
 from microcosmos.spec import Spec
 
-from ..core.errors import ProblemError, field_errors, invalid_input
-from ..core.schemas import FieldError
+from ..core.errors import FieldError, ProblemError, field_errors, invalid_input
 from ..runs.schemas import NAME_LENGTH
 from ..specs.parsing import Parse
 from . import fields

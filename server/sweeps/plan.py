@@ -11,8 +11,7 @@ from sqlalchemy.orm import Session
 from microcosmos.archive.creature import CreatureError
 from microcosmos.spec import Spec
 
-from ..core.errors import ProblemError, bad_creature, brief, field_errors
-from ..core.schemas import FieldError
+from ..core.errors import FieldError, ProblemError, bad_creature, brief, field_errors
 from ..creatures import initial
 from ..runs.submission import TOO_LARGE, too_large
 from ..specs.parsing import Parse

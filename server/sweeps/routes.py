@@ -19,8 +19,7 @@ from ..queue.order import requeue
 from ..runs import lifecycle
 from ..runs.commands import SPEC_BYTES, IdempotencyKey
 from ..runs.submission import memory_limit
-from ..services.deps import ServicesDep, SessionDep
-from ..services.services import Services
+from ..services.services import Services, ServicesDep, SessionDep
 from ..specs import parsing
 from ..tables import Run
 from . import summary

@@ -3,7 +3,7 @@
 from fastapi import APIRouter
 
 from ..auth.authorize import MAY_READ
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from ..tables import Run, Worker
 from . import registry
 from .brief import brief
