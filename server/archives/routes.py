@@ -13,8 +13,7 @@ from sqlalchemy.orm import Session
 from microcosmos.archive import export
 
 from ..attempts.checkpoints import last_checkpoint
-from ..auth.authorize import MAY_READ, MAY_READ_SHARED
-from ..auth.share_access import ShareAccessDep
+from ..auth.authorize import MAY_READ, MAY_READ_SHARED, ShareAccessDep
 from ..core.errors import ProblemError, invalid_field
 from ..runs.deps import RunDep
 from ..services.services import ServicesDep, SessionDep

@@ -3,7 +3,6 @@
 import argparse
 import sys
 from datetime import UTC, datetime, timedelta
-from uuid import UUID
 
 from sqlalchemy import select
 
@@ -57,16 +56,12 @@ def _list(services: Services, asked: argparse.Namespace) -> None:
 
 def _revoke(services: Services, asked: argparse.Namespace) -> None:
     """Revoke a token, even the last admin token: this command can create another."""
-    tokens.revoke(services, _named(services, asked.name), last=True)
-
-
-def _named(services: Services, name: str) -> UUID:
+    live = select(Token.id).where(Token.name == asked.name, Token.revoked_at.is_(None))
     with services.sessions.read() as session:
-        mine = select(Token.id).where(Token.name == name, Token.revoked_at.is_(None))
-        found = session.scalars(mine).one_or_none()
-    if found is None:
-        raise ProblemError(404, "Not found", f"No live token is named {name!r}.")
-    return found
+        token = session.scalars(live).one_or_none()
+    if token is None:
+        raise ProblemError(404, "Not found", f"No live token is named {asked.name!r}.")
+    tokens.revoke(services, token, last=True)
 
 
 if __name__ == "__main__":

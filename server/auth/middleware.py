@@ -13,9 +13,9 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from ..core.errors import ProblemError, answer, unavailable
 from ..settings import LOOPBACK
 from .authenticate import Authenticator, Credentials
+from .authorize import SHARE_HEADER, ShareAccess
 from .cookies import remember, remembered
 from .principal import SHARE_HOLDER
-from .share_access import SHARE_HEADER, ShareAccess
 
 SAFE = ("GET", "HEAD")
 METRICS = "/metrics"

@@ -6,7 +6,7 @@ from typing import Annotated
 from fastapi import Depends, Path
 from sqlalchemy.orm import Session
 
-from ..auth.share_access import ShareAccess, ShareAccessDep
+from ..auth.authorize import ShareAccess, ShareAccessDep
 from ..core.errors import ProblemError
 from ..services.services import ServicesDep, SessionDep
 from ..tables import Creature

@@ -9,8 +9,7 @@ from fastapi.responses import JSONResponse, Response
 
 from microcosmos.archive import creature, creature_h5
 
-from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE
-from ..auth.share_access import ShareAccessDep
+from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE, ShareAccessDep
 from ..core.json_body import limited
 from ..core.static_files import IMMUTABLE
 from ..services.services import ServicesDep, SessionDep

@@ -6,8 +6,7 @@ from typing import Any
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
-from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE
-from ..auth.share_access import ShareAccessDep
+from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE, ShareAccessDep
 from ..core.errors import ProblemError
 from ..creatures.deps import CreatureDep
 from ..services.services import ServicesDep, SessionDep

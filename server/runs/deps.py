@@ -7,8 +7,7 @@ from uuid import UUID
 from fastapi import Depends
 from sqlalchemy.orm import Session
 
-from ..auth.authorize import Writer, authorize_owner
-from ..auth.share_access import ShareAccessDep
+from ..auth.authorize import ShareAccessDep, Writer, authorize_owner
 from ..core.errors import ProblemError
 from ..services.services import ServicesDep, SessionDep
 from ..tables import Run
