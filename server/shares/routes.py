@@ -21,14 +21,15 @@ from ..renderings import storage as renderings
 from ..renderings.schemas import Rendering
 from ..services.services import Services, ServicesDep, SessionDep
 from ..tables import PREVIEW, Share
-from . import archive_files, publishing
+from . import access, archive_files, publishing
 from .page import base
 from .schemas import ShareCreate, SharePage, ShareRead
 
 log = logging.getLogger(__name__)
 BODY_BYTES = 1 << 16
-Slug = Annotated[str, Path(pattern=f"^{publishing.SLUG.pattern}$")]
-SlugText = Annotated[str, StringConstraints(pattern=f"^{publishing.SLUG.pattern}$")]
+Limit = Annotated[int, Query(ge=1, le=200)]
+Slug = Annotated[str, Path(pattern=f"^{access.SLUG.pattern}$")]
+SlugText = Annotated[str, StringConstraints(pattern=f"^{access.SLUG.pattern}$")]
 NEWEST_FIRST = Order("-created", Share.created_at.expression, MOMENT, Share.slug, SlugText)
 
 router = APIRouter(tags=["shares"], route_class=json_route(BODY_BYTES))
@@ -65,7 +66,7 @@ def _order_preview(services: Services, cover: str) -> None:
 
 
 def share(request: Request, slug: Slug, session: SessionDep) -> Share:
-    found = publishing.find_live(session, slug)
+    found = access.find_live(session, slug)
     request.state.listed = found.listed
     return found
 
@@ -97,9 +98,6 @@ def read_preview(
     return found or responses.order(services, share.cover, PREVIEW, anonymous=True)
 
 
-Limit = Annotated[int, Query(ge=1, le=200)]
-
-
 @router.get("/shares")
 def list_shares(
     request: Request,
@@ -123,7 +121,7 @@ def read_commons(
     request: Request, session: SessionDep, cursor: str | None = None, limit: Limit = 50
 ) -> SharePage:
     """Return the live listed shares, newest first."""
-    return _page(request, session, publishing.live().where(Share.listed), cursor, limit)
+    return _page(request, session, access.live().where(Share.listed), cursor, limit)
 
 
 def _page(
@@ -140,7 +138,7 @@ def _page(
 
 def own_share(slug: str, principal: Writer, services: ServicesDep) -> str:
     """Return the slug of a path; raise `ProblemError` if somebody else owns the share."""
-    if publishing.SLUG.fullmatch(slug):
+    if access.SLUG.fullmatch(slug):
         authorize_owner(services, principal, Share, slug)
     return slug
 
@@ -152,7 +150,7 @@ OwnSlug = Annotated[str, Depends(own_share)]
 def revoke(slug: OwnSlug, request: Request, services: ServicesDep) -> ShareRead:
     """Revoke a share: its address shows nothing from now on."""
     with services.sessions.write.begin() as session:
-        share = publishing.find(session, slug)
+        share = access.find(session, slug)
         if share is None:
             raise ProblemError(404, "Not found", "Nothing is shared under this name.")
         if share.revoked_at is None:
@@ -169,6 +167,6 @@ def share_read(request: Request, session: Session, share: Share) -> ShareRead:
     return ShareRead(
         url=f"{base(request)}/s/{share.slug}",
         run=share.run_id,
-        state=publishing.state(session, share),
+        state=access.state(session, share),
         **{name: getattr(share, name) for name in names},
     )
