@@ -27,7 +27,6 @@ def main() -> None:
 
 
 def _prepare(settings: Settings) -> None:
-    """Create the first token, if there is none, and print it."""
     services = connect(settings)
     try:
         migrations.upgrade(services.sessions)

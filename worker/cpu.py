@@ -38,7 +38,6 @@ def pin(chosen: Sequence[int]) -> None:
 
 
 def _place(thread: int) -> list[int]:
-    """Return socket and core of a thread, and itself."""
     topology = TOPOLOGY / f"cpu{thread}" / "topology"
     files = (topology / "physical_package_id", topology / "core_id")
     return [*(int(file.read_text()) if file.exists() else 0 for file in files), thread]

@@ -33,13 +33,11 @@ def carry_out(attempt: Attempt) -> None:
 
 
 def _message(error: Mapping[str, Any]) -> str:
-    """Return the name of the field and its error."""
     words = str(error["msg"]).removeprefix("Value error, ")
     return ": ".join(filter(None, (field_path(error["loc"]), words)))
 
 
 def compute(attempt: Attempt) -> None:
-    """Continue from the last checkpoint, one generation after another."""
     data = attempt.restore()
     initial = [] if data else attempt.initial()  # A checkpoint contains its initial creatures.
     spec = parse(attempt.spec)

@@ -29,7 +29,6 @@ log = logging.getLogger(__name__)
 
 
 def files(settings: Settings) -> list[Path]:
-    """Return the modules that the environment names."""
     return [Path(part) for part in settings.modules.split(os.pathsep) if part]
 
 

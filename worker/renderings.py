@@ -19,7 +19,6 @@ PICTURES: dict[str, Callable[[Replay], bytes]] = {
 
 
 def make(services: Services, creature: str, kind: str) -> bytes:
-    """Return the bytes of a rendering."""
     if kind in PICTURES:
         return PICTURES[kind](read_replay(_replay(services, creature)))
     file = renderings.creature(services, creature)

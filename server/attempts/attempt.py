@@ -75,12 +75,10 @@ class Attempt:
         self.saved_at = time.monotonic() if self.generation else -math.inf
 
     def record_device(self, device: str) -> None:
-        """Record the kind of device that computes the run."""
         self._update(f"Computing on {device}.", device=device)
 
     @retried
     def initial(self) -> list[dict[str, Any]]:
-        """Return the files of the initial creatures."""
         names = self.spec.get("search", {}).get("initial", [])
         with self.services.sessions.read() as session:
             return initial.files(session, names)
@@ -123,13 +121,11 @@ class Attempt:
 
     @retried
     def check(self) -> None:
-        """Read the requested state."""
         with self._current() as (_, run):
             self.requested_state = run.requested_state
 
     @retried
     def record(self, report: Report, seconds: float) -> None:
-        """Record a generation that took so many seconds."""
         total = self.seconds + seconds
         rows = recording.rows_of(report, total)
         with self._current(**rows.run) as (session, run):

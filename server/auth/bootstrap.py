@@ -39,7 +39,6 @@ def create_first_token(services: Services) -> str | None:
 
 
 def announcement(settings: Settings, secret: str) -> str:
-    """Return the text about the first token for the terminal."""
     file = settings.data.resolve() / FILE
     return (
         f"{secret} is the admin token. It is shown once and kept in {file}. Sign in with it at "

@@ -103,7 +103,6 @@ class PrincipalMiddleware:
 
 
 def address(request: HTTPConnection) -> str:
-    """Return the address that a request comes from, if it is known."""
     return request.client.host if request.client else ""
 
 

@@ -54,7 +54,6 @@ def now(session: Session) -> datetime:
 
 
 def ago(session: Session, seconds: float) -> datetime:
-    """Return the moment so many seconds before now."""
     return now(session) - timedelta(seconds=seconds)
 
 

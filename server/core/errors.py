@@ -70,7 +70,6 @@ def answer(problem: Problem, headers: Mapping[str, str] | None = None) -> JSONRe
 
 
 def install(app: FastAPI) -> None:
-    """Have the application answer every error as a problem."""
 
     @app.exception_handler(ProblemError)
     def refused(_: Request, error: ProblemError) -> JSONResponse:
@@ -136,7 +135,6 @@ def invalid_input(errors: list[FieldError]) -> Problem:
 
 
 def field_errors(error: ValidationError) -> list[FieldError]:
-    """Return the errors of a document by field."""
     return _fields(error.errors(include_url=False))
 
 

@@ -62,7 +62,6 @@ def tail(log: Path, lines: int = 5) -> str:
 
 
 def exit_reason(code: int) -> str:
-    """Describe an exit status."""
     return f"signal {signal.Signals(-code).name}" if code < 0 else f"exit status {code}"
 
 

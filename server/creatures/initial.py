@@ -49,7 +49,6 @@ def record(session: Session, runs: Sequence[tuple[Spec, Sequence[UUID]]]) -> Non
 
 
 def initial_of(spec: Spec) -> Sequence[str]:
-    """Return the creatures that a spec names."""
     if isinstance(spec, Evolution):
         return spec.search.initial
     return [spec.creature["sha256"]] if isinstance(spec, Refinement) else []
@@ -70,7 +69,6 @@ def _lock(session: Session, names: Sequence[str]) -> set[str]:
 
 
 def _refuse_missing(spec: Spec, existing: Container[str]) -> None:
-    """Raise `CreatureError` if a search names a missing creature."""
     missing = [name for name in initial_of(spec) if name not in existing]
     if missing and isinstance(spec, Evolution):
         needed = "names of creatures of this server (import it first)"

@@ -71,7 +71,6 @@ class Sandbox:
             raise ProblemError(503, "Unavailable", detail, headers=RETRY_AFTER)
 
     def _connection(self) -> socket.socket:
-        """Return a connection to a new child process for one request."""
         ours, theirs = socket.socketpair()
         with theirs, self._lock:
             try:

@@ -66,7 +66,6 @@ def warm_up() -> None:
 
 
 def work(connection: socket.socket) -> None:
-    """Answer one request, and end."""
     restrict()
     with connection.makefile("rb") as incoming:
         (length,) = LENGTH.unpack(incoming.read(LENGTH.size))

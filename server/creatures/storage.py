@@ -67,7 +67,6 @@ def link(session: Session, names: Sequence[str]) -> None:
 
 
 def creatures_of(table: type[Elite | Result]) -> Select[str]:
-    """Select the distinct creatures of rows."""
     column = cast(InstrumentedAttribute[str], table.creature)
     return select(column).where(column.is_not(None)).distinct()
 

@@ -113,7 +113,6 @@ def _delete_some(session: Session, run_id: UUID, table: Any) -> bool:
 
 
 def _delete_run(session: Session, run_id: UUID) -> None:
-    """Delete the row of the run, and its few rows in other tables."""
     mark_garbage(
         session,
         run_id,

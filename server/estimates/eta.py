@@ -103,7 +103,6 @@ def _name(device: str, models: Collection[str]) -> str:
 
 
 def _recent(session: Session, experiment: str) -> Sequence[Row[Run, float]]:
-    """Read the newest runs of an experiment with the seconds of their first generation."""
     first = and_(Generation.run_id == Run.id, Generation.generation == 1)
     statement = (
         select(Run, Generation.seconds)
@@ -117,7 +116,6 @@ def _recent(session: Session, experiment: str) -> Sequence[Row[Run, float]]:
 
 
 def _measured(recent: Sequence[Row[Run, float]], kind: Hashable) -> list[Measured]:
-    """Return the speeds of runs of a kind, newest first."""
     found = []
     for run, first in recent:
         earlier = parsed(run.spec)

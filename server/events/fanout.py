@@ -124,7 +124,6 @@ class Fanout:
             listener.put(None)
 
     def tokens(self) -> set[UUID]:
-        """Return the tokens of all listeners."""
         return {listener.token for listener in self.listeners if listener.token}
 
     def end(self, tokens: Collection[UUID]) -> None:
@@ -146,7 +145,6 @@ class Fanout:
         return newest[0][0].decode() if newest else "0-0"
 
     async def _keeps(self, after: str) -> bool:
-        """Return whether the stream still has all events after one."""
         try:
             first = await self.redis.xrange(self.stream, count=1)
             newest = await self._newest()

@@ -92,7 +92,6 @@ def chosen(session: Session, run: Run, start: ForkStart, generation: int | None)
 
 
 def _selection(run: Run, start: ForkStart) -> Callable[[Any], bool]:
-    """Return the condition that an elite must satisfy."""
     if start.cells is not None:
         cells = set(start.cells)
         return lambda elite: elite.cell in cells

@@ -45,7 +45,6 @@ def submitted(response: Response, run: RunRead, new: bool) -> RunRead:
 
 
 def announced(services: Services, run_id: UUID) -> RunRead:
-    """Announce a run and return it as announced."""
     return next(iter(announce(services, run_id)), None) or current(services, run_id)
 
 

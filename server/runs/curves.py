@@ -51,7 +51,6 @@ def _joined(before: dict[str, float], later: dict[str, float]) -> dict[str, floa
 
 
 def numbers(summary: Mapping[str, Any]) -> dict[str, float]:
-    """Return those of the values that are numbers."""
     return {
         name: value
         for name, value in summary.items()

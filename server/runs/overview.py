@@ -36,7 +36,6 @@ def read_run(services: Services, session: Session, run: Run) -> RunRead:
 
 
 def _curves(session: Session, runs: Sequence[Run]) -> dict[UUID, list[Generation]]:
-    """Read a few generations of each run in one query."""
     curves: dict[UUID, list[Generation]] = defaultdict(list)
     wanted = [
         and_(

@@ -77,7 +77,6 @@ def concerned(field: str, values: Mapping[str, Any]) -> list[str]:
 
 
 def _refuse_alike(cases: Sequence[Case]) -> None:
-    """Raise `ProblemError` for two cases with the same spec."""
     seen: dict[str, Case] = {}
     for case in cases:
         document = json.dumps(case.spec.model_dump(mode="json"), sort_keys=True)
@@ -108,7 +107,6 @@ def run_name(name: str | None, values: Mapping[str, Any], seed: int | None) -> s
 
 
 def combination(values: Mapping[str, Any], between: str = ", ") -> str:
-    """Return the values of a case with their fields."""
     return between.join(f"{path}={_short(value)}" for path, value in values.items())
 
 

@@ -20,7 +20,6 @@ NEWEST_FIRST = Order("-created", Sweep.created_at.expression, MOMENT, Sweep.id, 
 
 
 def read_sweeps(session: Session, sweeps: Sequence[Sweep]) -> list[SweepRead]:
-    """Read sweeps and their runs in one query."""
     of_sweeps: dict[UUID, list[Any]] = defaultdict(list)
     names = ("id", "sweep", "sweep_index", "status", "generation", "generations", "deleted_at")
     columns = [getattr(Run, name) for name in names]

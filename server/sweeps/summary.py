@@ -68,7 +68,6 @@ def _table(
     generation: Sequence[int],
     last: int,
 ) -> tuple[Any, dict[str, Values]]:
-    """Read the generations of all runs in one query."""
     columns = [getattr(Generation, name) for name in FIGURES]
     # Runs may have continued since they were read, or have come back from the bin.
     wanted = (
@@ -165,7 +164,6 @@ def _plain(column: Values) -> list[float | None]:
 
 
 def finals(figures: Sequence[Mapping[str, float]]) -> dict[str, Final]:
-    """Return each figure of some runs, with its quantiles."""
     names = dict.fromkeys(name for one in figures for name in one)
     return {name: _final([one.get(name) for one in figures]) for name in names}
 
@@ -221,7 +219,6 @@ def figures_at(
 
 
 def curves(session: Session, sweep: Sweep, points: int | None) -> SweepCurves:
-    """Return the curves of each run, over the same generations."""
     found = recorded(session, sweep, points)
     lines = [
         RunCurves(run=run.id, **{name: _plain(one[i]) for name, one in found.values.items()})

@@ -38,7 +38,6 @@ class KnownPlugins:
         return sorted(found, key=lambda one: not self.workers_with(one.source))
 
     def workers_with(self, source: str) -> list[str]:
-        """Return the names of the live workers that have a version."""
         return [one.name for one in self.alive if source in versions_of(one)]
 
     def offered(self) -> list[Declaration]:

@@ -52,7 +52,6 @@ def report(
 
 
 def retire(sessions: Sessions, name: str) -> None:
-    """Remove a worker that has ended."""
     with sessions.write.begin() as session:
         session.execute(delete(Worker).where(Worker.name == name))
 
