@@ -117,9 +117,12 @@ def invalid(error: ValidationError) -> Problem:
     return invalid_input(field_errors(error))
 
 
+def invalid_fields(*errors: FieldError) -> ProblemError:
+    return ProblemError.of(invalid_input(list(errors)))
+
+
 def invalid_field(field: str, needed: str, got: Any) -> ProblemError:
-    """Return the error of one field of a request."""
-    return ProblemError.of(invalid_input([_needs(field, needed, brief(got))]))
+    return invalid_fields(_needs(field, needed, brief(got)))
 
 
 def bad_creature(error: CreatureError) -> Problem:

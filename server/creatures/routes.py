@@ -16,7 +16,7 @@ from ..services.services import ServicesDep, SessionDep
 from ..tables import Creature
 from . import lineage, networks
 from . import storage as creatures
-from .deps import CreatureDep, IdentityDep
+from .deps import CreatureDep, IdentityDep, Sha
 from .sandbox import sandbox
 from .schemas import Ancestors, Children, CreatureName
 
@@ -127,14 +127,14 @@ def import_creature(
 
 
 def _network_reader(form: str, media_type: str, description: str) -> Callable[..., Response]:
-    def read(identity: IdentityDep) -> Response:
-        name = f"network-{identity.sha256[:12]}.{form}"
+    def read(sha: Sha, identity: IdentityDep) -> Response:
+        name = f"network-{sha[:12]}.{form}"
         headers = {
             **IMMUTABLE,
             "Content-Disposition": f'inline; filename="{name}"',
             "Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'",
         }
-        data = sandbox().network(identity.json, form)
+        data = sandbox().network(identity, form)
         return Response(data, headers=headers, media_type=media_type)
 
     read.__name__ = f"read_network_{form}"

@@ -16,16 +16,16 @@ import sys
 import time
 from math import ceil
 from pathlib import Path
+from typing import Any
 
 from pydantic import ValidationError
 
-from microcosmos.archive import creature, creature_h5
+from microcosmos.archive import creature, creature_h5, pedigree
 from microcosmos.archive.creature import CreatureError
 
-from ..core import errors
+from ..core import errors, json_body
 from ..core.errors import Problem, ProblemError
 from . import networks
-from .files import HDF5, creature_file
 from .probe import example
 
 MEMORY = 256 << 20
@@ -34,6 +34,7 @@ CPU_SECONDS = 1.5
 WALL_SECONDS = 5.0
 """Limit on wall time."""
 LENGTH = struct.Struct("<Q")
+HDF5 = b"\x89HDF\r\n\x1a\n"
 RESULT, PROBLEM = b"result", b"problem"
 """First lines of answers."""
 
@@ -94,6 +95,20 @@ def answer(request: bytes) -> bytes:
     return PROBLEM + b"\n" + problem.model_dump_json().encode()
 
 
+def creature_file(body: bytes) -> dict[str, Any]:
+    """Return the checked creature file, with the files of its `ancestors`."""
+    if not body.startswith(HDF5):
+        return pedigree.document(*pedigree.split(json_body.mapping(json_body.parse(body))))
+    try:
+        file = creature_h5.load(body)
+    except CreatureError:
+        raise
+    except ValueError as error:
+        raise ProblemError(422, "Not a creature file", f"{error}.") from error
+    json_body.refuse_unstorable(file)
+    return pedigree.document(file, [])
+
+
 def _unreadable(why: str) -> Problem:
     detail = f"The file cannot be read: {why:.300}."
     return Problem(title="Unreadable", status=422, detail=detail)
@@ -103,12 +118,10 @@ def restrict() -> None:
     """Set the limits for good: a hard limit cannot be raised again."""
     pages = int(Path("/proc/self/statm").read_text().split()[0])
     room = pages * resource.getpagesize() + MEMORY
+    last_second = ceil(time.process_time() + CPU_SECONDS) + 1  # If all else fails.
     for kind, most in (
         (resource.RLIMIT_AS, room),
-        (
-            resource.RLIMIT_CPU,
-            ceil(time.process_time() + CPU_SECONDS) + 1,
-        ),  # If all else fails.
+        (resource.RLIMIT_CPU, last_second),
         (resource.RLIMIT_FSIZE, 0),
         (resource.RLIMIT_CORE, 0),
         (resource.RLIMIT_NOFILE, 0),

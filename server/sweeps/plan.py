@@ -11,12 +11,19 @@ from sqlalchemy.orm import Session
 from microcosmos.archive.creature import CreatureError
 from microcosmos.spec import Spec
 
-from ..core.errors import FieldError, ProblemError, bad_creature, brief, field_errors
+from ..core.errors import (
+    FieldError,
+    ProblemError,
+    bad_creature,
+    brief,
+    field_errors,
+    invalid_fields,
+)
 from ..creatures import initial
 from ..runs.submission import TOO_LARGE, too_large
 from ..specs.parsing import Parse
 from . import fields
-from .grid import MAX_ERRORS, Case, cases_of, combination, concerned, moved, refused, run_name
+from .grid import MAX_ERRORS, Case, cases_of, combination, related_paths, relocated, run_name
 from .schemas import MAX_RUNS, SweepCreate
 
 FIXED = {
@@ -65,13 +72,14 @@ def _base(document: Mapping[str, Any], parse: Parse) -> Spec:
     try:
         return parse(document)
     except ValidationError as error:
-        raise refused([moved(e, f"spec.{e.field}") for e in field_errors(error)]) from None
+        errors = [relocated(one, f"spec.{one.field}") for one in field_errors(error)]
+        raise invalid_fields(*errors) from None
 
 
 def _refuse_paths(document: dict[str, Any], asked: Mapping[str, Sequence[Any]]) -> None:
     errors = [error for path in asked if (error := _wrong_path(document, path, asked))]
     if errors:
-        raise refused(errors)
+        raise invalid_fields(*errors)
 
 
 def _wrong_path(
@@ -100,7 +108,7 @@ def _seeds(sent: SweepCreate, document: dict[str, Any], parse: Parse) -> list[in
             f"a run of `{document['experiment']}` has no seed, so all runs would be the same; "
             "omit `seeds`"
         )
-        raise refused([FieldError(field="seeds", message=message, got=brief(sent.seeds))])
+        raise invalid_fields(FieldError(field="seeds", message=message, got=brief(sent.seeds)))
     if isinstance(sent.seeds, list):
         return sent.seeds
     first, last = document["seed"], document["seed"] + sent.seeds - 1
@@ -109,7 +117,7 @@ def _seeds(sent: SweepCreate, document: dict[str, Any], parse: Parse) -> list[in
     except ValidationError as error:
         (found,) = field_errors(error)
         message = f"from the spec's own, {first}, {sent.seeds} seeds end at {last}: "
-        raise refused([moved(found, "seeds", message)]) from None
+        raise invalid_fields(relocated(found, "seeds", message)) from None
     return list(range(first, last + 1))
 
 
@@ -121,7 +129,8 @@ def _refuse_many(sent: SweepCreate, seeds: int) -> None:
     factors = " x ".join(f"{count}" for count in (*lengths, seeds))
     message = f"needs at most {MAX_RUNS:,} runs in all; got {factors} = {total:,}"
     field = "grid" if sent.grid else "seeds"
-    raise refused([FieldError(field=field, message=message, needed=f"{MAX_RUNS}", got=total)])
+    error = FieldError(field=field, message=message, needed=f"{MAX_RUNS}", got=total)
+    raise invalid_fields(error)
 
 
 def refuse_too_large(plan: Plan, limit: int) -> None:
@@ -129,7 +138,7 @@ def refuse_too_large(plan: Plan, limit: int) -> None:
     errors: dict[str, FieldError] = {}
     for case in plan.cases:
         if found := too_large(case.spec, limit):
-            placed = _placed(found, case)
+            placed = _at_field(found, case)
             errors.setdefault(placed.field, placed)
     if errors:
         some = list(errors.values())[:MAX_ERRORS]
@@ -145,11 +154,11 @@ def refuse_initial(session: Session, plan: Plan) -> None:
             initial.check(session, case.spec)
         except CreatureError as error:
             found = bad_creature(error).errors or []
-            raise refused([_placed(one, case) for one in found]) from error
+            raise invalid_fields(*(_at_field(one, case) for one in found)) from error
 
 
-def _placed(found: FieldError, case: Case) -> FieldError:
-    """Move an error of a case's spec to the field of the request."""
-    concerning = concerned(found.field, case.values)
-    field = case.field(concerning[0]) if concerning else f"spec.{found.field}"
-    return moved(found, field, f"with {combination(case.values)}: " if case.values else "")
+def _at_field(found: FieldError, case: Case) -> FieldError:
+    """Relocate an error of a case's spec to the field of the request."""
+    related = related_paths(found.field, case.values)
+    field = case.field(related[0]) if related else f"spec.{found.field}"
+    return relocated(found, field, f"with {combination(case.values)}: " if case.values else "")

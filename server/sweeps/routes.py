@@ -10,7 +10,8 @@ from sqlalchemy.orm import Session
 
 from microcosmos.spec import estimate
 
-from ..auth.authorize import MAY_READ, Writer
+from ..auth.authorize import MAY_READ, Writer, authorize_owner
+from ..core.errors import ProblemError
 from ..core.json_body import json_route
 from ..deletion import bin
 from ..estimates import position
@@ -21,10 +22,9 @@ from ..runs.commands import SPEC_BYTES, IdempotencyKey
 from ..runs.submission import memory_limit
 from ..services.services import Services, ServicesDep, SessionDep
 from ..specs import parsing
-from ..tables import Run
+from ..tables import Run, Sweep
 from . import summary
-from .commands import announce, change_all
-from .deps import OwnSweepId, SweepDep, find_sweep
+from .commands import announce, change_all, request_of, submit_sweep
 from .overview import page, read_sweep
 from .plan import Plan, plan, refuse_too_large
 from .schemas import (
@@ -37,10 +37,32 @@ from .schemas import (
     SweepRead,
     SweepSummary,
 )
-from .submission import request_of, submit_sweep
 
 router = APIRouter(prefix="/sweeps", tags=["sweeps"], route_class=json_route(SPEC_BYTES))
 Points = Annotated[int | None, Query(ge=2, le=10_000)]
+
+
+def find_sweep(session: Session, sweep_id: UUID) -> Sweep:
+    found = session.get(Sweep, sweep_id)
+    if found is None:
+        raise ProblemError(404, "Not found", f"No sweep has the id {sweep_id}.")
+    return found
+
+
+def _sweep(sweep_id: UUID, session: SessionDep) -> Sweep:
+    return find_sweep(session, sweep_id)
+
+
+SweepDep = Annotated[Sweep, Depends(_sweep)]
+
+
+def own_sweep(sweep_id: UUID, principal: Writer, services: ServicesDep) -> UUID:
+    """Return the id of a path; raise `ProblemError` if somebody else owns the sweep."""
+    authorize_owner(services, principal, Sweep, sweep_id)
+    return sweep_id
+
+
+OwnSweepId = Annotated[UUID, Depends(own_sweep)]
 
 
 def plan_sent(sent: SweepCreate, services: ServicesDep) -> Plan:
