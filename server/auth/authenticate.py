@@ -3,7 +3,6 @@
 import time
 from collections import OrderedDict
 from collections.abc import Callable
-from dataclasses import dataclass
 from hmac import compare_digest
 from ipaddress import IPv6Address, ip_address, ip_network
 from math import ceil
@@ -58,23 +57,15 @@ def network_of(address: str) -> str:
     return str(getattr(found, "ipv4_mapped", None) or found)
 
 
-@dataclass(frozen=True)
-class Credentials:
-    """The token of a request, if any, and the address that it came from."""
-
-    token: str | None
-    address: str
-
-
 class Authenticator:
     """Identifies principals. The rate limit never delays a valid token."""
 
     def __init__(self, services: Services):
         self.services, self.limit = services, RateLimit()
 
-    def identify(self, credentials: Credentials) -> Principal:
+    def identify(self, token: str | None) -> Principal:
         """Return the principal; raise `ProblemError` where a token is needed or not valid."""
-        settings, token = self.services.settings, credentials.token
+        settings = self.services.settings
         if not token:
             if settings.needs_token:
                 raise ProblemError(401, "Unauthorized", TOKEN_NEEDED, headers=tokens.CHALLENGE)

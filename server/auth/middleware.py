@@ -1,6 +1,7 @@
 """Identify the principal of each request, and refuse requests from pages of other sites."""
 
 from collections.abc import Callable
+from functools import partial
 from urllib.parse import SplitResult, urlsplit
 
 from fastapi.concurrency import run_in_threadpool
@@ -12,7 +13,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from ..core.errors import ProblemError, answer, unavailable
 from ..settings import LOOPBACK
-from .authenticate import Authenticator, Credentials
+from .authenticate import Authenticator
 from .authorize import SHARE_HEADER, ShareAccess
 from .cookies import remember, remembered
 from .principal import SHARE_HOLDER
@@ -69,19 +70,16 @@ class PrincipalMiddleware:
             # A browser sends cookies by itself, also for a page of another site.
             _refuse_foreign_origin(request.headers)
         cookie = remembered(request) if self.needs_token else None
-        credentials = Credentials(cookie if bearer is None else bearer, address(request))
+        token = cookie if bearer is None else bearer
         try:
             identify = self.authenticator.identify
-            request.state.principal = await run_in_threadpool(identify, credentials)
+            request.state.principal = await run_in_threadpool(identify, token)
         except ProblemError as error:
-            request.state.refuse = self._refusal(error, credentials.address)
+            # Only routes that are not public call it, and so count a wrong token.
+            request.state.refuse = partial(self.authenticator.count, error, address(request))
             if method not in SAFE and path != SESSION:  # Before the body is read.
                 raise request.state.refuse() from None
         return None
-
-    def _refusal(self, error: ProblemError, address: str) -> Callable[[], ProblemError]:
-        """Return the function that counts a wrong token: public routes do not call it."""
-        return lambda: self.authenticator.count(error, address)
 
     async def _page(self, request: HTTPConnection) -> Response | None:
         """Move a token in the address of a page into a cookie. The page itself is public."""
@@ -91,11 +89,10 @@ class PrincipalMiddleware:
         clean = request.url.remove_query_params("token")
         # The log of requests is written at the end: it must not name the secret.
         request.scope["query_string"] = clean.query.encode()
-        credentials = Credentials(given, address(request))
         try:
-            principal = await run_in_threadpool(self.authenticator.identify, credentials)
+            principal = await run_in_threadpool(self.authenticator.identify, given)
         except ProblemError as error:
-            self.authenticator.count(error, credentials.address)
+            self.authenticator.count(error, address(request))
             return None  # The page asks for a token.
         redirect = RedirectResponse(clean, 303)
         remember(redirect, request, given, principal.expires_at)

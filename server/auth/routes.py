@@ -8,7 +8,7 @@ from fastapi import APIRouter, Request, Response
 from ..core.json_body import json_route
 from ..services.services import ServicesDep, SessionDep
 from . import tokens
-from .authenticate import Authenticator, Credentials
+from .authenticate import Authenticator
 from .authorize import MAY_ADMINISTER, PUBLIC, Reader
 from .cookies import forget, remember
 from .middleware import address
@@ -50,11 +50,10 @@ def revoke_token(token_id: UUID, services: ServicesDep) -> TokenRead:
 def sign_in(asked: SignIn, request: Request, response: Response) -> PrincipalRead:
     """Keep a token in a cookie of this site, which scripts cannot read; 401 if it is wrong."""
     authenticator: Authenticator = request.app.state.authenticator
-    credentials = Credentials(asked.token, address(request))
     try:
-        principal = authenticator.identify(credentials)
+        principal = authenticator.identify(asked.token)
     except tokens.UnknownToken as error:
-        raise authenticator.count(error, credentials.address) from None
+        raise authenticator.count(error, address(request)) from None
     remember(response, request, asked.token, principal.expires_at)
     return _read(principal, authenticator.services.settings.needs_token)
 

@@ -2,7 +2,7 @@
 
 from fastapi import APIRouter
 
-from ..runs.commands import changed
+from ..runs.announce import changed
 from ..runs.deps import OwnRunId
 from ..runs.schemas import RunRead
 from ..services.services import ServicesDep

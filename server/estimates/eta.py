@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session
 
 from microcosmos.spec import Folding, Scaling, Spec, estimate
 
-from ..specs.stored import parsed
+from ..specs.parsing import parsed
 from ..tables import Generation, Run, Worker
 from .schemas import MeasuredSpeed
 
@@ -55,18 +55,14 @@ class Speed:
         )
 
 
-def speed_of(session: Session, spec: Spec, live: Sequence[Worker]) -> Speed | None:
-    """Return the speed of the runs most like a spec; None if there are none.
-
-    Without live workers any device counts.
-    """
-    return speeds_of(session, [spec], live)[0]
-
-
 def speeds_of(
     session: Session, specs: Sequence[Spec], live: Sequence[Worker]
 ) -> list[Speed | None]:
-    """Return the speeds for several specs of one experiment, with one query."""
+    """Return the speed of the runs most like each spec, if there are any.
+
+    One query serves all specs, which share an experiment. Without live workers any device
+    counts.
+    """
     models = {model_of(worker.device) for worker in live}
     recent = _recent(session, specs[0].experiment)
     measured = {kind: _measured(recent, kind) for kind in {_kind(spec) for spec in specs}}

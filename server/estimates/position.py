@@ -11,7 +11,7 @@ from microcosmos.sizes import size
 
 from ..queue.order import in_order
 from ..services.services import Services
-from ..specs.stored import parsed
+from ..specs.parsing import parsed
 from ..tables import QUEUED, Run, Worker
 from ..workers import plugins, registry
 from .schemas import QueueAhead

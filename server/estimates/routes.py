@@ -8,7 +8,7 @@ from sqlalchemy import select
 from ..auth.authorize import MAY_READ
 from ..services.services import ServicesDep, SessionDep
 from ..tables import QUEUED, Run
-from ..workers.brief import brief
+from ..workers.registry import brief
 from . import position
 from .schemas import QueuedRun, QueueRead
 

@@ -95,7 +95,7 @@ def start(data: DataFolder, tree: Tree) -> None:
         name = f"worker-{index}"
         tree.children.append(Child(name, data.module(name, "worker.supervisor", str(index))))
     for name in ("renderer", "auditor"):
-        tree.children.append(Child(name, data.module(name, f"worker.{name}")))
+        tree.children.append(Child(name, data.module(name, "worker.renderer", name)))
     for child in tree.children:
         say(child.name, f"process {child.process.pid}, log in {data.log(child.name)}")
 

@@ -13,7 +13,7 @@ from microcosmos.viz.replay_file import REPLAY_VERSION
 from ..core.database import insert_missing
 from ..creatures import storage as creatures
 from ..services.services import Services
-from ..storage.artifacts import StoredFile, rendering_path
+from ..storage.artifacts import rendering_path
 from ..tables import REPLAY, Artifact, Creature
 
 REFUSAL = re.compile(r"^[\w.]*(?:CreatureError|Missing|Broken): ")
@@ -92,11 +92,7 @@ def existing(services: Services, creature: str, kind: str) -> bytes | None:
     """Return a rendering if it exists and is sound."""
     with services.sessions.read() as session:
         row = find(session, creature, kind)
-    return (
-        services.artifacts.read_verified(StoredFile(row.path, row.size, row.sha256))
-        if row
-        else None
-    )
+    return services.artifacts.read_verified(row.path, row.sha256) if row else None
 
 
 def creature(services: Services, name: str) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from ..auth import tokens
 from ..estimates import position
 from ..services.services import Services
 from ..tables import FAILED, RUNNING, Generation, Run
-from ..workers.brief import progress
+from ..workers.registry import progress
 from .curves import evenly
 from .schemas import ForkedFrom, RunRead
 

@@ -7,7 +7,6 @@ from microcosmos.archive import export
 
 from ..core.database import insert_missing
 from ..services.services import Services
-from ..storage.artifacts import StoredFile
 from ..tables import CHECKPOINT, PUBLISHED, Artifact, Share
 
 
@@ -24,21 +23,14 @@ def copy_checkpoint(services: Services, share: Share) -> None:
         checkpoint = None if find(session, share) else _checkpoint(session, share)
     if checkpoint is None:
         return
-    data = services.artifacts.read_verified(
-        StoredFile(checkpoint.path, checkpoint.size, checkpoint.sha256)
-    )
+    data = services.artifacts.read_verified(checkpoint.path, checkpoint.sha256)
     if data is None:
         return
     licensed = export.licensed(data, share.licence, share.credit)
     stored = services.artifacts.write(path(share), licensed)
-    row = {
-        **vars(stored),
-        "kind": PUBLISHED,
-        "run_id": share.run_id,
-        "generation": share.generation,
-    }
+    of_run = {"run_id": share.run_id, "generation": share.generation}
     with services.sessions.write.begin() as session:
-        insert_missing(session, Artifact, [row])
+        insert_missing(session, Artifact, [{**vars(stored), "kind": PUBLISHED, **of_run}])
 
 
 def _checkpoint(session: Session, share: Share) -> Artifact | None:

@@ -54,13 +54,13 @@ class Artifacts:
     def read(self, path: str) -> bytes:
         return self.files.cat_file(self._full(path))
 
-    def read_verified(self, stored: StoredFile) -> bytes | None:
+    def read_verified(self, path: str, sha256: str) -> bytes | None:
         """Return the content, or None if the file is missing or has changed."""
         try:
-            data = self.read(stored.path)
+            data = self.read(path)
         except FileNotFoundError:
             return None
-        return data if hashlib.sha256(data).hexdigest() == stored.sha256 else None
+        return data if hashlib.sha256(data).hexdigest() == sha256 else None
 
     def stream(self, path: str, start: int, stop: int) -> Iterator[bytes]:
         """Yield the bytes from `start` up to `stop` in pieces."""

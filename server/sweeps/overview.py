@@ -13,7 +13,7 @@ from ..auth import tokens
 from ..core.paging import MOMENT, Order
 from ..runs.lifecycle import NOT_IN_BIN
 from ..tables import STATUSES, Run, Sweep
-from ..workers.brief import progress
+from ..workers.registry import progress
 from .schemas import CaseRead, SweepPage, SweepRead
 
 NEWEST_FIRST = Order("-created", Sweep.created_at.expression, MOMENT, Sweep.id, UUID)

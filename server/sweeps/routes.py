@@ -18,8 +18,7 @@ from ..estimates import position
 from ..estimates.eta import speeds_of
 from ..queue.order import requeue
 from ..runs import lifecycle
-from ..runs.commands import SPEC_BYTES, IdempotencyKey
-from ..runs.submission import memory_limit
+from ..runs.submission import SPEC_BYTES, IdempotencyKey, memory_limit
 from ..services.services import Services, ServicesDep, SessionDep
 from ..specs import parsing
 from ..tables import Run, Sweep

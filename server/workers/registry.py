@@ -8,7 +8,8 @@ from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
 from ..core.database import Sessions, ago, clock
-from ..tables import RUNNING, Plugin, Run, Worker
+from ..tables import FINISHED, RUNNING, Plugin, Run, Worker
+from .schemas import RunBrief
 
 
 def report(
@@ -67,3 +68,16 @@ def running(session: Session, alive: Sequence[Worker]) -> dict[str, Run]:
     names = [worker.name for worker in alive]
     runs = select(Run).where(Run.status == RUNNING, Run.worker.in_(names))
     return {str(run.worker): run for run in session.scalars(runs)}
+
+
+def brief(run: Run) -> RunBrief:
+    names = (name for name in RunBrief.model_fields if name != "progress")
+    return RunBrief(**{name: getattr(run, name) for name in names}, progress=progress(run))
+
+
+def progress(run: Run) -> float:
+    """Return the completed share of a run's generations.
+
+    A finished run counts as complete, even if it stopped early.
+    """
+    return 1.0 if run.status == FINISHED else min(1.0, run.generation / run.generations)
