@@ -16,7 +16,15 @@ def main() -> None:
     settings = Settings()
     create_private(settings.data)
     if settings.needs_token:
-        _prepare(settings)
+        services = connect(settings)
+        try:
+            migrations.upgrade(services.sessions)
+            if secret := bootstrap.create_first_token(services):
+                print(bootstrap.announcement(settings, secret), flush=True)
+        except ValueError as error:
+            sys.exit(str(error))
+        finally:
+            services.close()
     uvicorn.run(
         "server.app:create",
         factory=True,
@@ -24,18 +32,6 @@ def main() -> None:
         port=settings.port,
         timeout_graceful_shutdown=SHUTDOWN_SECONDS,
     )
-
-
-def _prepare(settings: Settings) -> None:
-    services = connect(settings)
-    try:
-        migrations.upgrade(services.sessions)
-        if secret := bootstrap.create_first_token(services):
-            print(bootstrap.announcement(settings, secret), flush=True)
-    except ValueError as error:
-        sys.exit(str(error))
-    finally:
-        services.close()
 
 
 if __name__ == "__main__":

@@ -100,8 +100,8 @@ class Heartbeats(threading.Thread):
             kind="cpu" if self._device.gpu is None else "gpu",
             memory_used_bytes=self.gauge.last.memory_bytes,
             load=self.gauge.last.load,
-            plugins=plugins.plugins,
-            unloaded=plugins.unloaded,
+            plugins=list(plugins.plugins),
+            unloaded=list(plugins.unloaded),
         )
 
     def _end_lost_job(self, watch: Watch, lease: Lease) -> None:

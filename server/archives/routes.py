@@ -191,18 +191,14 @@ def download_results(run: RunDep, session: SessionDep) -> Response:
     if not rows:
         detail = f"Run {run.id} has no results yet; it is {run.status}."
         raise ProblemError(404, "No results yet", detail)
-    return Response(_csv(rows), headers=attachment(run, "csv"), media_type="text/csv")
-
-
-def _rows(session: Session, run: Run) -> list[dict[str, Any]]:
-    mine = select(Result).where(Result.run_id == run.id).order_by(Result.number)
-    return [{**row.values, "creature": row.creature} for row in session.scalars(mine)]
-
-
-def _csv(rows: list[dict[str, Any]]) -> str:
     columns = list(dict.fromkeys(name for row in rows for name in row if name != "creature"))
     text = io.StringIO()
     writer = csv.DictWriter(text, [*columns, "creature"], lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
-    return text.getvalue()
+    return Response(text.getvalue(), headers=attachment(run, "csv"), media_type="text/csv")
+
+
+def _rows(session: Session, run: Run) -> list[dict[str, Any]]:
+    mine = select(Result).where(Result.run_id == run.id).order_by(Result.number)
+    return [{**row.values, "creature": row.creature} for row in session.scalars(mine)]

@@ -13,6 +13,7 @@ from sqlalchemy import case, func
 from sqlalchemy.orm import Session
 
 from microcosmos.archive.report import Report
+from microcosmos.sizes import size
 
 from ..core.database import clock
 from ..creatures import initial
@@ -176,7 +177,8 @@ class Attempt:
                 run.checkpoint_generation = generation
                 run.attempts_without_checkpoint = 0
                 run.warning = None
-            log.note_checkpoint(session, run, generation, stored.size)
+            text = f"Checkpoint of generation {generation} written, {size(stored.size)}."
+            log.note(session, run, text, kind=log.SAVED)
         self.generation = generation
         for path in superfluous:
             try:

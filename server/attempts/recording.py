@@ -112,17 +112,8 @@ def events(run_id: UUID, rows: Rows) -> Iterator[tuple[str, dict[str, Any]]]:
     head = {"run": str(run_id), "generation": rows.curve["generation"]}
     yield "generation", head | rows.curve
     if rows.elites:
-        columns = {
-            "cell": "cell",
-            "fitness": "fitness",
-            "descriptors": "descriptors",
-            "elite_generation": "generation",
-            "creature": "creature",
-        }
-        yield (
-            "elites",
-            head | {to: [row[name] for row in rows.elites] for to, name in columns.items()},
-        )
+        columns = {name: [row[name] for row in rows.elites] for name in rows.elites[0]}
+        yield "elites", columns | head | {"elite_generation": columns["generation"]}
     if rows.results:
         table = [{**row["values"], "creature": row["creature"]} for row in rows.results]
         yield "results", head | {"summary": rows.curve["summary"], "rows": table}

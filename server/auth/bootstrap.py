@@ -1,7 +1,6 @@
 """The first token, created where others can reach the server and no token exists."""
 
 import os
-from pathlib import Path
 
 from sqlalchemy import exists, select
 
@@ -34,7 +33,11 @@ def create_first_token(services: Services) -> str | None:
         made = create(services, NAME, ADMIN)
     except ProblemError:  # Another server, started at the same time, was faster.
         return None
-    _write_private(settings.data / FILE, made.secret)
+    create_private(settings.data)
+    path = settings.data / FILE
+    path.unlink(missing_ok=True)
+    with os.fdopen(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600), "w") as file:
+        file.write(made.secret + "\n")
     return made.secret
 
 
@@ -59,10 +62,3 @@ def refuse_without_admin(services: Services) -> None:
             "create one with `python -m server.auth create NAME --scope admin`, "
             "or set MICROCOSMOS_TOKEN"
         )
-
-
-def _write_private(path: Path, secret: str) -> None:
-    create_private(path.parent)
-    path.unlink(missing_ok=True)
-    with os.fdopen(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600), "w") as file:
-        file.write(secret + "\n")

@@ -103,15 +103,11 @@ def principal_of(services: Services, secret: str) -> Principal:
         used = token.last_used_at
         stale = used is None or now(session) - used > LAST_USED_INTERVAL
     if stale:
-        _note_use(services, token.id)
+        written = update(Token).where(Token.id == token.id).values(last_used_at=clock())
+        # The database may be busy: the request does not wait for it.
+        with suppress(OperationalError), services.sessions.write.begin() as session:
+            session.execute(written)
     return Principal(token.name, cast(Scope, token.scope), token.id, token.expires_at)
-
-
-def _note_use(services: Services, token: UUID) -> None:
-    """Write when the token was used, unless the database is busy."""
-    used = update(Token).where(Token.id == token).values(last_used_at=clock())
-    with suppress(OperationalError), services.sessions.write.begin() as session:
-        session.execute(used)
 
 
 def _ended(detail: str) -> ProblemError:

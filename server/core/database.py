@@ -124,7 +124,9 @@ def _sqlite(url: Any) -> Engine:
 def _prepare_sqlite(connection: Any, _: Any) -> None:
     connection.isolation_level = None  # The driver begins nothing by itself.
     # SQLite's own `lower` handles ASCII alone.
-    connection.create_function("lower", 1, _lower, deterministic=True)
+    connection.create_function(
+        "lower", 1, lambda text: text and text.lower(), deterministic=True
+    )
     for pragma in (
         f"busy_timeout={TIMEOUT_MS}",
         "journal_mode=WAL",
@@ -132,10 +134,6 @@ def _prepare_sqlite(connection: Any, _: Any) -> None:
         "foreign_keys=ON",
     ):
         connection.execute(f"PRAGMA {pragma}")
-
-
-def _lower(text: str | None) -> str | None:
-    return None if text is None else text.lower()
 
 
 def _begin_sqlite(connection: Any) -> None:

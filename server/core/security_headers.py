@@ -69,11 +69,9 @@ def redact_request_log() -> None:
 def _redact(record: logging.LogRecord) -> bool:
     if isinstance(record.args, tuple):
         record.args = tuple(
-            _redacted(one) if isinstance(one, str) else one for one in record.args
+            SLUG.sub(lambda slug: f"{slug[0][:SLUG_PREVIEW]}…", one.partition("?")[0])
+            if isinstance(one, str)
+            else one
+            for one in record.args
         )
     return True
-
-
-def _redacted(argument: str) -> str:
-    path = argument.partition("?")[0]
-    return SLUG.sub(lambda slug: f"{slug[0][:SLUG_PREVIEW]}…", path)

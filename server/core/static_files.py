@@ -28,7 +28,9 @@ def page(path: str, accept_encoding: Annotated[str, Header()] = "") -> Response:
     if path == "help":
         return RedirectResponse("/help/")  # Relative links need the slash.
     if path.startswith("help/"):
-        return _documentation(path.removeprefix("help/"))
+        if file := _file(DOCUMENTATION, path.removeprefix("help/") or "index.html"):
+            return FileResponse(file, headers=FRESH)
+        raise HTTPException(404, "The documentation has no such page. `make docs` builds it.")
     if path == "api" or (path.startswith(("api/", "assets/")) and not _file(BUILT, path)):
         raise HTTPException(404, f"There is nothing at /{path}")
     if file := _file(BUILT, path):
@@ -39,12 +41,6 @@ def page(path: str, accept_encoding: Annotated[str, Header()] = "") -> Response:
     if not index.is_file():
         return HTMLResponse(MISSING, 503)
     return FileResponse(index, headers=FRESH)
-
-
-def _documentation(path: str) -> Response:
-    if file := _file(DOCUMENTATION, path or "index.html"):
-        return FileResponse(file, headers=FRESH)
-    raise HTTPException(404, "The documentation has no such page. `make docs` builds it.")
 
 
 def _asset(file: Path, compressed: bool) -> Response:

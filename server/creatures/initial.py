@@ -40,7 +40,10 @@ def record(session: Session, runs: Sequence[tuple[Spec, Sequence[UUID]]]) -> Non
 
     Raise `CreatureError` if one is gone.
     """
-    held = _lock(session, sorted({name for spec, _ in runs for name in initial_of(spec)}))
+    named = sorted({name for spec, _ in runs for name in initial_of(spec)})
+    some = select(Creature.sha256).where(Creature.sha256.in_(named)).order_by(Creature.sha256)
+    locked = some.with_for_update(read=True, key_share=True)
+    held = set(session.scalars(locked)) if named else set[str]()
     for spec, run_ids in runs:
         _refuse_missing(spec, held)
         names = [name for name in initial_of(spec) if name in held]
@@ -58,14 +61,6 @@ def files(session: Session, names: Sequence[str]) -> list[dict[str, Any]]:
     """Return the creature files of those that exist."""
     some = select(Creature).where(Creature.sha256.in_(names)).order_by(Creature.sha256)
     return [document(row) for row in session.scalars(some)] if names else []
-
-
-def _lock(session: Session, names: Sequence[str]) -> set[str]:
-    """Return those that exist; none can be deleted before the transaction ends."""
-    if not names:
-        return set()
-    some = select(Creature.sha256).where(Creature.sha256.in_(names)).order_by(Creature.sha256)
-    return set(session.scalars(some.with_for_update(read=True, key_share=True)))
 
 
 def _refuse_missing(spec: Spec, existing: Container[str]) -> None:

@@ -63,7 +63,7 @@ def speeds_of(
     One query serves all specs, which share an experiment. Without live workers any device
     counts.
     """
-    models = {model_of(worker.device) for worker in live}
+    models = {worker.device.partition(" (")[0] for worker in live}  # Without sizes.
     recent = _recent(session, specs[0].experiment)
     measured = {kind: _measured(recent, kind) for kind in {_kind(spec) for spec in specs}}
     return [_similar(measured[_kind(spec)], spec, models) for spec in specs]
@@ -85,11 +85,6 @@ def _similar(measured: Sequence[Measured], spec: Spec, models: Collection[str]) 
         rates=tuple(one.rate for one in nearest),
         startup_seconds=median(one.startup_seconds for one in nearest),
     )
-
-
-def model_of(device: str) -> str:
-    """Return a worker's device without its size."""
-    return device.partition(" (")[0]
 
 
 def _name(device: str, models: Collection[str]) -> str:

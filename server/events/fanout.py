@@ -78,7 +78,8 @@ class Fanout:
                     self.read_up_to = await self._newest()
                     self._broadcast(Entry(self.read_up_to, "reset"))
                     self.connected = True
-                for entry in await self._next():
+                found = await self.redis.xread({self.stream: self.read_up_to}, PAGE, BLOCK_MS)
+                for entry in (_entry(*item) for _, items in found or [] for item in items):
                     self.read_up_to = entry.id
                     self._broadcast(entry)
             except RedisError as error:
@@ -135,10 +136,6 @@ class Fanout:
     def _broadcast(self, entry: Entry) -> None:
         for listener in self.listeners:
             listener.put(entry)
-
-    async def _next(self) -> list[Entry]:
-        found = await self.redis.xread({self.stream: self.read_up_to}, PAGE, BLOCK_MS)
-        return [_entry(*item) for _, items in found or [] for item in items]
 
     async def _newest(self) -> str:
         newest = await self.redis.xrevrange(self.stream, count=1)

@@ -84,7 +84,12 @@ def chosen(session: Session, run: Run, start: ForkStart, generation: int | None)
     archive = session.execute(elites.at(run, as_of)).all()
     within = _selection(run, start)
     names = sorted({elite.creature for elite in archive if within(elite)})
-    _refuse_empty(start, {elite.cell for elite in archive}, names)
+    filled = {elite.cell for elite in archive}
+    if start.cells is not None and (empty := sorted(set(start.cells) - filled)):
+        raise invalid_field("from.cells", "cells with an elite", empty[:10])
+    if not names:
+        field = "from.region" if start.region is not None else "from"
+        raise invalid_field(field, "at least one elite", "none")
     if len(names) > MAX_INITIAL:
         needed = f"at most {MAX_INITIAL:,} creatures; choose a `region` or some `cells`"
         raise invalid_field("from", needed, len(names))
@@ -104,11 +109,3 @@ def _selection(run: Run, start: ForkStart) -> Callable[[Any], bool]:
         raise invalid_field(f"from.region.{name}", needed, name)
     ends = [(axes.index(name), *ends) for name, ends in start.region.items()]
     return lambda elite: all(low <= elite.descriptors[i] <= high for i, low, high in ends)
-
-
-def _refuse_empty(start: ForkStart, filled: set[int], names: list[str]) -> None:
-    if start.cells is not None and (empty := sorted(set(start.cells) - filled)):
-        raise invalid_field("from.cells", "cells with an elite", empty[:10])
-    if not names:
-        field = "from.region" if start.region is not None else "from"
-        raise invalid_field(field, "at least one elite", "none")

@@ -4,8 +4,6 @@ from fastapi import Request
 from fastapi.responses import JSONResponse, Response
 from sqlalchemy.orm import Session
 
-from ..core.errors import ProblemError
-from ..queue.jobs import FAILURE_SECONDS
 from ..services.services import Services
 from ..storage import ranges
 from ..tables import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP, Creature
@@ -23,7 +21,6 @@ MEDIA_TYPES = {
 }
 ON_REQUEST = (REPLAY, AUDIT, STRIP, PREVIEW, GIF, MP4)
 """Renderings that the first request for them orders."""
-NOUNS = {AUDIT: "audit", STRIP: "picture", PREVIEW: "picture", GIF: "film", MP4: "film"}
 
 
 def existing(
@@ -55,15 +52,6 @@ def existing_motion(
 
 
 def order(services: Services, sha: str, kind: str, *, anonymous: bool = False) -> Response:
-    """Order a rendering and return 202; raise `ProblemError` if the last try failed.
-
-    Holders of a share do not see the reason: errors may name files and hosts.
-    """
-    try:
-        storage.order(services, sha, kind, anonymous=anonymous)
-    except storage.RenderingFailed as error:
-        why = "" if anonymous else f": {error}"
-        detail = f"The {NOUNS.get(kind, kind)} failed{why}. Try again in a minute."
-        headers = {"Retry-After": str(FAILURE_SECONDS)}
-        raise ProblemError(500, "Rendering failed", detail, headers=headers) from error
+    """Order a rendering and return 202; raise `RenderingFailed` if the last try failed."""
+    storage.order(services, sha, kind, anonymous=anonymous)
     return JSONResponse(Rendering().model_dump(), 202, {"Retry-After": "1"})

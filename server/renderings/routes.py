@@ -12,7 +12,7 @@ from ..creatures.deps import CreatureDep
 from ..services.services import ServicesDep, SessionDep
 from ..tables import AUDIT, MEASUREMENT, PREVIEW, REPLAY
 from . import storage
-from .responses import MEDIA_TYPES, NOUNS, ON_REQUEST, existing, existing_motion, order
+from .responses import MEDIA_TYPES, ON_REQUEST, existing, existing_motion, order
 from .schemas import Measurement, Rendering
 
 router = APIRouter(prefix="/creatures/{sha}", tags=["creatures"])
@@ -31,11 +31,13 @@ def _reader(kind: str) -> Callable[..., Response]:
     ) -> Response:
         found = existing(request, row, session, services, kind)
         if found is None and share and kind != REPLAY:
-            raise ProblemError(404, "Not found", f"The share has no {NOUNS[kind]} of it.")
+            raise ProblemError(
+                404, "Not found", f"The share has no {storage.NOUNS[kind]} of it."
+            )
         return found or order(services, row.sha256, kind, anonymous=share is not None)
 
     read.__name__ = f"read_{kind.replace('.', '_')}"
-    read.__doc__ = f"Return the {NOUNS.get(kind, kind)}, or 202 while it is computed."
+    read.__doc__ = f"Return the {storage.NOUNS.get(kind, kind)}, or 202 while it is computed."
     return read
 
 
@@ -72,9 +74,7 @@ def measure(row: CreatureDep, services: ServicesDep) -> Rendering:
     if not row.measured:
         detail = "The creature's file contains no measurement to compare a new one with."
         raise ProblemError(422, "Never measured", detail)
-    if not storage.underway(services, row.sha256, MEASUREMENT):
-        storage.delete_rendering(services, row.sha256, MEASUREMENT)
-        services.jobs.render(row.sha256, MEASUREMENT)
+    storage.order_again(services, row.sha256, MEASUREMENT)
     return Rendering()
 
 

@@ -6,8 +6,6 @@ from uuid import UUID
 from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
-from microcosmos.sizes import size
-
 from ..tables import CANCELLED, FAILED, FINISHED, PAUSED, QUEUED, RUNNING, LogEntry, Run
 
 Level = Literal["info", "warning", "error"]
@@ -62,12 +60,6 @@ def note_start(session: Session, run: Run, before: int) -> None:
             else f"generation {before}"
         )
         note(session, run, f"Discarded {discarded}, recorded after the checkpoint.", "warning")
-
-
-def note_checkpoint(session: Session, run: Run, generation: int, count: int) -> None:
-    """Log a written checkpoint of so many bytes."""
-    text = f"Checkpoint of generation {generation} written, {size(count)}."
-    note(session, run, text, kind=SAVED)
 
 
 def read(session: Session, run_id: UUID, after: int | None, limit: int) -> list[LogEntry]:

@@ -20,8 +20,11 @@ def copy_checkpoint(services: Services, share: Share) -> None:
     The file may be large, so it is written outside any transaction.
     """
     with services.sessions.read() as session:
-        checkpoint = None if find(session, share) else _checkpoint(session, share)
-    if checkpoint is None:
+        mine = (Artifact.run_id == share.run_id) & (Artifact.kind == CHECKPOINT)
+        same = select(Artifact).where(mine, Artifact.generation == share.generation)
+        checkpoint = session.scalars(same.order_by(Artifact.number.desc()).limit(1)).first()
+        copied = find(session, share) is not None
+    if copied or checkpoint is None:
         return
     data = services.artifacts.read_verified(checkpoint.path, checkpoint.sha256)
     if data is None:
@@ -31,12 +34,6 @@ def copy_checkpoint(services: Services, share: Share) -> None:
     of_run = {"run_id": share.run_id, "generation": share.generation}
     with services.sessions.write.begin() as session:
         insert_missing(session, Artifact, [{**vars(stored), "kind": PUBLISHED, **of_run}])
-
-
-def _checkpoint(session: Session, share: Share) -> Artifact | None:
-    mine = (Artifact.run_id == share.run_id) & (Artifact.kind == CHECKPOINT)
-    same = select(Artifact).where(mine, Artifact.generation == share.generation)
-    return session.scalars(same.order_by(Artifact.number.desc()).limit(1)).first()
 
 
 def find(session: Session, share: Share) -> Artifact | None:

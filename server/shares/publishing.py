@@ -51,18 +51,14 @@ def subject(session: Session, sent: ShareCreate, principal: Principal) -> Subjec
     if not measures.has_archive(run):
         detail = f"A run of `{run.experiment}` has no archive to publish."
         raise ProblemError(422, "No archive", detail)
-    generation = _last(run, sent.generation)
+    # By default the last generation of the run's file.
+    generation = sent.generation or run.checkpoint_generation or run.generation
+    if generation > run.generation:
+        needed = f"at most {run.generation}, the run's last one"
+        raise invalid_field("generation", needed, generation)
     best = session.get_one(Creature, _best(session, run, generation))
     title = run.name or f"Archive {str(run.id)[:8]}"
     return Subject(best.sha256, title, best.licence, [], run=run, generation=generation)
-
-
-def _last(run: Run, requested: int | None) -> int:
-    """Return the last generation to show: by default that of the run's file."""
-    last = requested or run.checkpoint_generation or run.generation
-    if last > run.generation:
-        raise invalid_field("generation", f"at most {run.generation}, the run's last one", last)
-    return last
 
 
 def _best(session: Session, run: Run, generation: int) -> str:

@@ -1,6 +1,6 @@
 """Plan a sweep: check the specs of all its runs before any run is created."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import prod
 from typing import Any
@@ -57,29 +57,21 @@ class Plan:
 
 def plan(sent: SweepCreate, parse: Parse) -> Plan:
     """Return the plan of a request; raise `ProblemError` if any of its runs is invalid."""
-    base = _base(sent.spec, parse)
+    try:
+        base = parse(sent.spec)
+    except ValidationError as error:
+        errors = [relocated(one, f"spec.{one.field}") for one in field_errors(error)]
+        raise invalid_fields(*errors) from None
     document = base.model_dump(mode="json")
-    _refuse_paths(document, sent.grid)
+    wrong = (_wrong_path(document, path, sent.grid) for path in sent.grid)
+    if errors := [error for error in wrong if error]:
+        raise invalid_fields(*errors)
     seeds = _seeds(sent, document, parse)
     _refuse_many(sent, max(1, len(seeds)))
     if seeds:
         document = {**document, "seed": seeds[0]}
     cases = cases_of(document, sent.grid, parse)
     return Plan(sent.name or None, base, seeds, dict(sent.grid), cases)
-
-
-def _base(document: Mapping[str, Any], parse: Parse) -> Spec:
-    try:
-        return parse(document)
-    except ValidationError as error:
-        errors = [relocated(one, f"spec.{one.field}") for one in field_errors(error)]
-        raise invalid_fields(*errors) from None
-
-
-def _refuse_paths(document: dict[str, Any], asked: Mapping[str, Sequence[Any]]) -> None:
-    errors = [error for path in asked if (error := _wrong_path(document, path, asked))]
-    if errors:
-        raise invalid_fields(*errors)
 
 
 def _wrong_path(

@@ -19,31 +19,17 @@ def report(
     memory_bytes: int,
     status: Literal["idle", "busy"],
     run_id: UUID | None = None,
-    *,
-    kind: Literal["cpu", "gpu"] = "cpu",
-    memory_used_bytes: int | None = None,
-    load: float | None = None,
-    plugins: Sequence[dict[str, Any]] = (),
-    unloaded: Sequence[dict[str, Any]] = (),
+    **columns: Any,
 ) -> None:
-    """Report a live worker: its run, the load of its device, and its plug-ins."""
-    reported = Worker(
-        name=name,
-        device=device,
-        kind=kind,
-        memory_bytes=memory_bytes,
-        memory_used_bytes=memory_used_bytes,
-        load=load,
-        status=status,
-        run_id=run_id,
-        plugins=list(plugins),
-        unloaded=list(unloaded),
-    )
+    """Report a live worker: its run, and in other columns its load and its plug-ins."""
+    columns = {"kind": "cpu", "plugins": [], "unloaded": [], **columns}
+    columns |= {"device": device, "memory_bytes": memory_bytes}
+    reported = Worker(name=name, status=status, run_id=run_id, **columns)
     with sessions.write.begin() as session:
         known = session.get(Worker, name)
         same = known is not None and (known.status, known.run_id) == (status, run_id)
         if known is None or known.plugins != reported.plugins:
-            for one in plugins:  # They stay known when the worker is gone.
+            for one in reported.plugins:  # They stay known when the worker is gone.
                 key = {key: one[key] for key in ("kind", "name", "source")}
                 session.merge(Plugin(**key, declaration=dict(one))).seen_at = clock()
         row = session.merge(reported)
