@@ -76,6 +76,11 @@ class Settings(BaseSettings):
         return self.artifacts_url or str(self.data.resolve() / "artifacts")
 
     @property
+    def needs_admin_token(self) -> bool:
+        """A token is needed, and the environment sets none."""
+        return self.needs_token and not self.token
+
+    @property
     def needs_token(self) -> bool:
         return bool(self.token) or self.auth == "required" or self.host not in LOOPBACK
 

@@ -66,7 +66,15 @@ def read_history(run: RunDep, session: SessionDep, measures: str = "") -> Histor
     """Return every elite that ever entered, from which each generation's archive follows."""
     _refuse_table(run)
     names = _requested(measures, recorded_measures.recorded(session, run))
-    _refuse_long_history(session, run)
+    counted = select(func.count()).select_from(Elite).where(elites.recorded_in(run))
+    entries = session.execute(counted).scalar_one()
+    if entries > HISTORY_ENTRIES:
+        detail = (
+            f"The history of this archive has {entries:,} entries, more than the "
+            f"{HISTORY_ENTRIES:,} that one answer holds. Read single generations at "
+            f"/api/v1/runs/{run.id}/archive?generation=."
+        )
+        raise ProblemError(422, "History too long", detail)
     ordered = elites.all_time(run, names).order_by(Elite.generation, Elite.cell)
     columns = _columns(session.execute(ordered).all(), names)
     return HistoryRead(generation=run.generation, **columns)
@@ -84,18 +92,6 @@ def read_centroids(run: RunDep, session: SessionDep, services: ServicesDep) -> C
         return CentroidsRead(centroids=None)
     found = export.centroids(services.artifacts.read(first.path))
     return CentroidsRead(centroids=found.tolist())
-
-
-def _refuse_long_history(session: Session, run: Run) -> None:
-    counted = select(func.count()).select_from(Elite).where(elites.recorded_in(run))
-    entries = session.execute(counted).scalar_one()
-    if entries > HISTORY_ENTRIES:
-        detail = (
-            f"The history of this archive has {entries:,} entries, more than the "
-            f"{HISTORY_ENTRIES:,} that one answer holds. Read single generations at "
-            f"/api/v1/runs/{run.id}/archive?generation=."
-        )
-        raise ProblemError(422, "History too long", detail)
 
 
 def _requested(measures: str, recorded: Sequence[Measure]) -> list[str]:

@@ -22,7 +22,7 @@ def create_first_token(services: Services) -> str | None:
     live one of an admin: a server that created another could not be closed to the public.
     """
     settings = services.settings
-    if not settings.needs_token or settings.token:
+    if not settings.needs_admin_token:
         return None
     with services.sessions.read() as session:
         exist = session.scalar(select(exists().select_from(Token)))
@@ -51,8 +51,7 @@ def announcement(settings: Settings, secret: str) -> str:
 
 def refuse_without_admin(services: Services) -> None:
     """Raise `ValueError` if tokens are needed and no live admin token exists."""
-    settings = services.settings
-    if not settings.needs_token or settings.token:
+    if not services.settings.needs_admin_token:
         return
     with services.sessions.read() as session:
         found = has_admin(session)

@@ -18,10 +18,6 @@ def name(asked: HTTPConnection) -> str:
     return f"{COOKIE}_{asked.url.port}" if asked.url.port else COOKIE
 
 
-def remembered(asked: HTTPConnection) -> str | None:
-    return asked.cookies.get(name(asked))
-
-
 def remember(
     response: Response, asked: HTTPConnection, token: str, expires_at: datetime | None
 ) -> None:

@@ -13,9 +13,9 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from ..core.errors import ProblemError, answer, unavailable
 from ..settings import LOOPBACK
+from . import cookies
 from .authenticate import Authenticator
 from .authorize import SHARE_HEADER, ShareAccess
-from .cookies import remember, remembered
 from .principal import SHARE_HOLDER
 
 SAFE = ("GET", "HEAD")
@@ -69,7 +69,7 @@ class PrincipalMiddleware:
         if self.needs_token and bearer is None and method not in SAFE:
             # A browser sends cookies by itself, also for a page of another site.
             _refuse_foreign_origin(request.headers)
-        cookie = remembered(request) if self.needs_token else None
+        cookie = request.cookies.get(cookies.name(request)) if self.needs_token else None
         token = cookie if bearer is None else bearer
         try:
             identify = self.authenticator.identify
@@ -95,7 +95,7 @@ class PrincipalMiddleware:
             self.authenticator.count(error, address(request))
             return None  # The page asks for a token.
         redirect = RedirectResponse(clean, 303)
-        remember(redirect, request, given, principal.expires_at)
+        cookies.remember(redirect, request, given, principal.expires_at)
         return redirect
 
 

@@ -134,22 +134,15 @@ def revoke(services: Services, token: UUID, last: bool = False) -> Token:
         if found is None:
             raise ProblemError(404, "Not found", f"No token has the id {token}.")
         if found.revoked_at is None:
-            if not last:
-                _refuse_last(services, session, found)
+            is_admin = found.scope == ADMIN and services.settings.needs_admin_token
+            if is_admin and not last and not has_admin(session, token):
+                detail = (
+                    f"`{found.name}` is the only token of an admin. Create another admin token "
+                    "first, or nobody can create tokens."
+                )
+                raise ProblemError(409, "The last admin", detail)
             found.revoked_at = found.expires_at if found.expired(session) else now(session)
     return found
-
-
-def _refuse_last(services: Services, session: Session, token: Token) -> None:
-    settings = services.settings
-    if token.scope != ADMIN or not settings.needs_token or settings.token:
-        return
-    if not has_admin(session, token.id):
-        detail = (
-            f"`{token.name}` is the only token of an admin. Create another admin token first, "
-            "or nobody can create tokens."
-        )
-        raise ProblemError(409, "The last admin", detail)
 
 
 def names(session: Session, owners: Iterable[UUID | None]) -> dict[UUID | None, str]:

@@ -36,21 +36,16 @@ def page(path: str, accept_encoding: Annotated[str, Header()] = "") -> Response:
     if file := _file(BUILT, path):
         if not path.startswith("assets/"):
             return FileResponse(file, headers=FRESH)
-        return _asset(file, "gzip" in accept_encoding)
+        # A script or a style, whose name changes with its content.
+        headers = {**IMMUTABLE, "Vary": "Accept-Encoding"}
+        if "gzip" not in accept_encoding:
+            return FileResponse(file, headers=headers)
+        headers["Content-Encoding"] = "gzip"
+        return Response(_gzip(file), headers=headers, media_type=guess_type(file.name)[0])
     index = BUILT / "index.html"
     if not index.is_file():
         return HTMLResponse(MISSING, 503)
     return FileResponse(index, headers=FRESH)
-
-
-def _asset(file: Path, compressed: bool) -> Response:
-    """Return a script or a style. Their names change with their content."""
-    headers = {**IMMUTABLE, "Vary": "Accept-Encoding"}
-    if not compressed:
-        return FileResponse(file, headers=headers)
-    media_type, _ = guess_type(file.name)
-    headers["Content-Encoding"] = "gzip"
-    return Response(_gzip(file), headers=headers, media_type=media_type)
 
 
 @lru_cache(maxsize=256)

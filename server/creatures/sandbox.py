@@ -46,7 +46,12 @@ class Sandbox:
         if status == PROBLEM:
             raise ProblemError.of(Problem.model_validate_json(content))
         if status != RESULT:
-            self._refuse_gone()
+            with self._lock, suppress(subprocess.TimeoutExpired):
+                if self._process:
+                    self._process.wait(END_SECONDS)
+                # The whole process has ended, not the request alone.
+                detail = "The sandbox of the server does not answer; try again."
+                raise ProblemError(503, "Unavailable", detail, headers=RETRY_AFTER)
             detail = f"{action} took more than {CPU_SECONDS:g} seconds or too much memory."
             raise ProblemError(422, "Unreadable", detail)
         return content
@@ -61,14 +66,6 @@ class Sandbox:
                     return answer.read()
             except (BrokenPipeError, ConnectionResetError):
                 return b""
-
-    def _refuse_gone(self) -> None:
-        """Raise `ProblemError` 503 if the whole process has ended, not the request alone."""
-        with self._lock, suppress(subprocess.TimeoutExpired):
-            if self._process:
-                self._process.wait(END_SECONDS)
-            detail = "The sandbox of the server does not answer; try again."
-            raise ProblemError(503, "Unavailable", detail, headers=RETRY_AFTER)
 
     def _connection(self) -> socket.socket:
         ours, theirs = socket.socketpair()

@@ -80,17 +80,14 @@ def _similar(measured: Sequence[Measured], spec: Spec, models: Collection[str]) 
     nearest = sorted(same, key=lambda one: abs(log(one.cell_steps / cell_steps)))[
         :MAX_SIMILAR_RUNS
     ]
+    device = nearest[0].device
+    # The model alone, without platform and software.
+    named = [model for model in models if model in device] or [device.split(", ")[1]]
     return Speed(
-        device=_name(nearest[0].device, models),
+        device=named[0],
         rates=tuple(one.rate for one in nearest),
         startup_seconds=median(one.startup_seconds for one in nearest),
     )
-
-
-def _name(device: str, models: Collection[str]) -> str:
-    """Return the device of a run without platform and software."""
-    found = [model for model in models if model in device]
-    return found[0] if found else device.split(", ")[1]
 
 
 def _recent(session: Session, experiment: str) -> Sequence[Row[Run, float]]:

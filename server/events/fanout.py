@@ -109,10 +109,11 @@ class Fanout:
             yield Entry(start, "reset").sent()
         else:
             start = after
-            async for entry in self._missed(after):
-                start = entry.id
-                if run in (None, entry.run):
-                    yield entry.sent()
+            while page := await self.redis.xrange(self.stream, min=f"({start}", count=PAGE):
+                for entry in (_entry(*item) for item in page):
+                    start = entry.id
+                    if run in (None, entry.run):
+                        yield entry.sent()
         while (entry := await listener.waiting.get()) is not None:
             new = position(entry.id) > position(start) and run in (None, entry.run)
             if new or entry.kind == "reset":
@@ -150,13 +151,6 @@ class Fanout:
             return position(first[0][0].decode()) <= position(after) <= position(newest)
         except (ValueError, RedisError):
             return False
-
-    async def _missed(self, after: str) -> AsyncIterator[Entry]:
-        while page := await self.redis.xrange(self.stream, min=f"({after}", count=PAGE):
-            for item in page:
-                entry = _entry(*item)
-                after = entry.id
-                yield entry
 
 
 def position(identifier: str) -> tuple[int, int]:

@@ -77,13 +77,10 @@ def _rates(run: Run, curve: list[Generation]) -> tuple[float | None, float | Non
     For other runs, since the first generation, which had to compile.
     """
     names = ("generation", "evaluations", "seconds")
-    first, last = ([getattr(row, name) for name in names] for row in _ends(run, curve))
+    points = [Generation(generation=0, evaluations=0, seconds=0.0), *curve]
+    start = (
+        points[-2 if run.status == RUNNING or len(points) < 3 else 1] if curve else points[0]
+    )
+    first, last = ([getattr(row, name) for name in names] for row in (start, points[-1]))
     generations, evaluations, seconds = (b - a for a, b in zip(first, last, strict=True))
     return (generations / seconds, evaluations / seconds) if seconds > 0 else (None, None)
-
-
-def _ends(run: Run, curve: list[Generation]) -> tuple[Generation, Generation]:
-    start = Generation(generation=0, evaluations=0, seconds=0.0)
-    if len(curve) < 2:
-        return start, [start, *curve][-1]
-    return curve[-2 if run.status == RUNNING else 0], curve[-1]

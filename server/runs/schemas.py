@@ -7,7 +7,7 @@ from uuid import UUID
 from pydantic import AfterValidator, Field, StringConstraints, model_validator
 
 from ..core.schemas import Wire
-from ..tables import Status
+from ..workers.schemas import RunBrief
 
 NAME_LENGTH = 200
 
@@ -94,13 +94,9 @@ class ForkedFrom(Wire):
     """Number of creatures taken from it."""
 
 
-class RunRead(Wire):
-    id: UUID
-    experiment: str
-    name: str | None
+class RunRead(RunBrief):
     tags: list[str]
     note: str | None
-    status: Status
     requested_state: Literal["paused", "cancelled"] | None
     """A requested state that the worker has not reached yet."""
     waiting_reason: str | None
@@ -111,10 +107,6 @@ class RunRead(Wire):
     """When it last entered the queue."""
     started_at: datetime | None
     finished_at: datetime | None
-    attempt: int
-    generation: int
-    generations: int
-    progress: float
     eta_seconds: float | None
     evaluations: int
     evaluations_per_second: float | None
@@ -130,7 +122,6 @@ class RunRead(Wire):
     warning: str | None
     device: str | None
     version: str
-    demonstration: bool
     owner: str | None
     """Name of the token that created it."""
     sweep: UUID | None

@@ -41,8 +41,11 @@ def cases_of(
     for places in product(*(range(len(values)) for values in asked.values())):
         at = dict(zip(asked, places, strict=True))
         values = {path: asked[path][place] for path, place in at.items()}
+        changed = document
+        for path, value in values.items():
+            changed = fields.replaced(changed, path, value)
         try:
-            cases.append(Case(values, at, parse(_replaced(document, values))))
+            cases.append(Case(values, at, parse(changed)))
         except ValidationError as error:
             for found in field_errors(error):
                 error_of_value = _at_value(found, values, at)
@@ -51,12 +54,6 @@ def cases_of(
         raise invalid_fields(*list(errors.values())[:MAX_ERRORS])
     _refuse_alike(cases)
     return cases
-
-
-def _replaced(document: dict[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
-    for path, value in values.items():
-        document = fields.replaced(document, path, value)
-    return document
 
 
 def _at_value(error: FieldError, values: dict[str, Any], places: dict[str, int]) -> FieldError:
