@@ -19,7 +19,6 @@ from .plugins import PluginReport, PluginWatcher
 from .usage import Gauge, usage
 
 HEARTBEATS_PER_LEASE = 4
-"""Number of heartbeats within a lease."""
 HEARTBEATS_AFTER_END = 2
 """Heartbeats between the end of a run and killing its job."""
 

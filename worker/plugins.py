@@ -23,7 +23,6 @@ from microcosmos.plugins.loading import GROUP
 from server.settings import Settings
 
 IMPORT_SECONDS = 120.0
-"""Time limit for the import of all modules."""
 
 log = logging.getLogger(__name__)
 

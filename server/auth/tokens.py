@@ -31,7 +31,6 @@ SECRET_BYTES = 32
 PREVIEW_LENGTH = len(PREFIX) + 6
 """Characters of a secret that the table keeps, so that its holder can recognise it."""
 LAST_USED_INTERVAL = timedelta(minutes=5)
-"""Shortest time between two updates of `last_used_at`."""
 CHECK_SECONDS = 1.0
 """Longest time that an event stream outlives its token."""
 CHALLENGE = {"WWW-Authenticate": "Bearer"}

@@ -11,14 +11,15 @@ from microcosmos.archive import creature, creature_h5
 
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE, ShareAccessDep
 from ..core.json_body import limited
+from ..core.schemas import Wire
 from ..core.static_files import IMMUTABLE
 from ..services.services import ServicesDep, SessionDep
 from ..tables import Creature
 from . import lineage, networks
 from . import storage as creatures
 from .deps import CreatureDep, IdentityDep, Sha
+from .lineage import Ancestors, Children
 from .sandbox import sandbox
-from .schemas import Ancestors, Children, CreatureName
 
 FILE_BYTES = 8 << 20
 H5 = "application/x-hdf5"
@@ -33,6 +34,10 @@ body: dict[str, Any] = {
         },
     }
 }
+
+
+class CreatureName(Wire):
+    creature: str
 
 
 async def file_sent(request: Request) -> dict[str, Any]:

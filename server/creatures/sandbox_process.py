@@ -18,21 +18,22 @@ from math import ceil
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from pydantic import ValidationError
 
 from microcosmos.archive import creature, creature_h5, pedigree
 from microcosmos.archive.creature import CreatureError
+from microcosmos.naming import FORMAT, encode
+from microcosmos.spec import EXPERIMENTS
 
 from ..core import errors, json_body
 from ..core.errors import Problem, ProblemError
 from . import networks
-from .probe import example
 
 MEMORY = 256 << 20
 CPU_SECONDS = 1.5
 """Limit on CPU time; time that the process only waits does not count."""
 WALL_SECONDS = 5.0
-"""Limit on wall time."""
 LENGTH = struct.Struct("<Q")
 HDF5 = b"\x89HDF\r\n\x1a\n"
 RESULT, PROBLEM = b"result", b"problem"
@@ -64,6 +65,40 @@ def warm_up() -> None:
         assert answer(b"creature\n" + body).startswith(PROBLEM)
     for form in networks.FORMS:
         assert answer(form.encode() + b"\n" + creature.canonical(identity)).startswith(RESULT)
+
+
+def example() -> dict[str, Any]:
+    """Return the identity of a swimmer without hidden nodes, in the demonstration's world."""
+    spec: Any = EXPERIMENTS["quality-diversity"].presets[0].spec
+    whole, control = spec.model_dump(mode="json"), spec.control
+    ends = [*control.inputs, *control.outputs]
+    return {
+        "format": FORMAT,
+        "genome": {
+            "encoding": "cppn",
+            "inputs": list(control.inputs),
+            "outputs": list(control.outputs),
+            "control": whole["control"],
+            "nodes": {
+                "id": list(range(len(ends))),
+                "activation": ["identity"] * len(ends),
+                "bias": encode(np.zeros(len(ends))),
+            },
+            "connections": {
+                "innovation": [],
+                "source": [],
+                "target": [],
+                "enabled": [],
+                "weight": "",
+            },
+        },
+        "world": {
+            **spec.world.model_dump(mode="json"),
+            "coupling": spec.coupling.model_dump(mode="json"),
+        },
+        "body": whole["body"],
+        "task": whole["task"],
+    }
 
 
 def work(connection: socket.socket) -> None:

@@ -36,8 +36,6 @@ class Measured:
 
 @dataclass(frozen=True)
 class Speed:
-    """The speed of some earlier runs."""
-
     device: str
     rates: tuple[float, ...]
     startup_seconds: float

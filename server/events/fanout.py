@@ -22,8 +22,6 @@ log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class Entry:
-    """An event of the stream."""
-
     id: str
     kind: str
     run: str = ""

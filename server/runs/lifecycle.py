@@ -28,7 +28,6 @@ from .log import note, note_status
 log = logging.getLogger(__name__)
 
 NOT_IN_BIN = Run.deleted_at.is_(None)
-"""The condition that a run is not in the bin."""
 
 MAX_ATTEMPTS = 3
 """Number of attempts without a new checkpoint after which a run fails."""

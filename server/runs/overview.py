@@ -15,8 +15,7 @@ from ..workers.registry import progress
 from .curves import evenly
 from .schemas import ForkedFrom, RunRead
 
-POINTS = 32
-"""Points of a sparkline."""
+SPARKLINE_POINTS = 32
 
 
 def read_runs(
@@ -40,7 +39,7 @@ def _curves(session: Session, runs: Sequence[Run]) -> dict[UUID, list[Generation
     wanted = [
         and_(
             Generation.run_id == run.id,
-            Generation.generation.in_(evenly(run.generation, POINTS)),
+            Generation.generation.in_(evenly(run.generation, SPARKLINE_POINTS)),
         )
         for run in runs
         if run.generation

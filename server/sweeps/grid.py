@@ -16,7 +16,6 @@ from ..specs.parsing import Parse
 from . import fields
 
 MAX_ERRORS = 20
-"""Limit on the errors in one answer."""
 
 
 @dataclass(frozen=True)

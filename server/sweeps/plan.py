@@ -34,8 +34,6 @@ FIXED = {
 
 @dataclass(frozen=True)
 class Plan:
-    """All runs of a sweep."""
-
     name: str | None
     spec: Spec
     seeds: list[int]

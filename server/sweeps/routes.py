@@ -5,7 +5,7 @@ from typing import Annotated
 from uuid import UUID
 
 from fastapi import APIRouter, Depends, Query, Response
-from sqlalchemy import ColumnElement
+from sqlalchemy import ColumnElement, select
 from sqlalchemy.orm import Session
 
 from microcosmos.spec import estimate
@@ -13,6 +13,7 @@ from microcosmos.spec import estimate
 from ..auth.authorize import MAY_READ, Writer, authorize_owner
 from ..core.errors import ProblemError
 from ..core.json_body import json_route
+from ..core.paging import MOMENT, Order
 from ..deletion import bin
 from ..estimates import position
 from ..estimates.eta import speeds_of
@@ -24,7 +25,7 @@ from ..specs import parsing
 from ..tables import Run, Sweep
 from . import summary
 from .commands import announce, change_all, request_of, submit_sweep
-from .overview import page, read_sweep
+from .overview import read_sweep, read_sweeps
 from .plan import Plan, plan, refuse_too_large
 from .schemas import (
     SweepChange,
@@ -38,6 +39,7 @@ from .schemas import (
 )
 
 router = APIRouter(prefix="/sweeps", tags=["sweeps"], route_class=json_route(SPEC_BYTES))
+NEWEST_FIRST = Order("-created", Sweep.created_at.expression, MOMENT, Sweep.id, UUID)
 Points = Annotated[int | None, Query(ge=2, le=10_000)]
 
 
@@ -127,7 +129,10 @@ def list_sweeps(
     deleted: bool = False,
 ) -> SweepPage:
     """Return sweeps, newest first; `deleted` selects those with all runs in the bin."""
-    return page(session, cursor, limit, deleted)
+    kept = select(Run.id).where(Run.sweep == Sweep.id, lifecycle.NOT_IN_BIN).exists()
+    listed = select(Sweep).where(~kept if deleted else kept)
+    sweeps, following = NEWEST_FIRST.page(session, listed, cursor, limit)
+    return SweepPage(items=read_sweeps(session, sweeps), next=following)
 
 
 @router.get("/{sweep_id}", dependencies=[MAY_READ])

@@ -32,7 +32,6 @@ GENERATIONS_PER_QUERY = 10_000
 RUN_COLUMNS = ("id", "sweep_index", "status", "generation", "generations")
 
 Row = Any
-"""A row of the selected columns."""
 Values = np.ndarray[Any, np.dtype[np.float64]]
 
 

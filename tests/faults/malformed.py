@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from microcosmos.archive import creature
-from server.creatures.probe import example
+from server.creatures.sandbox_process import example
 
 JSON = "application/json"
 
