@@ -14,6 +14,7 @@ from microcosmos.archive import export
 
 from ..attempts.checkpoints import last_checkpoint
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, ShareAccessDep
+from ..core.api import sends
 from ..core.errors import ProblemError, invalid_field
 from ..runs.deps import RunDep
 from ..services.services import ServicesDep, SessionDep
@@ -24,9 +25,7 @@ from . import measures as recorded_measures
 from .schemas import ArchiveRead, CentroidsRead, HistoryRead, Measure, ResultsRead
 
 router = APIRouter(prefix="/runs/{run_id}", tags=["archives"])
-Answers = dict[int | str, dict[str, Any]]
-binary: Answers = {200: {"content": {"application/octet-stream": {}}}, 404: {}}
-table: Answers = {200: {"content": {"text/csv": {}}}}
+BINARY = sends("application/octet-stream", {404: {}})
 
 HISTORY_ENTRIES = 400_000
 """About 50 MB."""
@@ -125,9 +124,7 @@ def _refuse_table(run: Run) -> None:
         raise ProblemError(404, "No archive", detail)
 
 
-@router.get(
-    "/archive.h5", response_class=Response, responses=binary, dependencies=[MAY_READ_SHARED]
-)
+@router.get("/archive.h5", **BINARY, dependencies=[MAY_READ_SHARED])
 def download_archive(
     request: Request,
     run: RunDep,
@@ -141,9 +138,7 @@ def download_archive(
     return ranges.file(request, services.artifacts, artifact, headers)
 
 
-@router.get(
-    "/archive.csv", response_class=Response, responses=table, dependencies=[MAY_READ_SHARED]
-)
+@router.get("/archive.csv", **sends("text/csv"), dependencies=[MAY_READ_SHARED])
 def download_archive_csv(
     run: RunDep, share: ShareAccessDep, session: SessionDep, services: ServicesDep
 ) -> Response:
@@ -174,7 +169,7 @@ def read_results(run: RunDep, session: SessionDep) -> ResultsRead:
     return ResultsRead(generation=run.generation, summary=run.summary, rows=_rows(session, run))
 
 
-@router.get("/results.csv", response_class=Response, responses=table, dependencies=[MAY_READ])
+@router.get("/results.csv", **sends("text/csv"), dependencies=[MAY_READ])
 def download_results(run: RunDep, session: SessionDep) -> Response:
     """Return the rows as CSV."""
     if recorded_measures.has_archive(run):

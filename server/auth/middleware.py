@@ -5,13 +5,13 @@ from functools import partial
 from urllib.parse import SplitResult, urlsplit
 
 from fastapi.concurrency import run_in_threadpool
-from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.exc import OperationalError, TimeoutError
 from starlette.datastructures import Headers
 from starlette.requests import HTTPConnection
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from ..core.errors import ProblemError, answer, unavailable
+from ..core.errors import ProblemError, answer
 from ..settings import LOOPBACK
 from . import cookies
 from .authenticate import Authenticator
@@ -46,10 +46,8 @@ class PrincipalMiddleware:
         if scope["type"] == "http":
             try:
                 app = await self._identified(HTTPConnection(scope)) or self.app
-            except ProblemError as error:
-                app = answer(error.problem, error.headers)
-            except SQLAlchemyError as error:
-                app = unavailable(error)
+            except (ProblemError, OperationalError, TimeoutError) as error:
+                app = answer(error)
         await app(scope, receive, send)
 
     async def _identified(self, request: HTTPConnection) -> Response | None:

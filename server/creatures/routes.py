@@ -10,6 +10,7 @@ from fastapi.responses import JSONResponse, Response
 from microcosmos.archive import creature, creature_h5
 
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE, ShareAccessDep
+from ..core.api import sends
 from ..core.json_body import limited
 from ..core.schemas import Wire
 from ..core.static_files import IMMUTABLE
@@ -74,12 +75,7 @@ def attachment(row: Creature, ending: str) -> dict[str, str]:
     return {"Content-Disposition": f'attachment; filename="{name}"'}
 
 
-@router.get(
-    "/{sha}/creature.h5",
-    response_class=Response,
-    responses={200: {"content": {H5: {}}}},
-    dependencies=[MAY_READ_SHARED],
-)
+@router.get("/{sha}/creature.h5", **sends(H5), dependencies=[MAY_READ_SHARED])
 def read_creature_h5(row: CreatureDep, share: ShareAccessDep) -> Response:
     """Return the creature file as HDF5, with its body and genes as arrays."""
     headers = {"Cache-Control": "no-cache", **attachment(row, "h5")}
@@ -150,7 +146,6 @@ def _network_reader(form: str, media_type: str, description: str) -> Callable[..
 for form, (media_type, description, _) in networks.FORMS.items():
     router.get(
         f"/{{sha}}/network.{form}",
-        response_class=Response,
-        responses={200: {"content": {media_type: {}}}, 404: {}},
+        **sends(media_type, {404: {}}),
         dependencies=[MAY_READ_SHARED],
     )(_network_reader(form, media_type, description))

@@ -26,8 +26,8 @@ from microcosmos.archive.creature import CreatureError
 from microcosmos.naming import FORMAT, encode
 from microcosmos.spec import EXPERIMENTS
 
-from ..core import errors, json_body
-from ..core.errors import Problem, ProblemError
+from ..core import json_body
+from ..core.errors import Problem, ProblemError, problem_of
 from . import networks
 
 MEMORY = 256 << 20
@@ -117,12 +117,8 @@ def answer(request: bytes) -> bytes:
         if task == b"creature":
             return RESULT + b"\n" + json.dumps(creature_file(body)).encode()
         return RESULT + b"\n" + networks.write(body, task.decode())
-    except ProblemError as error:
-        problem = error.problem
-    except CreatureError as error:
-        problem = errors.bad_creature(error)
-    except ValidationError as error:
-        problem = errors.invalid(error)
+    except (ProblemError, CreatureError, ValidationError) as error:
+        problem = problem_of(error)
     except MemoryError:
         problem = _unreadable("it needs more memory than any creature file does")
     except Exception as error:  # Any error in a library is the fault of the file.

@@ -1,12 +1,12 @@
 """Routes of renderings: motion, films, pictures, audits and measurements of a creature."""
 
 from collections.abc import Callable
-from typing import Any
 
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE, ShareAccessDep
+from ..core.api import Answers, sends
 from ..core.errors import ProblemError
 from ..creatures.deps import CreatureDep
 from ..services.services import ServicesDep, SessionDep
@@ -16,7 +16,6 @@ from .responses import MEDIA_TYPES, ON_REQUEST, existing, existing_motion, order
 from .schemas import Measurement, Rendering
 
 router = APIRouter(prefix="/creatures/{sha}", tags=["creatures"])
-Answers = dict[int | str, dict[str, Any]]
 PENDING: Answers = {202: {"model": Rendering}}
 NOT_ORDERED: Answers = {204: {"description": "Nobody has ordered this measurement"}}
 
@@ -44,17 +43,13 @@ def _reader(kind: str) -> Callable[..., Response]:
 for kind in ON_REQUEST:
     router.get(
         f"/{kind}",
-        response_class=Response,
-        responses={200: {"content": {MEDIA_TYPES[kind]: {}}}, **PENDING},
+        **sends(MEDIA_TYPES[kind], PENDING),
         dependencies=[MAY_READ if kind in (AUDIT, PREVIEW) else MAY_READ_SHARED],
     )(_reader(kind))
 
 
 @router.get(
-    "/motion",
-    response_class=Response,
-    responses={200: {"content": {"application/octet-stream": {}}}, **PENDING},
-    dependencies=[MAY_READ_SHARED],
+    "/motion", **sends("application/octet-stream", PENDING), dependencies=[MAY_READ_SHARED]
 )
 def read_motion(
     request: Request,

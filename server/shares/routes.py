@@ -1,7 +1,7 @@
 """Routes of shares: publish, read, list, revoke."""
 
 import logging
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from pydantic import StringConstraints
@@ -11,6 +11,7 @@ from sqlalchemy.orm import Session
 
 from ..auth.authorize import PUBLIC, Reader, Writer, authorize_owner
 from ..auth.principal import ADMIN
+from ..core.api import sends
 from ..core.database import now
 from ..core.errors import ProblemError
 from ..core.json_body import json_route
@@ -72,10 +73,7 @@ def share(request: Request, slug: Slug, session: SessionDep) -> Share:
 
 
 ShareDep = Annotated[Share, Depends(share)]
-PNG: dict[int | str, dict[str, Any]] = {
-    200: {"content": {"image/png": {}}},
-    202: {"model": Rendering},
-}
+PNG = sends("image/png", {202: {"model": Rendering}})
 
 
 @router.get("/shares/{slug}", dependencies=[PUBLIC])
@@ -83,12 +81,7 @@ def read_share(request: Request, share: ShareDep, session: SessionDep) -> ShareR
     return share_read(request, session, share)
 
 
-@router.get(
-    "/shares/{slug}/preview.png",
-    response_class=Response,
-    responses=PNG,
-    dependencies=[PUBLIC],
-)
+@router.get("/shares/{slug}/preview.png", **PNG, dependencies=[PUBLIC])
 def read_preview(
     request: Request, share: ShareDep, session: SessionDep, services: ServicesDep
 ) -> Response:

@@ -14,10 +14,10 @@ from microcosmos.spec import Spec
 from ..core.errors import (
     FieldError,
     ProblemError,
-    bad_creature,
     brief,
     field_errors,
     invalid_fields,
+    problem_of,
 )
 from ..creatures import initial
 from ..runs.submission import TOO_LARGE, too_large
@@ -143,7 +143,7 @@ def refuse_initial(session: Session, plan: Plan) -> None:
         try:
             initial.check(session, case.spec)
         except CreatureError as error:
-            found = bad_creature(error).errors or []
+            found = problem_of(error).errors or []
             raise invalid_fields(*(_at_field(one, case) for one in found)) from error
 
 
