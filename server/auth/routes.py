@@ -1,6 +1,5 @@
 """Routes of tokens and of the session."""
 
-from typing import cast
 from uuid import UUID
 
 from fastapi import APIRouter, Request, Response
@@ -12,7 +11,6 @@ from .authenticate import Authenticator
 from .authorize import MAY_ADMINISTER, PUBLIC, Reader
 from .cookies import forget, remember
 from .middleware import address
-from .principal import Principal, Scope
 from .schemas import PrincipalRead, SignIn, TokenCreate, TokenCreated, TokenRead
 
 BODY_BYTES = 1 << 12
@@ -23,7 +21,7 @@ router = APIRouter(tags=["tokens"], route_class=json_route(BODY_BYTES))
 @router.get("/tokens/current")
 async def read_current(services: ServicesDep, principal: Reader) -> PrincipalRead:
     """Return the principal of the request."""
-    return _read(principal, services.settings.needs_token)
+    return PrincipalRead(**vars(principal), needed=services.settings.needs_token)
 
 
 @router.get("/tokens", dependencies=[MAY_ADMINISTER])
@@ -55,20 +53,11 @@ def sign_in(asked: SignIn, request: Request, response: Response) -> PrincipalRea
     except tokens.UnknownToken as error:
         raise authenticator.count(error, address(request)) from None
     remember(response, request, asked.token, principal.expires_at)
-    return _read(principal, authenticator.services.settings.needs_token)
+    needed = authenticator.services.settings.needs_token
+    return PrincipalRead(**vars(principal), needed=needed)
 
 
 @router.delete("/session", status_code=204, dependencies=[PUBLIC])
 async def sign_out(request: Request, response: Response) -> None:
     """Forget the cookie. The token stays valid."""
     forget(response, request)
-
-
-def _read(principal: Principal, needed: bool) -> PrincipalRead:
-    return PrincipalRead(
-        name=principal.name,
-        scope=cast(Scope, principal.scope),
-        token=principal.token,
-        expires_at=principal.expires_at,
-        needed=needed,
-    )

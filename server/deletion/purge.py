@@ -87,11 +87,8 @@ def remove_files(services: Services) -> bool:
 
 
 def _removed(services: Services, path: str) -> bool:
-    remove = (
-        services.artifacts.delete_folder if path.endswith("/") else services.artifacts.delete
-    )
     try:
-        remove(path)
+        services.artifacts.delete(path)
     except OSError as error:
         log.warning("will remove %s again: %s", path, error)
         return False

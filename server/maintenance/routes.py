@@ -13,7 +13,7 @@ from ..auth.authorize import MAY_ADMINISTER, MAY_READ, PUBLIC
 from ..core import static_files
 from ..core.schemas import Wire
 from ..services.services import ServicesDep, SessionDep
-from . import health
+from . import health_report
 
 router = APIRouter(tags=["health"])
 """Routes of the API."""
@@ -36,9 +36,9 @@ class Readiness(Wire):
 
 
 @router.get("/health", dependencies=[MAY_ADMINISTER])
-def read_health(services: ServicesDep) -> health.HealthReport:
+def read_health(services: ServicesDep) -> health_report.HealthReport:
     """Return the state of the database, the disk, Redis, the queues and the workers."""
-    return health.report(services)
+    return health_report.report(services)
 
 
 @outside.get("/healthz", dependencies=[PUBLIC])

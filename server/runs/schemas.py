@@ -7,6 +7,7 @@ from uuid import UUID
 from pydantic import AfterValidator, Field, StringConstraints, model_validator
 
 from ..core.schemas import Wire
+from ..specs.schemas import PictureRead
 from ..workers.schemas import RunBrief
 
 NAME_LENGTH = 200
@@ -161,16 +162,11 @@ class Species(Wire):
     members: list[list[int]]
 
 
-class Target(Wire):
+class Target(PictureRead):
     """A picture that a filament folds into, scaled to its world."""
 
-    name: str
-    width: int
-    height: int
     size: int
     """Cells of its longer side; its centre is that of the world."""
-    pixels: str
-    """Base64 of one byte a pixel, row by row from the top; 255 is ink."""
 
 
 class LogEntryRead(Wire):

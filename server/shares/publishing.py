@@ -1,8 +1,7 @@
 """Publish a creature or an archive as a share."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from secrets import token_urlsafe
+from typing import Any
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
@@ -26,25 +25,15 @@ COMPARED = (
 """Two shares with the same values are one."""
 
 
-@dataclass(frozen=True)
-class Subject:
-    """A creature or an archive to share, and what its file says already."""
+def shown(session: Session, sent: ShareCreate, principal: Principal) -> dict[str, Any]:
+    """Return the columns of what a request shares; raise `ProblemError` if it cannot be shared.
 
-    cover: str
-    title: str
-    licence: str
-    credit: Sequence[str]
-    creature: str | None = None
-    run: Run | None = None
-    generation: int | None = None
-
-
-def subject(session: Session, sent: ShareCreate, principal: Principal) -> Subject:
-    """Return the subject of a request; raise `ProblemError` if it cannot be shared."""
+    Title, licence and credit are those of the file.
+    """
     if sent.creature:
         row = find_creature(session, sent.creature)
-        title = f"Creature {row.sha256[:8]}"
-        return Subject(row.sha256, title, row.licence, row.credit, creature=row.sha256)
+        columns = {"creature": row.sha256, "title": f"Creature {row.sha256[:8]}"}
+        return {**columns, "cover": row.sha256, "licence": row.licence, "credit": row.credit}
     assert sent.run is not None
     run = find_run(session, sent.run)
     refuse_other(session, principal, run, "publish")
@@ -57,8 +46,9 @@ def subject(session: Session, sent: ShareCreate, principal: Principal) -> Subjec
         needed = f"at most {run.generation}, the run's last one"
         raise invalid_field("generation", needed, generation)
     best = session.get_one(Creature, _best(session, run, generation))
-    title = run.name or f"Archive {str(run.id)[:8]}"
-    return Subject(best.sha256, title, best.licence, [], run=run, generation=generation)
+    columns = {"run_id": run.id, "generation": generation}
+    columns |= {"title": run.name or f"Archive {str(run.id)[:8]}"}
+    return {**columns, "cover": best.sha256, "licence": best.licence, "credit": []}
 
 
 def _best(session: Session, run: Run, generation: int) -> str:
@@ -73,22 +63,17 @@ def _best(session: Session, run: Run, generation: int) -> str:
 def publish(session: Session, sent: ShareCreate, principal: Principal) -> tuple[Share, bool]:
     """Return the share and whether it is new: reuse a live one with the same content."""
     refuse_past(session, sent.expires_at)
-    of = subject(session, sent, principal)
     new = Share(
         slug=token_urlsafe(SLUG_BYTES),
-        creature=of.creature,
-        run_id=of.run.id if of.run else None,
-        generation=of.generation,
-        cover=of.cover,
-        title=sent.title or of.title,
-        credit=list(dict.fromkeys([*of.credit, *sent.credit])),
-        licence=sent.licence or of.licence,
         listed=sent.listed,
         expires_at=sent.expires_at,
         owner=principal.token,
+        **shown(session, sent, principal),
     )
+    new.title, new.licence = sent.title or new.title, sent.licence or new.licence
+    new.credit = list(dict.fromkeys([*new.credit, *sent.credit]))
     mine = Share.owner.is_not_distinct_from(principal.token)
-    for known in session.scalars(live().where(Share.cover == of.cover, mine)):
+    for known in session.scalars(live().where(Share.cover == new.cover, mine)):
         if all(getattr(known, name) == getattr(new, name) for name in COMPARED):
             return known, False
     session.add(new)

@@ -51,7 +51,8 @@ class PictureRead(Wire):
     """Base64 of one byte a pixel, row by row from the top; 255 is ink."""
 
 
-def _pictures(drawn: Iterable[tuple[str, Any]]) -> list[PictureRead]:
+def pictures(drawn: Iterable[tuple[str, Any]]) -> list[PictureRead]:
+    """Convert pictures, given by name and ink (row, column)."""
     return [
         PictureRead(
             name=name, width=ink.shape[1], height=ink.shape[0], pixels=targets.encoded(ink)
@@ -66,6 +67,6 @@ class DrawingRead(Wire):
     width: int
     height: int
     bodies: list[BodyRead]
-    pictures: Annotated[list[PictureRead], BeforeValidator(_pictures)]
+    pictures: Annotated[list[PictureRead], BeforeValidator(pictures)]
     picture_size: int
     """The longer side of a picture, in cells."""

@@ -71,14 +71,12 @@ class Artifacts:
                 yield piece
 
     def delete(self, path: str) -> None:
-        """Delete a file, if it exists."""
+        """Delete a file, or a folder if the path ends with a slash; it may be gone."""
         with suppress(FileNotFoundError):
-            self.files.rm_file(self._full(path))
-
-    def delete_folder(self, path: str) -> None:
-        """Delete a folder with its content, if it exists."""
-        with suppress(FileNotFoundError):
-            self.files.rm(self._full(path), recursive=True)
+            if path.endswith("/"):
+                self.files.rm(self._full(path), recursive=True)
+            else:
+                self.files.rm_file(self._full(path))
 
     def _rename(self, temporary: str, target: str) -> None:
         if not self.local:

@@ -187,15 +187,15 @@ def test_a_file_that_cannot_be_removed_is_removed_later(
     api, services, run_id, report, monkeypatch
 ):
     finish(services, run_id, report(1, {0: 1.0}))
-    whole = services.artifacts.delete_folder
+    whole = services.artifacts.delete
 
     def refuse(path):
         raise PermissionError(path)
 
-    monkeypatch.setattr(services.artifacts, "delete_folder", refuse)
+    monkeypatch.setattr(services.artifacts, "delete", refuse)
     delete_for_good(api, services, run_id)
     assert len(files(services)) == rows(services)["garbage_files"] == 1
-    monkeypatch.setattr(services.artifacts, "delete_folder", whole)
+    monkeypatch.setattr(services.artifacts, "delete", whole)
     reconcile(services)
     assert files(services) == []
     assert rows(services)["garbage_files"] == 0
