@@ -15,7 +15,7 @@ from sqlalchemy.orm import Session
 from microcosmos.archive.report import Report
 from microcosmos.sizes import size
 
-from ..core.database import clock
+from ..core.database import clock, retried
 from ..creatures import initial
 from ..runs import log
 from ..runs.announce import announce
@@ -34,7 +34,6 @@ from ..tables import (
 )
 from . import recording
 from .checkpoints import add_checkpoint, fall_back, newest_sound
-from .retry import retried
 
 logger = logging.getLogger(__name__)
 

@@ -1,12 +1,16 @@
-"""The database: engine, sessions, its clock, and inserts that tolerate existing rows."""
+"""The database: engine, sessions, clock, inserts that tolerate existing rows, and retries."""
 
-from collections.abc import Mapping, Sequence
+import logging
+import time
+from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime, timedelta
+from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar, cast
 
 from sqlalchemy import DateTime, Engine, create_engine, event, make_url, select
 from sqlalchemy.dialects import postgresql, sqlite
+from sqlalchemy.exc import OperationalError
 from sqlalchemy.ext.compiler import compiles
 from sqlalchemy.orm import Session, sessionmaker
 from sqlalchemy.sql.expression import FunctionElement
@@ -15,6 +19,10 @@ from sqlalchemy.types import TypeDecorator
 from ..settings import create_private
 
 TIMEOUT_MS = 15_000
+RETRY_SECONDS = 1.0
+
+F = TypeVar("F", bound=Callable[..., Any])
+log = logging.getLogger(__name__)
 
 
 class Moment(TypeDecorator[datetime]):
@@ -139,3 +147,24 @@ def _prepare_sqlite(connection: Any, _: Any) -> None:
 def _begin_sqlite(connection: Any) -> None:
     writer = connection.get_execution_options().get("writer")
     connection.exec_driver_sql("BEGIN IMMEDIATE" if writer else "BEGIN")
+
+
+def retried(method: F) -> F:
+    """Retry a method of an attempt while the database is away, for its `outage_seconds`.
+
+    Stop at once if its worker must stop.
+    """
+
+    @wraps(method)
+    def repeat(attempt: Any, *args: Any, **kwargs: Any) -> Any:
+        deadline = time.monotonic() + attempt.outage_seconds
+        while True:
+            try:
+                return method(attempt, *args, **kwargs)
+            except OperationalError as error:
+                if time.monotonic() >= deadline or attempt.stop_requested():
+                    raise
+                log.warning("Waiting for the database: %s", error)
+                time.sleep(RETRY_SECONDS)
+
+    return cast(F, repeat)

@@ -121,7 +121,7 @@ def import_creature(
     ancestors = file.pop("ancestors")
     with services.sessions.write.begin() as session:
         new = session.get(Creature, file["sha256"]) is None
-        creatures.add_all(session, [file, *ancestors])
+        creatures.add(session, file, *ancestors)
     response.status_code = 201 if new else 200
     response.headers["Location"] = f"/api/v1/creatures/{file['sha256']}"
     return CreatureName(creature=file["sha256"])

@@ -1,6 +1,6 @@
 """The archive file of a share: a copy of a checkpoint with its licence and credit."""
 
-from sqlalchemy import delete, select
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from microcosmos.archive import export
@@ -38,9 +38,3 @@ def copy_checkpoint(services: Services, share: Share) -> None:
 
 def find(session: Session, share: Share) -> Artifact | None:
     return session.get(Artifact, path(share))
-
-
-def remove_row(session: Session, share: Share) -> str | None:
-    """Delete the row of the file; return the path of the file, if there was one."""
-    rows = delete(Artifact).where(Artifact.path == path(share)).returning(Artifact.path)
-    return session.scalars(rows).one_or_none()

@@ -148,10 +148,12 @@ def revoke(slug: OwnSlug, request: Request, services: ServicesDep) -> ShareRead:
             raise ProblemError(404, "Not found", "Nothing is shared under this name.")
         if share.revoked_at is None:
             share.revoked_at = now(session)
-        stored = archive_files.remove_row(session, share)
+        stored = archive_files.find(session, share)
+        if stored:
+            session.delete(stored)
         read = share_read(request, session, share)
     if stored:
-        services.artifacts.delete(stored)
+        services.artifacts.delete(stored.path)
     return read
 
 

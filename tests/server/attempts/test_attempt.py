@@ -9,8 +9,9 @@ from fsspec.implementations.local import LocalFileSystem
 from sqlalchemy import update
 from sqlalchemy.exc import OperationalError
 
-from server.attempts import attempt, retry
+from server.attempts import attempt
 from server.attempts.claim import claim, claimed
+from server.core import database
 from server.runs import lifecycle
 from server.storage.artifacts import Artifacts
 from server.tables import Run
@@ -160,7 +161,7 @@ def test_a_running_run_cannot_be_claimed(services, run_id):
 @pytest.fixture
 def away(monkeypatch):
     """A database that is away for so many tries."""
-    monkeypatch.setattr(retry, "RETRY_SECONDS", 0)
+    monkeypatch.setattr(database, "RETRY_SECONDS", 0)
 
     def leave(tries):
         answers = [OperationalError("", {}, Exception("away"))] * tries
