@@ -56,7 +56,7 @@ def read_archive(
         cells=cells,
         axes=recorded_measures.axes(run),
         recorded=recorded,
-        **_columns(session.execute(elites.at(run, as_of, names, known)).all(), names),
+        **_columns(session.execute(elites.as_of(run, as_of, names, known)).all(), names),
     )
 
 

@@ -33,7 +33,7 @@ from ..tables import (
     Run,
 )
 from . import recording
-from .checkpoints import add_checkpoint, fall_back, newest_sound
+from .checkpoints import add_checkpoint, fall_back, newest_intact
 
 logger = logging.getLogger(__name__)
 
@@ -85,21 +85,21 @@ class Attempt:
 
     @retried
     def restore(self) -> bytes | None:
-        """Return the content of the newest sound checkpoint; None before the first one.
+        """Return the content of the newest intact checkpoint; None before the first one.
 
         Older checkpoints stand in for damaged ones, and what was recorded after them is
         deleted. Raise `CheckpointUnavailable`, and delete nothing, if a file is missing or all
         are damaged: then the store may be the wrong one, and a person has to decide. Call it
         before anything is recorded.
         """
-        data, sound, damaged = newest_sound(self.services, self.run_id)
-        if sound and damaged:
+        data, intact, damaged = newest_intact(self.services, self.run_id)
+        if intact and damaged:
             text = (
                 f"The checkpoint of generation {self.generation} is damaged; "
-                f"the run resumes from generation {sound.generation}."
+                f"the run resumes from generation {intact.generation}."
             )
             with self._current(warning=text) as (session, run):
-                fall_back(session, run, sound, damaged)
+                fall_back(session, run, intact, damaged)
                 log.note(session, run, text, "warning")
             logger.warning("run %s: %s (%s)", self.run_id, text, ", ".join(damaged))
             self.generation, self.seconds = run.checkpoint_generation, run.seconds

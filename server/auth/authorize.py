@@ -70,7 +70,7 @@ def refuse_other(session: Session, principal: Principal, row: Owned, action: str
     """Raise `ProblemError` unless the principal owns the row or is an admin."""
     if principal.may(ADMIN) or row.owner == principal.token:
         return
-    owner = tokens.names(session, [row.owner]).get(row.owner)
+    owner = tokens.owner_names(session, [row.owner]).get(row.owner)
     whose = f"belongs to `{owner}`" if owner else "was made without a token"
     (key,) = inspect(row).identity
     detail = (

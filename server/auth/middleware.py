@@ -67,7 +67,7 @@ class PrincipalMiddleware:
         if self.needs_token and bearer is None and method not in SAFE:
             # A browser sends cookies by itself, also for a page of another site.
             _refuse_foreign_origin(request.headers)
-        cookie = request.cookies.get(cookies.name(request)) if self.needs_token else None
+        cookie = request.cookies.get(cookies.cookie_name(request)) if self.needs_token else None
         token = cookie if bearer is None else bearer
         try:
             identify = self.authenticator.identify

@@ -27,7 +27,7 @@ async def read_current(services: ServicesDep, principal: Reader) -> PrincipalRea
 @router.get("/tokens", dependencies=[MAY_ADMINISTER])
 def list_tokens(session: SessionDep) -> list[TokenRead]:
     """Return all tokens, revoked ones too, newest first, without their secrets."""
-    return [TokenRead.model_validate(token) for token in tokens.known(session)]
+    return [TokenRead.model_validate(token) for token in tokens.all_tokens(session)]
 
 
 @router.post("/tokens", status_code=201, dependencies=[MAY_ADMINISTER])

@@ -113,7 +113,7 @@ def _ended(detail: str) -> ProblemError:
     return ProblemError(401, "Unauthorized", detail, headers=CHALLENGE)
 
 
-def known(session: Session) -> Sequence[Token]:
+def all_tokens(session: Session) -> Sequence[Token]:
     """Return all tokens, revoked ones too, newest first."""
     return session.scalars(select(Token).order_by(Token.created_at.desc(), Token.id)).all()
 
@@ -144,7 +144,7 @@ def revoke(services: Services, token: UUID, last: bool = False) -> Token:
     return found
 
 
-def names(session: Session, owners: Iterable[UUID | None]) -> dict[UUID | None, str]:
+def owner_names(session: Session, owners: Iterable[UUID | None]) -> dict[UUID | None, str]:
     """Return the names of owners, by id."""
     wanted = {owner for owner in owners if owner is not None}
     if not wanted:

@@ -94,7 +94,7 @@ def problem_of(error: Exception) -> Problem:
             found = [{**one, "loc": one["loc"][1:]} for one in error.errors()]
             return invalid_input(_fields(found))
         case CreatureError():
-            named = {"field": error.field, "needed": error.needed, "got": brief(error.got)}
+            named = {"field": error.field, "needed": error.needed, "got": shortened(error.got)}
             return invalid_input([FieldError(message=str(error), **named)])
         case HTTPException():
             return Problem(title=error.detail, status=error.status_code, detail=error.detail)
@@ -113,7 +113,7 @@ def invalid_fields(*errors: FieldError) -> ProblemError:
 
 
 def invalid_field(field: str, needed: str, got: Any) -> ProblemError:
-    return invalid_fields(_needs(field, needed, brief(got)))
+    return invalid_fields(_needs(field, needed, shortened(got)))
 
 
 def invalid_input(errors: list[FieldError]) -> Problem:
@@ -150,7 +150,7 @@ def _field_error(error: Mapping[str, Any], path: str) -> FieldError:
     needed = message.removeprefix("Input should be ")
     if error["type"] == "extra_forbidden":
         needed = "no field of this name"
-    got = brief(error["input"])
+    got = shortened(error["input"])
     if error["type"] in ("uuid_parsing", "uuid_type"):
         needed = "an id such as 1b4e28ba-2fa1-41d2-883f-0016d3cca427"
     if error["type"] == "missing":
@@ -163,7 +163,7 @@ def _needs(field: str, needed: str, got: Any) -> FieldError:
     return FieldError(field=field, message=message, needed=needed, got=got)
 
 
-def brief(value: Any) -> Any:
+def shortened(value: Any) -> Any:
     """Return a value that JSON can hold; shorten long texts."""
     if value is None or isinstance(value, bool | int | float):
         return value if abs(value or 0) < 1e308 else str(value)

@@ -78,9 +78,10 @@ def reason(run: Run, place: int, queue: QueueState) -> str:
     """Return a sentence about a run at this place of the queue, from 0."""
     if not queue.alive:
         return NO_WORKER
-    fit = [worker for worker in queue.alive if plugins.fit(worker, run.plugin_versions)]
+    versions = run.plugin_versions
+    fit = [worker for worker in queue.alive if plugins.has_versions(worker, versions)]
     if not fit:
-        return plugins.missing(queue.alive, run.spec)
+        return plugins.missing_plugins(queue.alive, run.spec)
     queue = replace(queue, alive=fit)
     before = queue.before(place)
     if before < 0:

@@ -81,7 +81,7 @@ def chosen(session: Session, run: Run, start: ForkStart, generation: int | None)
         needed = "`creatures`, since this run has no archive"
         raise invalid_field("from", needed, run.experiment)
     as_of = run.generation if generation is None else min(generation, run.generation)
-    archive = session.execute(elites.at(run, as_of)).all()
+    archive = session.execute(elites.as_of(run, as_of)).all()
     within = _selection(run, start)
     names = sorted({elite.creature for elite in archive if within(elite)})
     filled = {elite.cell for elite in archive}

@@ -1,4 +1,4 @@
-"""Answer requests for renderings: send the file, or order it."""
+"""Answer requests for renderings: send the file, or enqueue it."""
 
 from fastapi import Request
 from fastapi.responses import JSONResponse, Response
@@ -20,7 +20,7 @@ MEDIA_TYPES = {
     MEASUREMENT: "application/json",
 }
 ON_REQUEST = (REPLAY, AUDIT, STRIP, PREVIEW, GIF, MP4)
-"""Renderings that the first request for them orders."""
+"""Renderings that the first request for them enqueues."""
 
 
 def existing(
@@ -51,7 +51,7 @@ def existing_motion(
     return Response(content, headers=headers, media_type="application/octet-stream")
 
 
-def order(services: Services, sha: str, kind: str, *, anonymous: bool = False) -> Response:
-    """Order a rendering and return 202; raise `RenderingFailed` if the last try failed."""
-    storage.order(services, sha, kind, anonymous=anonymous)
+def enqueued(services: Services, sha: str, kind: str, *, anonymous: bool = False) -> Response:
+    """Enqueue a rendering and return 202; raise `RenderingFailed` if the last try failed."""
+    storage.enqueue(services, sha, kind, anonymous=anonymous)
     return JSONResponse(Rendering().model_dump(), 202, {"Retry-After": "1"})

@@ -12,7 +12,7 @@ from ..creatures.deps import CreatureDep
 from ..services.services import ServicesDep, SessionDep
 from ..tables import AUDIT, MEASUREMENT, PREVIEW, REPLAY
 from . import storage
-from .responses import MEDIA_TYPES, ON_REQUEST, existing, existing_motion, order
+from .responses import MEDIA_TYPES, ON_REQUEST, enqueued, existing, existing_motion
 from .schemas import Measurement, Rendering
 
 router = APIRouter(prefix="/creatures/{sha}", tags=["creatures"])
@@ -33,7 +33,7 @@ def _reader(kind: str) -> Callable[..., Response]:
             raise ProblemError(
                 404, "Not found", f"The share has no {storage.NOUNS[kind]} of it."
             )
-        return found or order(services, row.sha256, kind, anonymous=share is not None)
+        return found or enqueued(services, row.sha256, kind, anonymous=share is not None)
 
     read.__name__ = f"read_{kind.replace('.', '_')}"
     read.__doc__ = f"Return the {storage.NOUNS.get(kind, kind)}, or 202 while it is computed."
@@ -60,7 +60,7 @@ def read_motion(
 ) -> Response:
     """Return the body's motion from the replay, without the fluid, or 202."""
     found = existing_motion(request, row, session, services)
-    return found or order(services, row.sha256, REPLAY, anonymous=share is not None)
+    return found or enqueued(services, row.sha256, REPLAY, anonymous=share is not None)
 
 
 @router.post("/measure", status_code=202, dependencies=[MAY_WRITE])
@@ -69,7 +69,7 @@ def measure(row: CreatureDep, services: ServicesDep) -> Rendering:
     if not row.measured:
         detail = "The creature's file contains no measurement to compare a new one with."
         raise ProblemError(422, "Never measured", detail)
-    storage.order_again(services, row.sha256, MEASUREMENT)
+    storage.enqueue_again(services, row.sha256, MEASUREMENT)
     return Rendering()
 
 
@@ -91,4 +91,4 @@ def read_measurement(
     job = services.jobs.find(services.jobs.rendering_id(row.sha256, MEASUREMENT))
     if share or job is None:
         return Response(status_code=204)
-    return order(services, row.sha256, MEASUREMENT)
+    return enqueued(services, row.sha256, MEASUREMENT)

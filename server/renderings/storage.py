@@ -1,4 +1,4 @@
-"""Renderings of creatures: find, order, save and delete them."""
+"""Renderings of creatures: find, enqueue, save and delete them."""
 
 import re
 from typing import Any
@@ -50,12 +50,12 @@ def _is(creature: str, kind: str) -> ColumnElement[bool]:
     return (Artifact.creature == creature) & (Artifact.kind == kind)
 
 
-def order(
+def enqueue(
     services: Services, creature: str, kind: str = REPLAY, *, anonymous: bool = False
 ) -> None:
-    """Order a rendering, once; raise `RenderingFailed` if the last try failed.
+    """Enqueue a rendering, once; raise `RenderingFailed` if the last try failed.
 
-    An `anonymous` order goes last, and is not accepted while many wait.
+    An `anonymous` request goes last, and is not accepted while many wait.
     """
     job = services.jobs.find(services.jobs.rendering_id(creature, kind))
     status = job.get_status(refresh=False) if job else None
@@ -69,8 +69,8 @@ def order(
         services.jobs.render(creature, kind, anonymous=anonymous)
 
 
-def order_again(services: Services, creature: str, kind: str) -> None:
-    """Order a rendering in place of an earlier one, unless it is underway."""
+def enqueue_again(services: Services, creature: str, kind: str) -> None:
+    """Enqueue a rendering in place of an earlier one, unless it is underway."""
     job = services.jobs.find(services.jobs.rendering_id(creature, kind))
     if job is None or job.get_status(refresh=False) not in UNDERWAY:
         with services.sessions.write.begin() as session:
@@ -99,7 +99,7 @@ def save(services: Services, creature: str, kind: str, data: bytes) -> None:
 
 
 def existing(services: Services, creature: str, kind: str) -> bytes | None:
-    """Return a rendering if it exists and is sound."""
+    """Return a rendering if it exists and is intact."""
     with services.sessions.read() as session:
         row = find(session, creature, kind)
     return services.artifacts.read_verified(row.path, row.sha256) if row else None

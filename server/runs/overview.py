@@ -24,7 +24,7 @@ def read_runs(
     """Read runs; without the `queue`, queued ones have no reason for waiting."""
     curves = _curves(session, runs)
     reasons = position.reasons(services, session, runs) if queue else {}
-    names = tokens.names(session, (run.owner for run in runs))
+    names = tokens.owner_names(session, (run.owner for run in runs))
     return [
         _read(run, curves[run.id], reasons.get(run.id), names.get(run.owner)) for run in runs
     ]

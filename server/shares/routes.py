@@ -50,18 +50,18 @@ def publish(
         read = share_read(request, session, share)
     if share.run_id:
         archive_files.copy_checkpoint(services, share)
-    _order_preview(services, share.cover)
+    _enqueue_preview(services, share.cover)
     response.status_code = 201 if new else 200
     response.headers["Location"] = f"/api/v1/shares/{share.slug}"
     return read
 
 
-def _order_preview(services: Services, cover: str) -> None:
-    """Order the picture, so that it exists when the first visitor comes."""
+def _enqueue_preview(services: Services, cover: str) -> None:
+    """Enqueue the picture, so that it exists when the first visitor comes."""
     try:
         with services.sessions.read() as session:
             if renderings.find(session, cover, PREVIEW) is None:
-                renderings.order(services, cover, PREVIEW)
+                renderings.enqueue(services, cover, PREVIEW)
     except (RedisError, renderings.RenderingFailed) as error:
         log.warning("The preview of %s is left to its first visitor: %s", cover, error)
 
@@ -88,7 +88,7 @@ def read_preview(
     """Return a picture of the creature, or of the best of the archive; 202 while it is made."""
     cover = find_creature(session, share.cover)
     found = responses.existing(request, cover, session, services, PREVIEW)
-    return found or responses.order(services, share.cover, PREVIEW, anonymous=True)
+    return found or responses.enqueued(services, share.cover, PREVIEW, anonymous=True)
 
 
 @router.get("/shares")

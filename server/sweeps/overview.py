@@ -24,7 +24,7 @@ def read_sweeps(session: Session, sweeps: Sequence[Sweep]) -> list[SweepRead]:
         select(*columns).where(mine).order_by(Run.sweep, Run.sweep_index)
     ):
         of_sweeps[row.sweep].append(row)
-    owners = tokens.names(session, (sweep.owner for sweep in sweeps))
+    owners = tokens.owner_names(session, (sweep.owner for sweep in sweeps))
     return [_read(one, of_sweeps[one.id], owners.get(one.owner)) for one in sweeps]
 
 

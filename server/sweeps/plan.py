@@ -14,10 +14,10 @@ from microcosmos.spec import Spec
 from ..core.errors import (
     FieldError,
     ProblemError,
-    brief,
     field_errors,
     invalid_fields,
     problem_of,
+    shortened,
 )
 from ..creatures import initial
 from ..runs.submission import TOO_LARGE, too_large
@@ -98,7 +98,9 @@ def _seeds(sent: SweepCreate, document: dict[str, Any], parse: Parse) -> list[in
             f"a run of `{document['experiment']}` has no seed, so all runs would be the same; "
             "omit `seeds`"
         )
-        raise invalid_fields(FieldError(field="seeds", message=message, got=brief(sent.seeds)))
+        raise invalid_fields(
+            FieldError(field="seeds", message=message, got=shortened(sent.seeds))
+        )
     if isinstance(sent.seeds, list):
         return sent.seeds
     first, last = document["seed"], document["seed"] + sent.seeds - 1

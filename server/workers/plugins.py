@@ -89,12 +89,12 @@ def versions_of(worker: Worker) -> set[str]:
     return {one["source"] for one in worker.plugins}
 
 
-def fit(worker: Worker | None, needed: Sequence[str] | None) -> bool:
+def has_versions(worker: Worker | None, needed: Sequence[str] | None) -> bool:
     """Return whether a worker has all versions that a run needs."""
     return not needed or (worker is not None and set(needed) <= versions_of(worker))
 
 
-def missing(alive: Sequence[Worker], document: Any) -> str:
+def missing_plugins(alive: Sequence[Worker], document: Any) -> str:
     """Return a sentence about a run that none of the live workers can compute."""
     absent = {
         one.name: one.version.source

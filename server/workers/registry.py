@@ -56,7 +56,7 @@ def running(session: Session, alive: Sequence[Worker]) -> dict[str, Run]:
     return {str(run.worker): run for run in session.scalars(runs)}
 
 
-def brief(run: Run) -> RunBrief:
+def run_brief(run: Run) -> RunBrief:
     names = (name for name in RunBrief.model_fields if name != "progress")
     return RunBrief(**{name: getattr(run, name) for name in names}, progress=progress(run))
 

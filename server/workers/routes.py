@@ -5,7 +5,7 @@ from fastapi import APIRouter
 from ..auth.authorize import MAY_READ
 from ..services.services import ServicesDep, SessionDep
 from ..tables import Run, Worker
-from .registry import brief, live, running
+from .registry import live, run_brief, running
 from .schemas import PluginRead, WorkerRead
 
 router = APIRouter(prefix="/workers", tags=["workers"])
@@ -27,5 +27,5 @@ def _read(worker: Worker, run: Run | None) -> WorkerRead:
     return WorkerRead(
         **columns,
         run=run.id if run else reported,
-        current_run=brief(run) if run else None,
+        current_run=run_brief(run) if run else None,
     )
