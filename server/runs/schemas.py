@@ -105,7 +105,6 @@ class RunRead(RunBrief):
     spec: dict[str, Any]
     created_at: datetime
     queued_at: datetime
-    """When it last entered the queue."""
     started_at: datetime | None
     finished_at: datetime | None
     eta_seconds: float | None
@@ -115,7 +114,6 @@ class RunRead(RunBrief):
     coverage: float | None
     best: float | None
     summary: dict[str, Any] | None
-    """Figures of the whole result, if it is a table."""
     diverged: int
     sparkline: list[float]
     """QD scores, evenly spaced over the generations so far."""
@@ -127,7 +125,6 @@ class RunRead(RunBrief):
     """Name of the token that created it."""
     sweep: UUID | None
     deleted_at: datetime | None
-    """When it was moved to the bin."""
     purge_at: datetime | None
     """When it is deleted for good."""
     forked_from: ForkedFrom | None

@@ -61,7 +61,6 @@ class ShareRead(Wire):
     run: UUID | None
     generation: int | None
     cover: str
-    """The creature on its picture."""
     title: str
     credit: list[str]
     licence: str
