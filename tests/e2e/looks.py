@@ -103,8 +103,8 @@ async (tags) => {
     playState === "running" && Number.isFinite(effect?.getComputedTiming().endTime);
   await Promise.allSettled(document.getAnimations().filter(ends).map((one) => one.finished));
   const { violations } = await axe.run({ runOnly: { type: "tag", values: tags } });
-  const told = ({ target, failureSummary }) => [target.join(" "), failureSummary];
-  return violations.map(({ id, help, nodes }) => ({ id, help, nodes: nodes.map(told) }));
+  const pair = ({ target, failureSummary }) => [target.join(" "), failureSummary];
+  return violations.map(({ id, help, nodes }) => ({ id, help, nodes: nodes.map(pair) }));
 }
 """
 POINTS = ".mark"
@@ -113,7 +113,6 @@ which is what target size (WCAG 2.5.8) makes exceptions for."""
 
 
 def violations(page: Page) -> list[str]:
-    """Violations that axe finds on a page, with place and remedy."""
     page.evaluate(AXE.read_text())  # Pages run no script that is not the server's own.
     found: list[dict[str, Any]] = page.evaluate(RUN, RULES)
     return [

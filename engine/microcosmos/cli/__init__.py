@@ -1,6 +1,6 @@
-"""The command line. JAX is loaded only to compute."""
+"""The command line: each module registers its commands. JAX is loaded only to compute."""
 
-from . import (  # noqa: F401  (Importing a module registers its commands.)
+from . import (
     creature,
     doctor,
     draw,
@@ -14,5 +14,3 @@ from . import (  # noqa: F401  (Importing a module registers its commands.)
     sharing,
 )
 from .app import app
-
-__all__ = ["app"]

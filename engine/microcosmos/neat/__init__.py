@@ -9,22 +9,3 @@ from .numbering import Counters, first_counters, number
 from .rates import Rates
 from .settings import PRESETS, Settings
 from .species import Species
-
-__all__ = [
-    "OPERATORS",
-    "PRESETS",
-    "Coefficients",
-    "Counters",
-    "Novelty",
-    "Rates",
-    "Settings",
-    "Species",
-    "crossover",
-    "distance",
-    "first_counters",
-    "first_species",
-    "minimal",
-    "mutate",
-    "next_generation",
-    "number",
-]
