@@ -1,5 +1,4 @@
 """The tables. Rows are not wire types: those are in `schemas`."""
-# ruff: noqa: F401
 
 from .artifacts import (
     AUDIT,

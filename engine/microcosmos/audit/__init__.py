@@ -3,5 +3,3 @@
 from .derivatives import gradient, gradient_health
 from .physics import audit
 from .reproducibility import Check, check, measurement
-
-__all__ = ["Check", "audit", "check", "gradient", "gradient_health", "measurement"]

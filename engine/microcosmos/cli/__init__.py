@@ -1,6 +1,6 @@
 """The command line. JAX is loaded only to compute."""
 
-from . import (  # noqa: F401  (Importing a module registers its commands.)
+from . import (
     creature,
     doctor,
     draw,

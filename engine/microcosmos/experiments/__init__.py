@@ -7,8 +7,6 @@ from ..archive.report import Report
 from ..search import Stopped
 from .resume_check import OtherDevice
 
-__all__ = ["Experiment", "OtherDevice", "Report", "Stopped"]
-
 
 class Experiment(Protocol):
     """A run as pure functions of a state, which holds all that the next generation needs."""

@@ -18,7 +18,7 @@ from .. import neat, search
 from ..archive import file
 from ..genomes import Genotype
 from ..version import VERSION
-from .resume_check import OtherDevice, devices_of
+from .resume_check import devices_of
 from .state import (
     CURVES,
     ENDS,
@@ -31,8 +31,6 @@ from .state import (
     prolonged,
     start,
 )
-
-__all__ = ["OtherDevice", "restore", "save"]
 
 Module = TypeVar("Module", bound=eqx.Module)
 

@@ -1,8 +1,8 @@
 """Genotypes and encodings: inherited genes, and their development into moving creatures."""
 
 from .control import CPPNControl
-from .cppn import ACTIVATIONS, CPPN, depths, evaluate, minimal
-from .development import OUTPUTS, Controls, develop, linear, respond, sine_cosine
+from .cppn import ACTIVATIONS, CPPN, evaluate, minimal
+from .development import Controls, develop, linear, respond, sine_cosine
 from .direct import Direct
 from .encoding import Drive, Encoding
 from .fold import Fold, added, scaled
@@ -13,45 +13,3 @@ from .recurrent import advance
 from .shaping import Plan
 from .waves import fourier, phases, table, wave
 from .weights import Layers, Weights, forward
-
-__all__ = [
-    "ACTIVATIONS",
-    "CPPN",
-    "OUTPUTS",
-    "CPPNControl",
-    "Clock",
-    "Controls",
-    "Direct",
-    "Drive",
-    "Encoding",
-    "Fold",
-    "Genotype",
-    "Grown",
-    "Layers",
-    "Plan",
-    "PluginEncoding",
-    "Vector",
-    "Weights",
-    "added",
-    "advance",
-    "depths",
-    "develop",
-    "empty",
-    "evaluate",
-    "forward",
-    "fourier",
-    "from_genes",
-    "linear",
-    "minimal",
-    "phases",
-    "read",
-    "respond",
-    "scaled",
-    "sine_cosine",
-    "table",
-    "take",
-    "to_genes",
-    "wave",
-    "words",
-    "write",
-]

@@ -3,28 +3,9 @@
 from ..genomes import minimal
 from .crossover import crossover
 from .distance import Coefficients, distance
-from .generation import OPERATORS, first_species, next_generation
-from .mutation import Novelty, mutate
+from .generation import first_species, next_generation
+from .mutation import mutate
 from .numbering import Counters, first_counters, number
 from .rates import Rates
 from .settings import PRESETS, Settings
 from .species import Species
-
-__all__ = [
-    "OPERATORS",
-    "PRESETS",
-    "Coefficients",
-    "Counters",
-    "Novelty",
-    "Rates",
-    "Settings",
-    "Species",
-    "crossover",
-    "distance",
-    "first_counters",
-    "first_species",
-    "minimal",
-    "mutate",
-    "next_generation",
-    "number",
-]

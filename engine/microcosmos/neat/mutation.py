@@ -13,7 +13,7 @@ from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 from ..genomes import CPPN
 from .rates import Rates, bounded, one_of
 from .rng import Uniform, draws, rescaled
-from .rows import NONE, apart
+from .rows import apart
 from .structure import add_connection, add_node, delete_connection, delete_node
 
 DECISIONS = 10
@@ -30,12 +30,6 @@ class Novelty(eqx.Module):
     node_row: Int[Array, "*batch"]
     split_innovation: Int[Array, "*batch"]
     """Number of the split connection, or −1."""
-
-
-def nothing_new(children: int) -> Novelty:
-    """Return no new genes for any child."""
-    none = jnp.full(children, NONE)
-    return Novelty(none, none, none, none)
 
 
 def mutate(

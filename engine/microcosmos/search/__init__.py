@@ -1,54 +1,36 @@
 """Search: evaluation by blocks, variation, and insertion into an archive."""
 
-from . import cvt as cvt
-from . import emitters as emitters
-from . import folding as folding
-from . import gradients as gradients
-from . import reevaluation as reevaluation
-from .cells import Axis as Axis
-from .cells import Cells as Cells
-from .cells import Grid as Grid
-from .cells import Voronoi as Voronoi
-from .cells import voronoi as voronoi
-from .emitters import NO_PARENT as NO_PARENT
-from .emitters import OPERATORS as OPERATORS
-from .emitters import Children as Children
-from .emitters import Emitter as Emitter
-from .emitters import Outcome as Outcome
-from .evaluation import STATUSES as STATUSES
-from .evaluation import Actuator as Actuator
-from .evaluation import Evaluation as Evaluation
-from .evaluation import Goal as Goal
-from .evaluation import Stopped as Stopped
-from .evaluation import Task as Task
-from .evaluation import block_program as block_program
-from .evaluation import drive as drive
-from .evaluation import elsewhere as elsewhere
-from .evaluation import evaluate as evaluate
-from .evaluation import evaluate_blocks as evaluate_blocks
-from .evaluation import mapped as mapped
-from .evaluation import motion_of as motion_of
-from .evaluation import never as never
-from .evaluation import simulate as simulate
-from .gradient_report import Health as Health
-from .gradient_report import gradient_health as gradient_health
-from .gradients import Slopes as Slopes
-from .gradients import slopes as slopes
-from .insertion import Elites as Elites
-from .insertion import Inserted as Inserted
-from .insertion import candidates as candidates
-from .insertion import clipped as clipped
-from .insertion import digest as digest
-from .insertion import insert as insert
-from .insertion import insert_program as insert_program
-from .insertion import no_elites as no_elites
-from .measures import MEASURES as MEASURES
-from .measures import Measure as Measure
-from .measures import Motion as Motion
-from .measures import motion as motion
-from .measures import observe as observe
-from .strokes import STROKE_MEASURES as STROKE_MEASURES
-from .strokes import Conditions as Conditions
-from .strokes import impulse as impulse
-from .strokes import swim as swim
-from .strokes import watch as watch
+from . import cvt, emitters, folding, gradients, reevaluation
+from .cells import Axis, Cells, Grid, Voronoi, voronoi
+from .emitters import NO_PARENT, OPERATORS, Children, Emitter, Outcome
+from .evaluation import (
+    STATUSES,
+    Actuator,
+    Evaluation,
+    Goal,
+    Stopped,
+    Task,
+    block_program,
+    drive,
+    elsewhere,
+    evaluate,
+    evaluate_blocks,
+    mapped,
+    motion_of,
+    never,
+    simulate,
+)
+from .gradient_report import Health, gradient_health
+from .gradients import Slopes, slopes
+from .insertion import (
+    Elites,
+    Inserted,
+    candidates,
+    clipped,
+    digest,
+    insert,
+    insert_program,
+    no_elites,
+)
+from .measures import MEASURES, Measure, Motion, motion, observe
+from .strokes import STROKE_MEASURES, Conditions, impulse, swim, watch

@@ -4,5 +4,3 @@ from .film import gif, mp4
 from .notebook import filmed, show
 from .raster import frame
 from .replay_file import Replay, ReplayError, read_replay
-
-__all__ = ["Replay", "ReplayError", "filmed", "frame", "gif", "mp4", "read_replay", "show"]
