@@ -38,9 +38,6 @@ class Evolution:
     def done(self, state: State) -> bool:
         return bool(state.ended) or state.generation >= self.plan.generations
 
-    def generation(self, state: State) -> int:
-        return state.generation
-
     def advance(
         self, state: State, stop: Callable[[], bool] = search.never
     ) -> tuple[State, Report]:

@@ -68,8 +68,8 @@ def _row(stroke: Stroke, point: int, found: search.Evaluation, block: int, devic
         return Row(row)
     identity = stroke.identities[point]
     measured = measurement(measures["displacement"], measures, block=block, device=device)
-    name, canonical = naming.name(identity), naming.canonical(identity)
-    return Row(row, name, canonical, measured, naming.provenance("hand-made"))
+    name, provenance = naming.name(identity), naming.provenance("hand-made")
+    return Row(row, name, naming.canonical(identity), measured, provenance)
 
 
 def stack(points: list[search.Conditions]) -> search.Conditions:

@@ -58,6 +58,11 @@ class State:
     """Length of the longest trial of the next step."""
     table: Table
 
+    @property
+    def generation(self) -> int:
+        """Completed steps, including the first measurement of the creature."""
+        return self.table.generation
+
 
 @dataclass(frozen=True)
 class Refinement:
@@ -91,11 +96,7 @@ class Refinement:
         return State(genes, -np.inf, self.length, Table(0, (), (self.device,)))
 
     def done(self, state: State) -> bool:
-        return state.table.generation > self.steps
-
-    def generation(self, state: State) -> int:
-        """Completed steps, including the first measurement of the creature."""
-        return state.table.generation
+        return state.generation > self.steps
 
     def advance(
         self, state: State, stop: Callable[[], bool] = search.never
@@ -130,11 +131,8 @@ class Refinement:
 
     def restore(self, data: bytes, *, other_device: bool = False) -> State:
         table = table_file.restore(self.spec, self.device, data, other_device=other_device)
-        try:
-            kept = file.load(data)[0]["next"]
-            return State(kept["genes"], float(kept["fitness"]), float(kept["length"]), table)
-        except KeyError as error:
-            raise ValueError(f"a refinement's file must hold {error}, got none") from error
+        after = file.load(data)[0]["next"]
+        return State(after["genes"], float(after["fitness"]), float(after["length"]), table)
 
     def best(self, state: State) -> dict[str, Any] | None:
         if not state.table.rows:
@@ -181,7 +179,7 @@ class Refinement:
         )
         first = not state.table.rows
         values = {
-            "step": state.table.generation,
+            "step": state.generation,
             "fitness": float(found.fitness[best]),
             **{name: measures[name] for name in self.names},
         }
@@ -196,7 +194,7 @@ class Refinement:
         )
         refined = naming.provenance(
             "refinement",
-            generation=state.table.generation,
+            generation=state.generation,
             parents=[self.parent],
             seed=(self.provenance or {}).get("seed", 0),
         )
@@ -207,8 +205,8 @@ class Refinement:
     def _report(self, state: State, row: Row) -> Report:
         before = state.table.rows[0].values["fitness"]
         return Report(
-            generation=state.table.generation,
-            evaluations=1 + (1 + self.block) * (state.table.generation - 1),
+            generation=state.generation,
+            evaluations=1 + (1 + self.block) * (state.generation - 1),
             diverged=0,
             best=state.fitness,
             rows=(row,),
@@ -220,7 +218,7 @@ def _unchanged(state: State) -> Row:
     if not state.table.rows:
         raise ValueError("`creature` must be one whose simulation stays finite.")
     last = state.table.rows[-1]
-    return replace(last, values={**last.values, "step": state.table.generation})
+    return replace(last, values={**last.values, "step": state.generation})
 
 
 def trials_along(genes: np.ndarray, rows: np.ndarray, length: float, count: int) -> Trials:

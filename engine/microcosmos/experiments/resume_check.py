@@ -1,7 +1,7 @@
 """Check that a run can resume from a file: the same spec, the same kind of device."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 
@@ -10,7 +10,7 @@ class OtherDevice(ValueError):
 
 
 def devices_of(
-    spec: str, device: str, attributes: dict[str, str], other_device: bool
+    spec: str, device: str, attributes: Mapping[str, str], other_device: bool
 ) -> tuple[str, ...]:
     """Return the kinds of device of a file and, last, the present one.
 
