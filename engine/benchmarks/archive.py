@@ -125,8 +125,10 @@ def _ours(side: int, *, donate: bool) -> Peer:
     kept = [search.no_elites(grid.count, 2, genomes.Vector(jnp.zeros(GENES)))]
 
     def pack(genes: np.ndarray, fitness: np.ndarray, places: np.ndarray) -> search.Elites:
-        vectors, sound = genomes.Vector(jnp.asarray(genes)), jnp.ones(ROWS, bool)
-        return search.candidates(0, vectors, jnp.asarray(fitness), jnp.asarray(places), sound)
+        vectors, feasible = genomes.Vector(jnp.asarray(genes)), jnp.ones(ROWS, bool)
+        return search.candidates(
+            0, vectors, jnp.asarray(fitness), jnp.asarray(places), feasible
+        )
 
     def add(rows: search.Elites) -> object:
         kept[0], inserted = insert(kept[0], rows, grid)

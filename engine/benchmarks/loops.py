@@ -44,8 +44,8 @@ def ours(
             known = search.Slopes(rows, jnp.ones(len(rows), bool))
             children, state = emitter.learn(state, children, known)
         fitness, places = jax.vmap(function)(children.genotypes.values)  # pyright: ignore
-        sound = jnp.ones(len(fitness), bool)
-        found = search.candidates(number, children.genotypes, fitness, places, sound)
+        feasible = jnp.ones(len(fitness), bool)
+        found = search.candidates(number, children.genotypes, fitness, places, feasible)
         archive, inserted = search.insert(archive, found, cells)
         outcome = search.emitters.outcome(found, inserted)
         return (archive, emitter.tell(state, outcome)), None

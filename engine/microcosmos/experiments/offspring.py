@@ -38,24 +38,24 @@ class Taught:
 
     simulated: int = 0
     """Creatures simulated, forwards and backwards."""
-    sound: int = 0
+    finite: int = 0
     """Creatures with finite slopes."""
     norms: tuple[float, ...] = ()
-    """Lengths of the sound slopes of fitness."""
+    """Lengths of the finite slopes of fitness."""
 
     def summary(self) -> dict[str, float]:
         """Figures for the report; none if nothing was taught."""
         if not self.simulated:
             return {}
-        found = {"slopes: sound": self.sound / self.simulated}
+        found = {"slopes: finite": self.finite / self.simulated}
         return found | ({"slopes: length": float(np.median(self.norms))} if self.norms else {})
 
     def with_lesson(self, slopes: search.Slopes) -> "Taught":
-        sound = np.asarray(slopes.sound)
-        norms = np.linalg.norm(np.asarray(slopes.rows)[sound, 0], axis=-1)
+        finite = np.asarray(slopes.finite)
+        norms = np.linalg.norm(np.asarray(slopes.rows)[finite, 0], axis=-1)
         return Taught(
-            self.simulated + len(sound),
-            self.sound + int(sound.sum()),
+            self.simulated + len(finite),
+            self.finite + int(finite.sum()),
             self.norms + tuple(norms.tolist()),
         )
 

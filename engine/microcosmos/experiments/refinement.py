@@ -146,7 +146,7 @@ class Refinement:
         slopes = search.evaluate_blocks(
             self.slopes, self._genotypes(state.genes[None]), block=1, stop=stop
         )
-        rows = np.asarray(slopes.rows[0], np.float64) * bool(slopes.sound[0])
+        rows = np.asarray(slopes.rows[0], np.float64) * bool(slopes.finite[0])
         found = trials_along(state.genes, rows, state.length, self.block)
         if isinstance(self.genotype, Vector):
             return replace(found, genes=np.clip(found.genes, -1.0, 1.0))

@@ -40,9 +40,9 @@ def summary(rows: Sequence[Mapping[str, Any]]) -> dict[str, Value]:
     The part that depends on nodes is all but the fluid, whose cells do not change. Rows that
     did not stay finite are left out.
     """
-    sound = [row for row in rows if row["status"] == "ok"]
-    ours = [row for row in sound if row["method"] == "microcosmos"]
-    pairs = [row for row in sound if row["method"] == "all-pairs"]
+    finite = [row for row in rows if row["status"] == "ok"]
+    ours = [row for row in finite if row["method"] == "microcosmos"]
+    pairs = [row for row in finite if row["method"] == "all-pairs"]
     memory = [row["memory_bytes"] for row in ours if row["memory_bytes"] is not None]
     counts = sorted(row["nodes"] for row in ours)
     start = min(LINEAR_FROM, counts[-MIN_POINTS]) if len(counts) >= MIN_POINTS else LINEAR_FROM

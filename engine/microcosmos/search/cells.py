@@ -5,7 +5,7 @@ from collections.abc import Callable
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Bool, Float, Int
+from jaxtyping import Array, Float, Int
 from scipy.spatial import KDTree
 
 Measures = Float[Array, "row measure"]
@@ -115,12 +115,6 @@ def voronoi(axes: tuple[Axis, ...], centroids: Float[np.ndarray, "cell axis"]) -
 def places(measures: Measures, axes: tuple[Axis, ...]) -> Places:
     """Descriptors from 0 to 1 on the axes' own scales."""
     return jnp.stack([axis.place(measures[:, axis.measure]) for axis in axes], 1)
-
-
-def sound(measures: Measures, axes: tuple[Axis, ...]) -> Bool[Array, "row"]:
-    """Return whether all descriptors are finite."""
-    chosen = jnp.stack([measures[:, axis.measure] for axis in axes], 1)
-    return jnp.all(jnp.isfinite(chosen), 1)
 
 
 def boxes(cells: int, axes: int) -> int:

@@ -70,18 +70,18 @@ def update(descent: Descent, fold: Fold) -> tuple[Fold, Float[Array, ""]]:
     best genes at half the rate.
     """
     found, slope = jax.value_and_grad(partial(loss, descent))(fold.genes, fold.picture)
-    sound = jnp.isfinite(found) & jnp.all(jnp.isfinite(slope))
-    better = sound & (found < fold.least)
+    finite = jnp.isfinite(found) & jnp.all(jnp.isfinite(slope))
+    better = finite & (found < fold.least)
     best = jnp.where(better, fold.genes, fold.best)
     rate = descent.rate * fold.rate_share
-    change, moved = descend(fold.optimiser, jnp.where(sound, slope, 0.0), rate)
-    genes = jnp.where(sound, fold.genes + change, best)
+    change, moved = descend(fold.optimiser, jnp.where(finite, slope, 0.0), rate)
+    genes = jnp.where(finite, fold.genes + change, best)
     optimiser = jax.tree.map(
-        lambda new, fresh: jnp.where(sound, new, fresh), moved, begin(best)
+        lambda new, fresh: jnp.where(finite, new, fresh), moved, begin(best)
     )
     least = jnp.where(better, found, fold.least)
-    rate_share = jnp.where(sound, 1.0, 0.5) * fold.rate_share
-    loss_before = jnp.where(sound, found, jnp.nan)
+    rate_share = jnp.where(finite, 1.0, 0.5) * fold.rate_share
+    loss_before = jnp.where(finite, found, jnp.nan)
     return Fold(genes, optimiser, best, least, rate_share, fold.picture), loss_before
 
 

@@ -32,7 +32,7 @@ Build = Callable[[Any], tuple[Task, Actuator]]
 
 
 @dataclass(frozen=True)
-class Health:
+class GradientReport:
     """The report on the gradient of one measure by some parts."""
 
     of: str
@@ -69,14 +69,14 @@ class Health:
         ]
 
 
-def gradient_health(
+def report_gradient(
     build: Build,
     of: str = "fitness",
     by: tuple[str, ...] = ("genes",),
     *,
     starts: int = 8,
     seed: int = 0,
-) -> Health:
+) -> GradientReport:
     """Return the report for a creature; `build(dtype)` makes its task and actuator."""
     with jax.enable_x64(True):
         task, actuator = build(jnp.dtype("float64"))
@@ -94,7 +94,7 @@ def gradient_health(
     size = np.abs(own) / max(np.abs(own).sum(), 1e-30)
     lengths = np.linalg.norm(others, axis=1) * _length(own)
     end, observed = _simulated(driven)
-    return Health(
+    return GradientReport(
         of=of,
         by=by,
         value=float(found),

@@ -162,7 +162,7 @@ class Slopes(eqx.Module):
     """Derivatives by genes: of fitness first, then of every descriptor."""
 
     rows: Float[Array, "*block output gene"]
-    sound: Bool[Array, "*block"]
+    finite: Bool[Array, "*block"]
     """True if the simulation and all derivatives stayed finite."""
 
 
@@ -173,8 +173,8 @@ def slopes(
     values = parts(task, genotype, ("genes",))
     of = ("fitness", *descriptors)
     found, rows = value_and_jacobian(task, genotype, values, of, segment=segment)
-    sound = jnp.all(jnp.isfinite(found)) & jnp.all(jnp.isfinite(rows["genes"]))
-    return Slopes(jnp.nan_to_num(rows["genes"]), sound)
+    finite = jnp.all(jnp.isfinite(found)) & jnp.all(jnp.isfinite(rows["genes"]))
+    return Slopes(jnp.nan_to_num(rows["genes"]), finite)
 
 
 def unit(rows: Float[Array, "*block gene"]) -> Float[Array, "*block gene"]:

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int, UInt32
 
 from ..genomes import Genotype, words
-from .cells import Cells, sound
+from .cells import Cells
 
 MAX_INT = np.int32(np.iinfo(np.int32).max)
 SIGN_BIT = np.uint32(1 << 31)
@@ -44,13 +44,13 @@ def candidates(
     genotypes: Genotype,
     fitness: Float[Array, "row"],
     measures: Float[Array, "row measure"],
-    sound: Bool[Array, "row"],
+    feasible: Bool[Array, "row"],
 ) -> Elites:
-    """The creatures of a generation as candidates; those that are not `sound` never enter."""
+    """Return the creatures of a generation as candidates; infeasible ones never enter."""
     rows = len(fitness)
     slots = jnp.arange(rows, dtype=jnp.int32)
     generations = jnp.full(rows, generation, jnp.int32)
-    return Elites(sound, fitness, measures, generations, slots, genotypes)
+    return Elites(feasible, fitness, measures, generations, slots, genotypes)
 
 
 class Inserted(eqx.Module):
@@ -66,7 +66,7 @@ class Inserted(eqx.Module):
 
 
 def clipped(candidates: Elites, cells: Cells) -> int:
-    """Count the sound candidates beyond an end of an axis; its outer bins take them."""
+    """Count the feasible candidates beyond an end of an axis; its outer bins take them."""
     beyond = np.zeros(len(candidates.occupied), bool)
     for axis in cells.axes:
         value = np.asarray(candidates.measures)[:, axis.measure]
@@ -84,7 +84,8 @@ def insert(archive: Elites, candidates: Elites, cells: Cells) -> tuple[Elites, I
     """
     count, rows = archive.occupied.shape[0], candidates.occupied.shape[0]
     able = candidates.occupied & jnp.isfinite(candidates.fitness)
-    able &= sound(candidates.measures, cells.axes)
+    descriptors = jnp.stack([candidates.measures[:, axis.measure] for axis in cells.axes], 1)
+    able &= jnp.all(jnp.isfinite(descriptors), 1)
     cell = jnp.where(able, cells.of(candidates.measures), count)
     there = jnp.minimum(cell, count - 1)
     fresh = able & ~archive.occupied[there]

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, get_args
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -10,34 +10,14 @@ from jaxtyping import Array, Bool, Float
 
 from .. import units
 from ..filaments import Rest
+from ..spec.measures import Name
 from ..world import Measures, State, World, centre, edges_there, joints_there, mean
 
-MOTION = (
-    "displacement",
-    "bending_effort",
-    "stretching_effort",
-    "path_length",
-    "straightness",
-    "rotation",
-)
-MEASURES = (
-    *MOTION,
-    "hidden_nodes",
-    "connections",
-    "energy",
-    "mach",
-    "limited",
-    "reynolds",
-    "mean_speed",
-    "turning",
-    "curvature_mean",
-    "curvature_spread",
-    "symmetry",
-    "power",
-    "efficiency",
-    "nodes",
-)
+MEASURES: tuple[str, ...] = get_args(Name)
 """Measures of every elite, in this order; units in `docs/formats.md`."""
+
+MOTION = MEASURES[:6]
+"""Measures of the motion alone."""
 
 Curvature = Float[Array, "time joint"]
 Scalar = Float[Array, ""]

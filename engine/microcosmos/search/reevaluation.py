@@ -122,19 +122,19 @@ def add(
 
     `found` has a row for each cell; rows that are not `done` are ignored.
     """
-    old, sound = repeats, done & (found.status == 0)
-    n = old.count - old.failed + sound
-    share = jnp.where(sound, 1 / jnp.maximum(n, 1), 0.0)
-    step = jnp.where(sound, found.fitness - old.fitness, 0.0)
-    strayed = jnp.where(sound[:, None], found.measures - old.measures, 0.0)
+    old, feasible = repeats, done & (found.status == 0)
+    n = old.count - old.failed + feasible
+    share = jnp.where(feasible, 1 / jnp.maximum(n, 1), 0.0)
+    step = jnp.where(feasible, found.fitness - old.fitness, 0.0)
+    strayed = jnp.where(feasible[:, None], found.measures - old.measures, 0.0)
     mean = old.fitness + share * step
     cell = jnp.arange(done.shape[0])
     return Repeats(
         count=old.count + done,
-        failed=old.failed + (done & ~sound),
-        hits=old.hits + (sound & (cells.of(found.measures) == cell)),
+        failed=old.failed + (done & ~feasible),
+        hits=old.hits + (feasible & (cells.of(found.measures) == cell)),
         fitness=mean,
-        squares=old.squares + jnp.where(sound, step * (found.fitness - mean), 0.0),
+        squares=old.squares + jnp.where(feasible, step * (found.fitness - mean), 0.0),
         measures=old.measures + share[:, None] * strayed,
     )
 

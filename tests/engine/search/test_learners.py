@@ -36,8 +36,8 @@ def emitted(emitter, state, elites):
     return emit(state, elites, COUNTERS)
 
 
-def slopes(rows, sound=True):
-    return search.Slopes(jnp.asarray(rows, jnp.float32)[None], jnp.asarray([sound]))
+def slopes(rows, finite=True):
+    return search.Slopes(jnp.asarray(rows, jnp.float32)[None], jnp.asarray([finite]))
 
 
 def test_children_of_cma_mega_are_theta_and_combinations_of_unit_slopes():
@@ -93,7 +93,7 @@ def test_cma_mega_begins_anew_where_nothing_enters_and_stays_where_slopes_are_un
     emitter = mega()
     elites = archive(Vector(jnp.full(GENES, 0.2)), True)
     children, state = emitted(emitter, emitter.init(key=KEYS[0]), elites)
-    children, state = emitter.learn(state, children, slopes(np.ones((3, GENES)), sound=False))
+    children, state = emitter.learn(state, children, slopes(np.ones((3, GENES)), finite=False))
     np.testing.assert_allclose(children.genotypes.values, 0.2, atol=1e-7)
     state = emitter.tell(
         state, outcome_of(children.genotypes, np.zeros(SLOTS), entered=jnp.zeros(SLOTS, bool))
@@ -115,15 +115,15 @@ def test_a_lesson_is_one_step_of_the_given_length_up_the_wished_for_slope(lamarc
     children, wishes = emitted(lamarckian, lamarckian.init(key=KEYS[0]), archive(parent, True))
     before = np.asarray(jax.vmap(genes_of)(children.genotypes))
     rows = np.random.default_rng(1).normal(size=(SLOTS, 3, before.shape[1]))
-    sound = np.arange(SLOTS) != 2
-    told = search.Slopes(jnp.asarray(rows, jnp.float32), jnp.asarray(sound))
+    finite = np.arange(SLOTS) != 2
+    told = search.Slopes(jnp.asarray(rows, jnp.float32), jnp.asarray(finite))
     learnt, _ = jax.jit(lamarckian.learn)(wishes, children, told)
     moved = np.asarray(jax.vmap(genes_of)(learnt.genotypes)) - before
-    np.testing.assert_allclose(np.linalg.norm(moved, axis=1), 0.25 * sound, atol=1e-4)
+    np.testing.assert_allclose(np.linalg.norm(moved, axis=1), 0.25 * finite, atol=1e-4)
     unit = rows / np.linalg.norm(rows, axis=2, keepdims=True)
     wished = np.einsum("so,sog->sg", np.asarray(wishes.weights), unit)
     gain = np.sum(moved * wished, 1)
-    assert (gain[sound] > 0).all()
+    assert (gain[finite] > 0).all()
     assert np.array_equal(np.asarray(learnt.genotypes.innovation),
                           np.asarray(children.genotypes.innovation))  # fmt: skip
     assert {search.OPERATORS[i] for i in np.asarray(children.operator)} == {"lamarckian"}

@@ -67,7 +67,7 @@ class CmaMae:
 
     def tell(self, state: Climb, outcome: Outcome) -> Climb:
         here = state.thresholds[jnp.minimum(outcome.cell, self.cells - 1)]
-        height = jnp.where(outcome.sound, outcome.fitness - here, -jnp.inf)
+        height = jnp.where(outcome.feasible, outcome.fitness - here, -jnp.inf)
         order = jnp.argsort(-height, stable=True)
         strategy = es.strategy(state.z.shape[1], self.slots)
         distribution = es.update(state.distribution, state.z, order, strategy)

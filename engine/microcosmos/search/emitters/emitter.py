@@ -55,7 +55,7 @@ class Outcome(eqx.Module):
     genotypes: Genotype
     fitness: Float[Array, "slot"]
     measures: Float[Array, "slot measure"]
-    sound: Bool[Array, "slot"]
+    feasible: Bool[Array, "slot"]
     """True if the evaluation is feasible."""
     cell: Int[Array, "slot"]
     entered: Bool[Array, "slot"]
@@ -69,7 +69,7 @@ def outcome(candidates: Elites, inserted: Inserted) -> Outcome:
         genotypes=candidates.genotypes,
         fitness=candidates.fitness,
         measures=candidates.measures,
-        sound=candidates.occupied,
+        feasible=candidates.occupied,
         **vars(inserted),
     )
 

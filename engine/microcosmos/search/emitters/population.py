@@ -90,4 +90,4 @@ class Neat:
         return children, grown, counters
 
     def tell(self, state: Population, outcome: Outcome) -> Population:
-        return replace(state, fitness=jnp.where(outcome.sound, outcome.fitness, -jnp.inf))
+        return replace(state, fitness=jnp.where(outcome.feasible, outcome.fitness, -jnp.inf))

@@ -55,8 +55,8 @@ class TensorNeat:
 
     def tell(self, state: Foreign, outcome: Outcome) -> Foreign:
         _, whole = self.backend.population(self.backend.from_arrays(state.arrays))
-        sound = np.asarray(outcome.sound) & whole
-        fitness = np.where(sound, outcome.fitness, -np.inf).astype(np.float32)
+        feasible = np.asarray(outcome.feasible) & whole
+        fitness = np.where(feasible, outcome.fitness, -np.inf).astype(np.float32)
         return replace(state, fitness=fitness)
 
     def _untold(self, theirs: State, age: int) -> Foreign:

@@ -79,7 +79,7 @@ class QdaxEmitter:
             genes=outcome.genotypes.values,
             fitness=outcome.fitness,
             place=places(outcome.measures, self.cells.axes),
-            sound=outcome.sound & jnp.isfinite(outcome.fitness),
+            sound=outcome.feasible & jnp.isfinite(outcome.fitness),
         )
 
     def _learnt(self, state: Pending, repertoire: Any) -> PyTree[Array]:

@@ -51,13 +51,13 @@ def scoring_function(
         plain = isinstance(genotypes, jax.Array | np.ndarray)
         genotypes = Vector(jnp.asarray(genotypes)) if plain else genotypes
         found = evaluate(genotypes)
-        sound = (found.status == 0) & jnp.isfinite(found.fitness)
-        fitness = jnp.where(sound, found.fitness, -jnp.inf)
-        place = jnp.where(sound[:, None], places(found.measures, cells.axes), 0.0)
+        feasible = (found.status == 0) & jnp.isfinite(found.fitness)
+        fitness = jnp.where(feasible, found.fitness, -jnp.inf)
+        place = jnp.where(feasible[:, None], places(found.measures, cells.axes), 0.0)
         extra = {"measures": found.measures, "status": found.status}
         if slopes is not None:
             known = slopes(genotypes)
-            rows = jnp.where(known.sound[:, None, None], unit(known.rows), 0.0)
+            rows = jnp.where(known.finite[:, None, None], unit(known.rows), 0.0)
             extra["normalized_grads"] = jnp.swapaxes(rows, 1, 2)
         return fitness, place, extra
 

@@ -40,8 +40,8 @@ def sweep(rows: Sequence[Row]) -> Any:
         _dress(panel, form, here)
     panels[0].set_ylabel("displacement [cells a cycle]")
     for panel, form in zip(panels, forms, strict=True):
-        sound = _all_force_free(rows, form)
-        panel.set_ylim(0, _top([row for row in rows if _force_free(row) == sound]))
+        force_free = _all_force_free(rows, form)
+        panel.set_ylim(0, _top([row for row in rows if _force_free(row) == force_free]))
     _legend(figure, panels[0], rows)
     return figure
 

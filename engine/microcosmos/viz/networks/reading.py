@@ -152,8 +152,8 @@ def _table(field: str, table: np.ndarray, columns: tuple[str, ...]) -> np.ndarra
 def _whole(field: str, column: str, values: np.ndarray, low: int, high: int) -> np.ndarray:
     """Whole numbers from low to below high, −1 standing for an unused row."""
     used = ~np.isnan(values)
-    sound = (values == np.floor(values)) & (values >= low) & (values < high)
-    if (wrong := values[used & ~sound]).size:
+    valid = (values == np.floor(values)) & (values >= low) & (values < high)
+    if (wrong := values[used & ~valid]).size:
         raise ValueError(
             f"`{field}` must have a {column} that is whole, from {low} to {high - 1}, "
             f"got {wrong[0]:g}"
