@@ -16,6 +16,8 @@ import numpy as np
 from .. import search
 from ..archive.report import Elite, Report
 from ..genomes import Genotype
+from ..search.emitters.population import Population
+from ..search.emitters.tensorneat import TensorNeatState
 from . import archive_file, lineage, reevaluation
 from .offspring import Offspring, Programs, next_offspring, refuse_lacking
 from .state import CURVES, ENDS, MAX_DIVERGED, Diverged, Plan, State, start
@@ -200,8 +202,8 @@ def _divergences(status: np.ndarray) -> dict[str, int]:
 
 
 def _species(state: State) -> dict[str, str]:
-    for kept in state.emitters:
-        if isinstance(kept, search.emitters.Divided):
-            pairs = kept.sizes().items()
+    for emitter in state.emitters:
+        if isinstance(emitter, Population | TensorNeatState):
+            pairs = emitter.sizes().items()
             return {"species": " ".join(f"{number}:{members}" for number, members in pairs)}
     return {}

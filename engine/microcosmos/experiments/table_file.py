@@ -5,7 +5,7 @@ a computed table (not one of measured times) gives the same bytes every time.
 """
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -66,7 +66,7 @@ class TableRun:
         return None  # Rows do not compete.
 
 
-def save(spec: str, table: Table, arrays: file.Tree | None = None) -> bytes:
+def save(spec: str, table: Table, arrays: Mapping[str, Any] | None = None) -> bytes:
     """Rows as columns, numbers as float64, words as bytes; identities as one JSON text.
 
     `arrays` are further groups of the file.

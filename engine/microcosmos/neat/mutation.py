@@ -52,11 +52,8 @@ def mutate(
         network = delete_connection(network, rates.delete_connection, some[1])
     network = apart(network)
     splittable = network.connection_used & network.enabled
-    vary, link, node = (
-        some[2] < rates.values,
-        some[3] < rates.add_connection,
-        some[4] < rates.add_node,
-    )
+    vary, link = some[2] < rates.values, some[3] < rates.add_connection
+    node = some[4] < rates.add_node
     if rates.separate:
         vary = vary & ~link & ~node
     network = mutate_values(network, vary, rates, inputs, values)
@@ -110,10 +107,8 @@ def _vary(
 ) -> Float[Array, "gene"]:
     """Perturb or redraw genes; one draw decides and, rescaled, gives the step or value."""
     new, either = rates.replace, rates.replace + (1 - rates.replace) * rates.weight
-    again = jnp.where(
-        uniform < new, rescaled(uniform, 0.0, new), rescaled(uniform, new, either)
-    )
-    drawn = rates.draw(again).astype(values.dtype)
+    replaced, perturbed = rescaled(uniform, 0.0, new), rescaled(uniform, new, either)
+    drawn = rates.draw(jnp.where(uniform < new, replaced, perturbed)).astype(values.dtype)
     varied = jnp.where(uniform < either, values + rates.weight_step * drawn, values)
     varied = jnp.where(uniform < new, rates.new_step * drawn, varied)
     return jnp.where(used, bounded(varied, rates), values)

@@ -173,7 +173,7 @@ def test_its_best_creature_is_a_sound_file_and_there_is_none_at_first(course):
 @pytest.mark.parametrize("name", marked(*LEARNERS))
 def test_simulations_that_teach_are_counted(name, course_of):
     with jax.numpy_rank_promotion("allow"):
-        states, reports, _, _ = course_of(name)
+        states, reports, experiment, _ = course_of(name)
     assert np.asarray(states[-1].elites.occupied).sum() > 1
     taught = {"cma-mega": 5, "lamarckian": 40}.get(experiment.plan.names[0], 0)
     assert states[-1].evaluations == 40 + taught

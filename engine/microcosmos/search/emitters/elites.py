@@ -11,7 +11,7 @@ from jaxtyping import Array, Int, PRNGKeyArray
 from ...genomes import Genotype
 from ...neat import Counters
 from ..insertion import Elites
-from .emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
+from .emitter import NO_PARENT, OPERATORS, Children, Keys, Stateless
 
 Newcomer = Callable[..., Any]
 """`newcomer(key=...)` makes a random genotype."""
@@ -22,11 +22,6 @@ def draw(archive: Elites, *, key: PRNGKeyArray) -> Int[Array, ""]:
     total = jnp.sum(archive.occupied)
     rank = jax.random.randint(key, (), 0, jnp.maximum(1, total))
     return jnp.argmax(jnp.cumsum(archive.occupied) > rank)
-
-
-def genotype(archive: Elites, cell: Int[Array, ""]) -> Genotype:
-    """Return the genotype of a cell's elite."""
-    return jax.tree.map(lambda x: x[cell], archive.genotypes)
 
 
 def newcomers(newcomer: Newcomer, keys: Keys) -> Children:
@@ -55,19 +50,13 @@ def either(archive: Elites, varied: Children, fresh: Children) -> Children:
 
 
 @dataclass(frozen=True)
-class Random:
+class Random(Stateless):
     """New random genotypes in every generation."""
 
     slots: int
     newcomer: Newcomer
 
-    def init(self, *, key: PRNGKeyArray) -> None:
-        return None
-
     def emit(
         self, state: None, archive: Elites, counters: Counters, *, keys: Keys
     ) -> tuple[Children, None, Counters]:
         return newcomers(self.newcomer, keys), None, counters
-
-    def tell(self, state: None, outcome: Outcome) -> None:
-        return None

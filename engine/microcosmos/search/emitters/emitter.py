@@ -75,15 +75,6 @@ def outcome(candidates: Elites, inserted: Inserted) -> Outcome:
 
 
 @runtime_checkable
-class Divided(Protocol):
-    """The state of an emitter with a population that is divided into species."""
-
-    def sizes(self) -> dict[int, int]:
-        """Members of each species of the last children, by its number."""
-        ...
-
-
-@runtime_checkable
 class Emitter(Protocol):
     """A source of children in a fixed number of slots; its state is arrays."""
 
@@ -99,12 +90,22 @@ class Emitter(Protocol):
     def emit(
         self, state: Kept, archive: Elites, counters: Counters, *, keys: Keys
     ) -> tuple[Children, Kept, Counters]:
-        """Children, with a key for each slot; new genes are numbered by `counters`."""
+        """Return children, one for each key; `counters` number new genes."""
         ...
 
     def tell(self, state: Kept, outcome: Outcome) -> Kept:
         """Return the state once its children are measured and inserted."""
         ...
+
+
+class Stateless:
+    """The part of an emitter that has no state and learns nothing."""
+
+    def init(self, *, key: PRNGKeyArray) -> None:
+        return None
+
+    def tell(self, state: None, outcome: Outcome) -> None:
+        return None
 
 
 @runtime_checkable
@@ -117,7 +118,7 @@ class Learner(Emitter, Protocol):
         ...
 
     def asks(self, state: Kept, children: Children) -> Genotype:
-        """Genotypes, their number first, whose derivatives are wanted."""
+        """Return the genotypes whose derivatives are wanted, their number first."""
         ...
 
     def learn(self, state: Kept, children: Children, slopes: Slopes) -> tuple[Children, Kept]:

@@ -30,6 +30,7 @@ class Population(eqx.Module):
     """Generations emitted so far."""
 
     def sizes(self) -> dict[int, int]:
+        """Return the number of members of each living species, by its number."""
         alive = np.asarray(self.species.alive)
         rows = (np.asarray(self.species.number), np.asarray(self.species.members))
         return dict(zip(*(row[alive].tolist() for row in rows), strict=True))
