@@ -52,16 +52,12 @@ def require_agreement(what: str, one: Network, other: Network) -> None:
     if not agree(before, after):
         with np.errstate(all="ignore"):
             worst = np.nanmax(np.abs(before - after) / np.maximum(1, np.abs(before)))
+        bound = min(one.bound, other.bound)
+        reason = f" (only one of the two keeps values within ±{bound:g})"
         raise ValueError(
             f"{what} must compute the same within {TOLERANCE:g} of max(1, |value|), "
-            f"got a difference of {worst:.3g}{_beyond(one, other)}"
+            f"got a difference of {worst:.3g}{reason * (one.bound != other.bound)}"
         )
-
-
-def _beyond(one: Network, other: Network) -> str:
-    if one.bound == other.bound:
-        return ""
-    return f" (only one of the two keeps values within ±{min(one.bound, other.bound):g})"
 
 
 def _value(network: Network, node: Node, values: dict[int, np.ndarray]) -> np.ndarray:
@@ -71,9 +67,7 @@ def _value(network: Network, node: Node, values: dict[int, np.ndarray]) -> np.nd
         return _emitted(network, node, np.zeros_like(old)) if network.rule == "always" else old
     sources = np.stack([values[link.source] for link in links])
     weights = np.array([link.weight for link in links])[:, None]
-    live = np.ones(sources.shape, bool)
-    if network.rule == "live":
-        live = ~np.isnan(sources)
+    live = ~np.isnan(sources) if network.rule == "live" else np.ones(sources.shape, bool)
     new = _emitted(network, node, AGGREGATIONS[node.aggregation](weights * sources, live))
     return np.where(live.any(0), new, old)
 
