@@ -83,12 +83,13 @@ def palette(name: str) -> Any:
 
 def shades(values: np.ndarray, colours: str) -> Any:
     """Return the colours of values from their least to their greatest."""
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
+    return require("matplotlib.cm").ScalarMappable(linear_scale(values), palette(colours))
 
+
+def linear_scale(values: np.ndarray) -> Any:
+    """Return the scale from the least to the greatest value."""
     low, high = float(values.min()), float(values.max())
-    scale = Normalize(low, high if high > low else low + 1)
-    return ScalarMappable(scale, palette(colours))
+    return require("matplotlib.colors").Normalize(low, high if high > low else low + 1)
 
 
 def colour_bar(panel: Any, drawn: Any, label: str, *, pad: float, aspect: int) -> None:
@@ -98,21 +99,15 @@ def colour_bar(panel: Any, drawn: Any, label: str, *, pad: float, aspect: int) -
 
 def millimetres(width: str) -> float:
     """Return the width in mm of `single`, `double`, `85mm`, `3.5in`, or a number of mm."""
-    found = re.fullmatch(r"([0-9.]+) *(mm|cm|in|)", width.strip())
-    try:
-        size = COLUMNS.get(width) or float(found[1]) * _unit(found[2])  # pyright: ignore
-    except (TypeError, ValueError):
-        size = 0.0
+    found = re.fullmatch(r"(\d+\.?\d*|\.\d+) *(mm|cm|in|)", width.strip())
+    unit = {"cm": 10.0, "in": INCH}.get(found[2], 1.0) if found else 0.0
+    size = COLUMNS.get(width) or (float(found[1]) * unit if found else 0.0)
     if not 20 <= size <= 1000:
         raise ValueError(
             f"`width` must be single ({COLUMNS['single']:g} mm), double "
             f"({COLUMNS['double']:g} mm), or 20 to 1000 mm as in 120mm or 3.5in; got {width!r}."
         )
     return size
-
-
-def _unit(name: str) -> float:
-    return {"cm": 10.0, "in": INCH}.get(name, 1.0)
 
 
 def blank(width: float, height: float) -> Any:
@@ -141,6 +136,11 @@ def tidy(panel: Any) -> None:
     for side in ("left", "right", "top", "bottom"):
         panel.spines[side].set_color(GREY)
     panel.tick_params(colors="#333b40", which="both", labelsize=9)
+
+
+def legend_below(figure: Any, entries: tuple[list, list], columns: int) -> None:
+    place = {"loc": "outside lower center", "ncols": columns}
+    figure.legend(*entries, **place, frameon=False, fontsize=9)
 
 
 def refuse_lacking(rows: Sequence[Row], names: Sequence[str]) -> None:
