@@ -8,6 +8,7 @@ import json
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import zip_longest
 from typing import Any
 
 import jax
@@ -44,7 +45,7 @@ class Taught:
     """Lengths of the finite slopes of fitness."""
 
     def summary(self) -> dict[str, float]:
-        """Figures for the report; none if nothing was taught."""
+        """Return figures for the report; none if nothing was taught."""
         if not self.simulated:
             return {}
         found = {"slopes: finite": self.finite / self.simulated}
@@ -85,15 +86,13 @@ class Offspring:
     """Start of lessons and evaluation, of the monotonic clock."""
     names: np.ndarray
     """Names of the creatures that parents were drawn from, by cell."""
-    untold: tuple[Any, ...] | None = None
-    """The earlier state of each emitter some of whose children were replaced; else None."""
+    before: tuple[tuple[Any] | None, ...] = ()
+    """The earlier state of each emitter some of whose children were replaced."""
 
-    def kept(self, states: tuple[Any, ...]) -> tuple[Any, ...]:
+    def allowed(self, states: tuple[Any, ...]) -> tuple[Any, ...]:
         """Return the states; an emitter must not learn from children that replaced its own."""
-        if self.untold is None:
-            return states
-        pairs = zip(states, self.untold, strict=True)
-        return tuple(new if before is None else before[0] for new, before in pairs)
+        pairs = zip_longest(states, self.before)
+        return tuple(old[0] if old else new for new, old in pairs)
 
 
 def refuse_lacking(plan: Plan) -> None:
@@ -158,26 +157,26 @@ def _replaced(
     initial: InitialCreatures,
     places: np.ndarray,
 ) -> Offspring:
-    children, count = offspring.children, len(places)
+    count = len(places)
 
-    def put(values: Any, new: Any) -> np.ndarray:
-        return np.concatenate([np.asarray(new), np.asarray(values)[count:]])
+    def put(old: Any, new: Any) -> np.ndarray:
+        return np.concatenate([np.asarray(new), np.asarray(old)[count:]])
 
-    own = jax.tree.map(lambda x: x[places], initial.genotypes)
-    parents = np.stack([places, np.full(count, search.NO_PARENT)], 1).astype(np.int32)
-    code = np.full(count, search.OPERATORS.index("fork"), np.int32)
-    old, form = jax.tree.flatten(children)
-    new = jax.tree.leaves((own, parents, code))  # In the order of the fields of `Children`.
-    whole = jax.tree.unflatten(form, [put(*pair) for pair in zip(old, new, strict=True)])
-    ends = np.cumsum([emitter.slots for emitter in plan.emitters])
-    begins = [0, *ends[:-1].tolist()]
+    parents = np.stack([places, np.full(count, search.NO_PARENT)], 1)
+    new = search.Children(
+        genotypes=jax.tree.map(lambda x: x[places], initial.genotypes),
+        parents=jnp.asarray(parents, jnp.int32),
+        operator=jnp.full(count, search.OPERATORS.index("fork"), jnp.int32),
+    )
+    children = jax.tree.map(put, offspring.children, new)
+    begins = np.cumsum([0, *(emitter.slots for emitter in plan.emitters[:-1])]).tolist()
     pairs = zip(state.emitters, begins, strict=True)
     # A population's networks are these very creatures.
-    untold = tuple(
+    before = tuple(
         (kept,) if first < count and not isinstance(kept, Population) else None
         for kept, first in pairs
     )
-    return replace(offspring, children=whole, untold=untold)
+    return replace(offspring, children=children, before=before)
 
 
 def _teach(

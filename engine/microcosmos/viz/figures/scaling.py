@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
+from ...sizes import size
 from .style import COLOURS, GREY, INCH, Row, blank, legend_below, look, refuse_lacking, tidy
 
 NEEDED = ("method", "nodes", "seconds")
@@ -40,8 +41,7 @@ def scaling(rows: Sequence[Row], summary: Row | None = None) -> Any:
     _dress(time, "time of 1,000 steps [s]")
     _dress(memory, "memory")
     legend_below(figure, time.get_legend_handles_labels(), 4)
-    memory.set_yscale("log", base=2)
-    memory.yaxis.set_major_formatter(_bytes)
+    memory.yaxis.set_major_formatter(lambda count, _: size(count))
     return figure
 
 
@@ -69,10 +69,3 @@ def _proportional(panel: Any, rows: Sequence[Row]) -> None:
 def _dress(panel: Any, what: str) -> None:
     panel.set(xscale="log", yscale="log", xlabel="nodes, n", ylabel=what)
     tidy(panel)
-
-
-def _bytes(value: float, _: int) -> str:
-    power = 0
-    while value >= 1024 and power < 4:
-        value, power = value / 1024, power + 1
-    return f"{value:.3g} {('B', 'KiB', 'MiB', 'GiB', 'TiB')[power]}"
