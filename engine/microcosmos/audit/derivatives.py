@@ -24,7 +24,7 @@ def gradient(
     horizon: int | None = None,
     segment: int | None = None,
 ) -> tuple[dict[str, float], dict[str, dict[str, np.ndarray]]]:
-    """Measures of a creature, and for each its derivatives by parts of the creature.
+    """Return measures of a creature, and for each its derivatives by parts of the creature.
 
     Names are those of `search.gradients.parts` and of the measures. `horizon` is the number of
     steps; with `segment`, reverse mode keeps so many steps in memory and repeats the others.

@@ -20,7 +20,14 @@ from ..device import compiler_options, device_kind
 from ..filaments import Rest
 from ..genomes import Drive
 from ..viz.replay import CELL_STEPS, actuator_of, unmeasured
-from .variants import body_of, other_delta, reciprocal, refine, tireless, with_other_delta
+from .variants import (
+    body_of,
+    other_delta,
+    reciprocal,
+    refine,
+    strong,
+    with_other_delta,
+)
 
 AGREEING_RANGE = (0.5, 2.0)
 """Range of displacement, relative to the recorded one, that counts as the same swimming.
@@ -81,7 +88,7 @@ def audit(file: Mapping[str, Any]) -> dict[str, Any]:
     body, rest = _developed(scene, driven, rest)
     refined, _ = _simulate_rest(*refine(scene, rest, body))
     other, _ = _simulate_rest(with_other_delta(scene, body), rest)
-    back, _ = _simulate_rest(tireless(scene, body), reciprocal(rest))
+    back, _ = _simulate_rest(strong(scene, body), reciprocal(rest))
     rows = [
         *_simulation_rows(scene, nominal),
         _agreement_row(

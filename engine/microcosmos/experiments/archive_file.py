@@ -158,13 +158,13 @@ def _genotypes(state: State, columns: dict[str, np.ndarray]) -> Genotype:
 
 
 def leaves(tree: PyTree[Array]) -> dict[str, np.ndarray]:
-    """Arrays of a tree by their paths."""
+    """Return the arrays of a tree by their paths."""
     found = jax.tree_util.tree_leaves_with_path(tree)
     return {_path_of(path): np.asarray(leaf) for path, leaf in found}
 
 
 def filled(tree: PyTree[Array], arrays: dict[str, np.ndarray]) -> PyTree[Array]:
-    """A tree of the same structure with the arrays of `leaves`."""
+    """Return a tree of the same structure with the arrays of `leaves`."""
     return jax.tree_util.tree_map_with_path(
         lambda path, old: jnp.asarray(arrays[_path_of(path)], old.dtype), tree
     )

@@ -143,7 +143,7 @@ def measurement(
 def _forebears(
     names: np.ndarray, nearest_ancestors: np.ndarray, parents: np.ndarray
 ) -> np.ndarray:
-    """Recorded creatures (slot, 2, 32) that the children of parents (slot, 2) descend from.
+    """Return recorded creatures (slot, 2, 32) that descendants of parents (slot, 2) come from.
 
     A parent from the archive is recorded. A parent from the last generation may not be: then
     its own nearest recorded ancestors take its place.

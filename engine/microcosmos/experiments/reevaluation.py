@@ -80,7 +80,7 @@ def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bo
 
 
 def figures(programs: Programs, state: State) -> tuple[float, float, float]:
-    """Corrected QD score and coverage, and how often a repeat fell into its own cell."""
+    """Return corrected QD score and coverage, and the share of repeats in their own cell."""
     count = np.asarray(state.repeats.count)
     if not count.any():
         return np.nan, np.nan, np.nan

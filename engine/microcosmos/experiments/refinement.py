@@ -37,15 +37,14 @@ class Trials:
     slope: float | None = None
     """Length of the slope of fitness; None if the present genes alone are tried."""
 
-    def health(self, before: float, fitness: np.ndarray) -> dict[str, float | None]:
-        """The reliability of the gradient: `agreement` is the gain of the shortest trial along
-        it over the gain that the slope predicts."""
+    def agreement(self, before: float, fitness: np.ndarray) -> float | None:
+        """Return the gain of the shortest trial over the gain that the slope predicts."""
         if not self.slope:
-            return {"slope": self.slope, "agreement": None}
+            return None
         shortest = 2 * ((len(self.lengths) - 1) // 2)
         predicted = self.lengths[shortest] * self.slope
         agreement = (float(fitness[shortest]) - before) / predicted
-        return {"slope": self.slope, "agreement": agreement if np.isfinite(agreement) else None}
+        return agreement if np.isfinite(agreement) else None
 
 
 @dataclass(frozen=True)
@@ -114,8 +113,8 @@ class Refinement:
             longest = 0 < tried.lengths[best] == tried.lengths[0]
             length = state.length * (2.0 if longest else 1.0)
             state = replace(state, genes=tried.genes[best], fitness=float(found.fitness[best]))
-        health = tried.health(before, np.asarray(found.fitness))
-        row = replace(row, values={**row.values, **health})
+        agreement = tried.agreement(before, np.asarray(found.fitness))
+        row = replace(row, values={**row.values, "slope": tried.slope, "agreement": agreement})
         state = replace(state, length=length, table=state.table.grown((row,)))
         return state, self._report(state, row)
 
@@ -222,8 +221,10 @@ def _unchanged(state: State) -> Row:
 
 
 def trials_along(genes: np.ndarray, rows: np.ndarray, length: float, count: int) -> Trials:
-    """Trials by turns along the slope of fitness, the first of `rows`, and along its part that
-    is orthogonal to the other rows, the slopes of descriptors."""
+    """Return trials by turns along the slope of fitness, and its part that keeps descriptors.
+
+    `rows` are the slopes of fitness, then of descriptors.
+    """
     fitness, descriptors = rows[0], rows[1:]
     ways = np.stack([_unit(fitness), _unit(_without(fitness, descriptors))])
     lengths = length / TRIAL_RATIO ** np.arange((count + 1) // 2)

@@ -28,7 +28,7 @@ def devices_of(
 
 
 def _refuse_other(held: dict[str, Any], wanted: dict[str, Any]) -> None:
-    """A search may have more generations than the file's: each follows from those before."""
+    """Refuse another spec; a search may have more generations, which follow from the file."""
     if _without_length(held) != _without_length(wanted):
         if _unversioned(_without_length(held)) == _unversioned(_without_length(wanted)):
             raise ValueError(_versions(held, wanted))

@@ -67,7 +67,7 @@ class TableRun:
 
 
 def save(spec: str, table: Table, arrays: Mapping[str, Any] | None = None) -> bytes:
-    """Rows as columns, numbers as float64, words as bytes; identities as one JSON text.
+    """Write rows as columns: numbers as float64, words as bytes, identities as one JSON text.
 
     `arrays` are further groups of the file.
     """

@@ -44,7 +44,7 @@ def centroids(cells: int, axes: int, seed: int) -> Points:
 
 
 def lloyd(cells: int, axes: int, seed: int) -> Points:
-    """Centroids by Lloyd's algorithm: each becomes the mean of its nearest samples."""
+    """Return centroids by Lloyd's algorithm: each becomes the mean of its nearest samples."""
     random = np.random.Generator(np.random.PCG64(seed))
     points = spread(cells, axes, random.random(axes))
     samples = spread(max(MIN_SAMPLES, SAMPLES * cells), axes, random.random(axes))
@@ -60,7 +60,7 @@ def lloyd(cells: int, axes: int, seed: int) -> Points:
 
 
 def spread(count: int, axes: int, shift: Float[np.ndarray, "axis"]) -> Points:
-    """Evenly spread points: shift + n (1/φ, 1/φ² …) modulo 1, with φ^(axes + 1) = φ + 1.
+    """Spread points evenly: shift + n (1/φ, 1/φ² …) modulo 1, with φ^(axes + 1) = φ + 1.
 
     The additive recurrence of Roberts (2018), "The unreasonable effectiveness of quasirandom
     sequences"; on one axis it is that of the golden ratio.

@@ -94,7 +94,7 @@ def measures(
     horizon: int | None = None,
     segment: int | None = None,
 ) -> Float[Array, "output"]:
-    """Fitness and measures of the creature with parts changed, after `horizon` steps.
+    """Return fitness and measures of the creature with parts changed, after `horizon` steps.
 
     Raises `ValueError` for names that are unknown or have no derivative.
     """
@@ -143,7 +143,7 @@ def value_and_jacobian(
 
 
 def genes_of(actuator: Any) -> Float[Array, "gene"]:
-    """Genes as one vector: a network's weights and biases, or a vector's values."""
+    """Return genes as one vector: a network's weights and biases, or a vector's values."""
     if isinstance(actuator, Vector):
         return jnp.asarray(actuator.values)
     return jnp.concatenate([jnp.asarray(actuator.weight), jnp.asarray(actuator.bias)])
@@ -169,7 +169,7 @@ class Slopes(eqx.Module):
 def slopes(
     task: Task, genotype: Genotype, descriptors: tuple[str, ...], segment: int | None = None
 ) -> Slopes:
-    """Derivatives of fitness and of descriptors, by name, of one creature."""
+    """Return derivatives of fitness and of descriptors, by name, of one creature."""
     values = parts(task, genotype, ("genes",))
     of = ("fitness", *descriptors)
     found, rows = value_and_jacobian(task, genotype, values, of, segment=segment)
@@ -178,6 +178,6 @@ def slopes(
 
 
 def unit(rows: Float[Array, "*block gene"]) -> Float[Array, "*block gene"]:
-    """Rows of length 1; those of length 0 stay."""
+    """Scale rows to length 1; those of length 0 stay."""
     length = jnp.sqrt(jnp.sum(rows * rows, -1, keepdims=True) + 1e-30)
     return rows / length

@@ -28,7 +28,7 @@ class Elites(eqx.Module):
 
 
 def no_elites(cells: int, measures: int, genotype: Genotype) -> Elites:
-    """An archive without any elite, for genotypes shaped as the one given."""
+    """Return an archive without any elite, for genotypes shaped as the given one."""
     return Elites(
         occupied=jnp.zeros(cells, bool),
         fitness=jnp.zeros(cells, jnp.float32),
@@ -103,18 +103,18 @@ def insert(archive: Elites, candidates: Elites, cells: Cells) -> tuple[Elites, I
 
 
 def insert_program(*, donate: bool = False) -> Callable[..., tuple[Elites, Inserted]]:
-    """`insert`, compiled. With `donate` the old archive is overwritten and must not be used."""
+    """Compile `insert`; with `donate` it overwrites the old archive, which must not be used."""
     return jax.jit(insert, donate_argnums=(0,) if donate else ())
 
 
 def digest(genotypes: Genotype) -> UInt32[Array, "row 2"]:
-    """64 bits that depend on every used gene, −0 counting as 0."""
+    """Return 64 bits that depend on every used gene, −0 counting as 0."""
     found = words(genotypes)
     return jnp.stack([_mix(found, salt) for salt in (0x9E3779B9, 0x85EBCA6B)], 1)
 
 
 def _mix(words: UInt32[Array, "row word"], salt: int) -> UInt32[Array, "row"]:
-    """A sum of avalanched words (the finaliser of MurmurHash3), each salted by its place."""
+    """Sum avalanched words (the finaliser of MurmurHash3), each salted by its place."""
     place = (jnp.arange(words.shape[1], dtype=jnp.uint32) + 1) * jnp.uint32(salt)
     h = words ^ place[None]
     h = (h ^ (h >> 16)) * jnp.uint32(0x85EBCA6B)
@@ -176,7 +176,7 @@ def _untied(
 
 
 def _rank(elites: Elites) -> tuple[Int[Array, "row"], ...]:
-    """Keys of the order at equal fitness, most important first; smaller is better."""
+    """Return the keys of the order at equal fitness, first keys first; smaller is better."""
     ordered = jax.lax.bitcast_convert_type(digest(elites.genotypes) ^ SIGN_BIT, jnp.int32)
     return ordered[:, 0], ordered[:, 1], elites.generation, elites.slot
 

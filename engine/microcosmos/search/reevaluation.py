@@ -68,7 +68,7 @@ def no_repeats(cells: int, measures: int) -> Repeats:
 
 
 def disturbance(spread: Spread, size: tuple[int, int], *, key: PRNGKeyArray) -> Disturbance:
-    """One draw, uniform within the spread."""
+    """Draw a disturbance, uniform within the spread."""
     phase_key, turn_key, shift_key, viscosity_key, energy_key = jax.random.split(key, 5)
     sides = jnp.asarray(size, jnp.float32)
     whole = 2 * jnp.pi
@@ -140,7 +140,7 @@ def add(
 
 
 def corrected(elites: Elites, repeats: Repeats, cells: Cells) -> Float[Array, "cell"]:
-    """Fitness of the corrected archive, NaN in empty cells.
+    """Return the fitness of the corrected archive, NaN in empty cells.
 
     It places every reevaluated elite by its mean descriptors and keeps the best mean fitness of
     each cell.

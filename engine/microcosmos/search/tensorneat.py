@@ -64,7 +64,7 @@ class Backend:
         return self.next_state(state, jnp.asarray(np.where(np.isnan(values), -np.inf, values)))
 
     def to_arrays(self, state: State) -> dict[str, np.ndarray]:
-        """Everything in a state by name, those of species behind `species.`."""
+        """Return everything in a state by name, that of species behind `species.`."""
         return _flat(state, "")
 
     def from_arrays(self, arrays: Mapping[str, np.ndarray | Array]) -> State:
@@ -76,7 +76,7 @@ class Backend:
         return states.State(**plain, species=states.State(**species))
 
     def population(self, state: State) -> tuple[CPPN, Bool[np.ndarray, "individual"]]:
-        """The genomes as our networks, and which of them compute every output; see `cppns`."""
+        """Return the genomes as our networks, and which compute every output; see `cppns`."""
         nodes, connections = self.ask(state)
         names, ends = self.meta["activation_names"], ("num_inputs", "num_outputs")
         return cppns(nodes, connections, names, *(self.meta[end] for end in ends))
@@ -85,7 +85,7 @@ class Backend:
 def build(
     settings: Settings, inputs: int, outputs: int, max_nodes: int, max_connections: int
 ) -> Backend:
-    """TensorNEAT with those of our settings that it has; it allots by rank.
+    """Build TensorNEAT with those of our settings that it has; it allots by rank.
 
     Raises `ValueError` if it is not installed, or cannot follow the settings.
     """
@@ -166,7 +166,7 @@ def _genome(
 
 
 def _function(name: str) -> Callable:
-    """TensorNEAT's function of that name; ours is registered if it has none."""
+    """Return TensorNEAT's function of that name; register ours if it has none."""
     known = import_module("tensorneat.common").ACT
     if name not in known.name2jnp:
         known.add_func(name, ACTIVATIONS[name])

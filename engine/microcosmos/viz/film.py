@@ -30,7 +30,7 @@ SAMPLES = 12
 def gif(
     replay: Replay, *, width: int = 320, frames: int = 125, rate: int = 20, **options: Any
 ) -> bytes:
-    """A looping film of at most `frames` frames, `rate` a second.
+    """Return a looping film of at most `frames` frames, `rate` a second.
 
     A GIF counts hundredths of a second; viewers show a frame for at least two. `options` are
     those of `frame`.
@@ -56,7 +56,7 @@ def gif(
 
 
 def mp4(replay: Replay, *, width: int = 480, rate: int = 25, **options: Any) -> bytes:
-    """A film in H.264 of all frames, `rate` a second, that browsers stream.
+    """Return a film in H.264 of all frames, `rate` a second, that browsers stream.
 
     `options` are those of `frame`.
     """
@@ -71,7 +71,7 @@ def mp4(replay: Replay, *, width: int = 480, rate: int = 25, **options: Any) -> 
 
 
 def _palette(pictures: list[np.ndarray]) -> Any:
-    """An image with one palette for all pictures, so that still parts do not flicker."""
+    """Return an image with one palette for all pictures: still parts do not flicker."""
     some = pictures[:: -(-len(pictures) // SAMPLES)]
     image = require("PIL.Image")
     return image.fromarray(np.concatenate(some)).quantize(256, image.Quantize.MEDIANCUT)

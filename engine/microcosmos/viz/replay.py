@@ -116,8 +116,7 @@ def _comparison(
 
 
 def watchable(scene: Scene) -> Scene:
-    """The scene, without plug-in measures if they are missing here: the motion does not depend
-    on them."""
+    """Return the scene, without plug-in measures if these are missing: motion needs none."""
     try:
         build_measures(scene)
     except plugins.Missing:
@@ -132,14 +131,14 @@ def unmeasured(scene: Scene) -> Scene:
 
 
 def present_parts(scene: Scene, present: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Masks of the edges and joints whose nodes are all present."""
+    """Return masks of the edges and joints whose nodes are all present."""
     body = shape(scene.body)
     edges = np.all(present[body.edges], axis=1)
     return edges, np.all(edges[body.joints], axis=1)
 
 
 def graph_among(scene: Scene, present: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Edges (edge, 2) and joints (joint, 2) that are present, renumbered."""
+    """Return edges (edge, 2) and joints (joint, 2) that are present, renumbered."""
     edges, joints = present_parts(scene, present)
     body = shape(scene.body)
     return (
@@ -149,7 +148,7 @@ def graph_among(scene: Scene, present: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def interval(scene: Scene, network_nodes: int) -> int:
-    """Steps between frames.
+    """Return the number of steps between frames.
 
     Raises `creature.CreatureError` if the simulation is too long or too large.
     """
@@ -262,7 +261,7 @@ def _unchanging(energy: Array | None, size: tuple[int, int]) -> Array:
 
 
 def _mean_motion(task: search.Task, driven: Drive) -> dict[str, Any]:
-    """Mean measures over all placements of energy; the film shows the first one."""
+    """Average measures over all placements of energy; the film shows the first one."""
 
     def motion(shift: Array) -> dict[str, Any]:
         moved = search.elsewhere(driven, shift)

@@ -17,7 +17,7 @@ LETTERS = 14
 
 
 def png(replay: Replay, number: int, **options: Any) -> bytes:
-    """One frame as a PNG; `options` are those of `frame`."""
+    """Draw one frame as a PNG; `options` are those of `frame`."""
     return encoded(frame(replay, number, **options))
 
 
@@ -30,7 +30,7 @@ def strip(
     theme: str = "light",
     **options: Any,
 ) -> bytes:
-    """`count` moments from the first frame to the last, each with its step, as a PNG.
+    """Draw `count` moments from the first frame to the last, each with its step, as a PNG.
 
     They lie side by side, or in rows of `columns`; `width` is one panel's and `options` are
     those of `frame`.
@@ -92,7 +92,7 @@ MOMENT = 2 / 3
 
 
 def preview(replay: Replay, theme: str = "light") -> bytes:
-    """One moment as a PNG of 1200 × 630 pixels, the creature in the middle.
+    """Draw one moment as a PNG of 1200 × 630 pixels, the creature in the middle.
 
     It is cut from the periodic box, or shows the whole box if that would cut the creature.
     """

@@ -32,7 +32,7 @@ def rollout(
     remember: Callable[[World, State, Any], PyTree[Array]] = keep,
     segment: int | None = None,
 ) -> tuple[State, Any]:
-    """The state after all steps of `inputs` (time first), and the observations after each.
+    """Return the state after all steps of `inputs` (time first), and observations of each.
 
     In each step `remember` sets the state's memory, then `control` makes the rest shape from
     the world, the state and the inputs. With `segment`, reverse mode keeps the state only after

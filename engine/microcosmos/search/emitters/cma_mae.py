@@ -82,7 +82,7 @@ class CmaMae:
     def _followed(
         self, thresholds: Float[Array, "cell"], outcome: Outcome, above: Bool[Array, "slot"]
     ) -> Float[Array, "cell"]:
-        """After k children of mean fitness f in a cell: t + (1 − (1 − α)ᵏ) (f − t)."""
+        """Return t + (1 − (1 − α)ᵏ) (f − t) after k children of mean fitness f in a cell."""
         cell = jnp.where(above, outcome.cell, self.cells)
         fitness = jnp.where(above, outcome.fitness, 0.0)
         none = jnp.zeros_like(thresholds)

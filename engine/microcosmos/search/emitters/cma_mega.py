@@ -68,7 +68,7 @@ class CmaMega:
     def emit(
         self, state: Ascent, archive: Elites, counters: Counters, *, keys: Keys
     ) -> tuple[Children, Ascent, Counters]:
-        """θ for every slot until slopes are known; newcomers while the archive is empty."""
+        """Return θ in each slot until slopes are known; newcomers into an empty archive."""
         chosen = draw(archive, key=jax.random.fold_in(keys[0], 1))
         genotypes = archive.genotypes
         assert isinstance(genotypes, Vector)

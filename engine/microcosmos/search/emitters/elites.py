@@ -18,26 +18,26 @@ Newcomer = Callable[..., Any]
 
 
 def draw(archive: Elites, *, key: PRNGKeyArray) -> Int[Array, ""]:
-    """An occupied cell, each equally likely; 0 where there is none."""
+    """Draw an occupied cell, each equally likely; 0 where there is none."""
     total = jnp.sum(archive.occupied)
     rank = jax.random.randint(key, (), 0, jnp.maximum(1, total))
     return jnp.argmax(jnp.cumsum(archive.occupied) > rank)
 
 
 def newcomers(newcomer: Newcomer, keys: Keys) -> Children:
-    """Random genotypes, a key for each slot."""
+    """Draw random genotypes, one for each key."""
     genotypes = jax.vmap(lambda key: newcomer(key=key))(keys)
     return orphans(genotypes, keys.shape[0], "random")
 
 
 def orphans(genotypes: Genotype, slots: int, name: str) -> Children:
-    """Children of an operator without known parents."""
+    """Return children of an operator without known parents."""
     parents = jnp.full((slots, 2), NO_PARENT, jnp.int32)
     return Children(genotypes, parents, jnp.full(slots, OPERATORS.index(name), jnp.int32))
 
 
 def children(genotypes: Genotype, parents: list[Int[Array, "slot"]], name: str) -> Children:
-    """Children of an operator and one or two parents, given as cells."""
+    """Return children of an operator and one or two parents, given as cells."""
     first, second = (*parents, jnp.full_like(parents[0], NO_PARENT))[:2]
     pairs = jnp.stack([first, second], 1).astype(jnp.int32)
     return Children(genotypes, pairs, jnp.full(len(first), OPERATORS.index(name), jnp.int32))

@@ -1,4 +1,4 @@
-"""NEAT whose children learn by gradients before evaluation and pass the result on.
+"""NEAT whose children take gradient steps before evaluation; offspring inherit the result.
 
 Topology by mutation, weights by gradient steps: each child climbs a random combination of
 fitness and descriptors, as the emitters of OMG-MEGA do (Fontaine and Nikolaidis, NeurIPS 2021,

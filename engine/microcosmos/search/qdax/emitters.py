@@ -99,7 +99,7 @@ class QdaxEmitter:
 def cma_me(
     slots: int, newcomer: Newcomer, cells: Cells, *, step: float, emitters: int
 ) -> QdaxEmitter:
-    """CMA-ME's improvement emitters (Fontaine et al., GECCO 2020), which take turns."""
+    """Build CMA-ME's improvement emitters (Fontaine et al., GECCO 2020), which take turns."""
     genes = jax.eval_shape(lambda: newcomer(key=jax.random.key(0))).values.shape[-1]
     one = needed("core.emitters.cma_improvement_emitter").CMAImprovementEmitter(
         batch_size=slots,

@@ -26,13 +26,13 @@ class Axis:
     bins: int
 
     def places(self, values: np.ndarray) -> np.ndarray:
-        """Places of values, cut at the ends."""
+        """Return places of values, cut at the ends."""
         scale = "log10" if self.logarithmic else "linear"
         own = {"low": self.low, "high": self.high, "scale": scale}
         return np.clip(place_on(np.asarray(values, np.float64), own), 0, 1)
 
     def values(self, places: np.ndarray) -> np.ndarray:
-        """Values of places; the inverse of `places`."""
+        """Return values of places; the inverse of `places`."""
         low, high = self.low, self.high
         if self.logarithmic:
             return 10 ** (np.log10(low) + places * (np.log10(high) - np.log10(low)))

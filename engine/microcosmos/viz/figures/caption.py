@@ -32,7 +32,7 @@ def of_archive(found: Archive, names: list[str] | None) -> str:
 
 
 def of_curves(groups: Sequence[Group], shown: Sequence[str]) -> str:
-    """The caption of curves; of several specs it states the first and the differences."""
+    """Return the caption of curves: the first spec, and what differs in others."""
     several = any(len(group.runs) > 1 for group in groups)
     first = _listed([NAMES.get(name, name.replace("_", " ")) for name in shown])
     first = first[0].upper() + first[1:]

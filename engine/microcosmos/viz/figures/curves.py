@@ -22,7 +22,7 @@ def curves(
     against: str = "evaluations",
     width: float = 178.0,
 ) -> Any:
-    """A panel for each of `shown`, against `evaluations` or `generations`.
+    """Draw a panel for each of `shown`, against `evaluations` or `generations`.
 
     Each group has the median over its seeds, a band between the quartiles, and thin lines for
     single runs.

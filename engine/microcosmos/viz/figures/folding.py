@@ -22,7 +22,7 @@ COLUMNS = 10
 
 
 def folds(data: bytes) -> Any:
-    """Rows early, middle and late of every filament, a row of pictures, and the losses.
+    """Draw every filament early, middle and late, its picture, and the losses.
 
     `data` is the run's file, finished or not; filaments with the least loss so far are
     simulated anew.
@@ -52,7 +52,7 @@ def folds(data: bytes) -> Any:
 
 
 def _courses(chosen: spec.Folding, genes: np.ndarray) -> np.ndarray:
-    """Positions (fold, moment, node, 2) of the nodes."""
+    """Return positions (fold, moment, node, 2) of the nodes."""
     descent = build_descent(chosen)
     steps = [max(1, round(share * chosen.steps)) - 1 for share in MOMENTS.values()]
 

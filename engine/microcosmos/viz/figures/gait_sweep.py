@@ -21,7 +21,7 @@ MOST_TICKS = 5
 
 
 def sweep(rows: Sequence[Row]) -> Any:
-    """Displacement in a cycle against viscosity: a panel for each form, a line a swimmer.
+    """Draw displacement in a cycle against viscosity: a panel a form, a line a swimmer.
 
     Hollow marks had a limit active; crosses at the top did not finish. A form that is not
     force-free has a shaded panel. The upper axis has the worm's Reynolds number.

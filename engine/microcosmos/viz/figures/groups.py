@@ -29,7 +29,7 @@ class Group:
 
 
 def grouped(runs: Sequence[Archive]) -> list[Group]:
-    """Groups in the order of their first runs. Raises `ValueError` for a run given twice."""
+    """Group runs in the order of the first ones. Raises `ValueError` for a run given twice."""
     found: dict[tuple, list[Archive]] = {}
     for run in runs:
         flat = dict(flattened(run.document))
@@ -58,7 +58,7 @@ def flattened(document: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def differing(flats: Sequence[Mapping[str, Any]]) -> list[str]:
-    """The paths whose values differ; only those that all specs have, if there are any."""
+    """Return the paths whose values differ; only those that all specs have, if any."""
     paths = list(dict.fromkeys(path for flat in flats for path in flat if path not in IGNORED))
     other = [p for p in paths if len({repr(flat.get(p, "none")) for flat in flats}) > 1]
     shared = [path for path in other if all(path in flat for flat in flats)]
@@ -86,7 +86,7 @@ def _value(value: Any) -> str:
 
 
 def spread(runs: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Lower quartile, median and upper quartile, as far as all runs go."""
+    """Return lower quartile, median and upper quartile, as far as all runs go."""
     length = min(map(len, runs))
     values = np.stack([run[:length] for run in runs])
     return tuple(np.quantile(values, (0.25, 0.5, 0.75), axis=0))

@@ -38,7 +38,7 @@ class Family:
 
 
 def family(found: Archive) -> Family:
-    """The family of an archive's elites. Raises `ValueError` if the lineage lacks one."""
+    """Return the family of an archive's elites. Raises `ValueError` if one is lacking."""
     columns = found.lineage
     names = [bytes(row) for row in columns["creature"]]
     number: dict[bytes, int] = {}
@@ -62,8 +62,9 @@ def family(found: Archive) -> Family:
 
 
 def heights(found: Family, entries: list[int]) -> dict[int, float]:
-    """The height of each entry in the tree: childless ones evenly, others between those whose
-    first parent they are. `entries` include all first parents.
+    """Return the height of each entry: childless ones evenly, others between their children.
+
+    A child belongs to its first parent. `entries` include all first parents.
     """
     children: dict[int, list[int]] = {NO_ENTRY: []}
     for entry in sorted(entries):
@@ -94,9 +95,10 @@ def lineage(
     colours: str = "viridis",
     width: float = 178.0,
 ) -> Any:
-    """Generations from left to right, in grey all elites and the first parents they descend
-    from; the ancestors of the elite of `cell` (none: the fittest) in the colours of their
-    fitness, second parents by dashed lines.
+    """Draw generations from left to right: in grey all elites and their first parents.
+
+    Ancestors of the elite of `cell` (none: the fittest) have the colours of their fitness;
+    dashed lines lead from second parents.
     """
     from matplotlib.collections import LineCollection
 

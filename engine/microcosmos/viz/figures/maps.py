@@ -164,6 +164,6 @@ def borders(centroids: np.ndarray) -> np.ndarray:
 
 
 def _round(middle: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Corners in the order of their angle around a point inside."""
+    """Sort corners by their angle around a point inside."""
     away = corners - middle
     return corners[np.argsort(np.arctan2(away[:, 1], away[:, 0]))]

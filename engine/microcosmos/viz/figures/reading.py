@@ -56,7 +56,7 @@ class Archive:
         return self.spec.model_dump(mode="json")
 
     def row(self, cell: int | None) -> int:
-        """The row of a cell's elite; None: of the fittest. Raises `ValueError` if empty."""
+        """Return the row of a cell's elite; None: the fittest. `ValueError` if empty."""
         if cell is None:
             return self.best
         found = np.flatnonzero(self.cells == cell)
@@ -69,7 +69,7 @@ class Archive:
 
 
 def read(data: bytes) -> Archive:
-    """The archive in a run's file. Raises `ValueError` if it has none, or an empty one."""
+    """Return the archive in a run's file. Raises `ValueError` if it is missing or empty."""
     tree, attributes = file.load(data)
     document = json.loads(attributes["spec"])
     if "archive" not in tree:

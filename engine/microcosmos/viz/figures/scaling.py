@@ -20,7 +20,7 @@ PAIRS = {"color": COLOURS[4], "marker": "v", "ls": "--"}
 
 
 def scaling(rows: Sequence[Row], summary: Row | None = None) -> Any:
-    """Time of 1,000 steps, whole and by parts, and memory, against the number of nodes.
+    """Draw time of 1,000 steps, whole and by parts, and memory against the number of nodes.
 
     `summary` has the fitted powers; the dotted line is proportional to the nodes.
     """

@@ -46,7 +46,7 @@ class Motion:
 def layout(
     found: Archive, *, axes: list[str] | None = None, columns: int = 6, rows: int = 4
 ) -> Layout:
-    """Regions of equal size over the occupied part of two axes, each with its fittest elite.
+    """Divide the occupied part of two axes into equal regions, each with its fittest elite.
 
     Raises `ValueError` for a single axis.
     """
@@ -71,7 +71,7 @@ def layout(
 
 
 def numerals(count: int) -> list[str]:
-    """i, ii, iii, iv ..., the paper's numerals for gaits."""
+    """Return i, ii, iii, iv …, the paper's numerals for gaits."""
     digits = (("c", 100), ("xc", 90), ("l", 50), ("xl", 40), ("x", 10), ("ix", 9), ("v", 5),
               ("iv", 4), ("i", 1))  # fmt: skip
     found = []
@@ -84,7 +84,7 @@ def numerals(count: int) -> list[str]:
 
 
 def reading_order(regions: Sequence[Region]) -> list[int]:
-    """Indices of regions row by row from the top."""
+    """Return indices of regions row by row from the top."""
     return sorted(range(len(regions)), key=lambda k: (-regions[k].row, regions[k].column))
 
 
@@ -104,8 +104,9 @@ def sheet(
     colours: str = "viridis",
     width: float = 178.0,
 ) -> Any:
-    """Each region's swimmer at some moments, all at one scale: pale at the start, at the end
-    in the colour of its fitness, with the path of its middle.
+    """Draw each region's swimmer at some moments, and the path of its middle.
+
+    All have one scale; they are pale at the start and at the end in the colour of fitness.
     """
     if not 1 <= moments <= 50:
         raise ValueError(f"`moments` must be from 1 to 50, got {moments}.")
@@ -130,7 +131,7 @@ def sheet(
 
 
 def _shown(motion: Motion, moments: int) -> np.ndarray:
-    """(moment, node, 2): the last frame, and others evenly before it."""
+    """Return (moment, node, 2): the last frame, and others evenly before it."""
     last = len(motion.positions) - 1
     frames = np.rint(np.linspace(0, last, moments)).astype(int) if moments > 1 else [last]
     return motion.positions[frames].astype(float)

@@ -69,12 +69,12 @@ most colour-blind people too."""
 
 
 def styled() -> AbstractContextManager:
-    """Matplotlib's settings for print, while a figure is made and saved."""
+    """Apply matplotlib's settings for print, while a figure is made and saved."""
     return require("matplotlib").rc_context(RC)
 
 
 def palette(name: str) -> Any:
-    """A colour map from 0, dark, to 1, light."""
+    """Return a colour map from 0, dark, to 1, light."""
     if name not in SAMPLES:
         raise ValueError(f"`palette` must be one of {', '.join(SAMPLES)}, got {name!r}.")
     colours = ["#" + colour for colour in re.findall("......", SAMPLES[name])]
@@ -111,7 +111,7 @@ def millimetres(width: str) -> float:
 
 
 def blank(width: float, height: float) -> Any:
-    """A figure of a size in mm, without matplotlib's global state."""
+    """Return a figure of a size in mm, without matplotlib's global state."""
     figure = require("matplotlib.figure").Figure((width / INCH, height / INCH))
     figure.set_layout_engine("constrained", w_pad=0.02, h_pad=0.02, wspace=0.03, hspace=0.03)
     return figure
@@ -125,7 +125,7 @@ def lettered(panels: Sequence[Any]) -> None:
 
 
 def look(number: int) -> dict[str, Any]:
-    """Colour and mark of the line with this number."""
+    """Return colour and mark of the line with this number."""
     return {"color": COLOURS[number % 7], "marker": MARKERS[number % 7]}
 
 

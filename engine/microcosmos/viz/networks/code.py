@@ -61,7 +61,7 @@ def require_same(network: Network, text: str) -> None:
 
 @cache
 def _sources() -> dict[str, str]:
-    """The texts of all functions by name, read once: a sandbox cannot open files later."""
+    """Return the texts of our functions, read once: a sandbox cannot open files later."""
     functions = (*ACTIVATIONS.values(), *AGGREGATIONS.values(), messages, kept)
     ours = [one for one in functions if not isinstance(one, np.ufunc)]
     return {one.__name__: inspect.getsource(one) for one in ours}
@@ -166,7 +166,7 @@ def _variable(network: Network, key: int) -> str:
 
 
 def _listed(network: Network, keys) -> str:
-    """Names for a docstring, without characters that could end it."""
+    """Return names for a docstring, without characters that could end it."""
     names = network.names
     return ", ".join(re.sub(r"[^\w .()-]", "", names[key]) or str(key) for key in keys)
 

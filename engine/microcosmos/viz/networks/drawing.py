@@ -95,7 +95,7 @@ STYLE = f"""
 
 
 def svg(network: Network) -> str:
-    """Layers from left to right, nodes coloured by activation, connections by weight.
+    """Draw layers from left to right, nodes coloured by activation, connections by weight.
 
     Inside a page, `currentColor` is the page's; alone, it follows the reader's scheme.
     """
@@ -136,7 +136,7 @@ def _width(network: Network, key: int) -> float:
 
 
 def _links(network: Network, drawn: Layout) -> list[str]:
-    """Thin links come last, so that no thick one hides them."""
+    """Draw thin links last, so that no thick one hides them."""
     links = sorted(network.links, key=lambda link: -abs(link.weight))
     return [_link(network, (x.source, x.target), x.weight, drawn) for x in links]
 
@@ -192,7 +192,7 @@ def _legend(x: float, y: float) -> list[str]:
 
 
 def dot(network: Network) -> str:
-    """A directed graph from left to right, the inputs in one rank and the outputs in one."""
+    """Write a directed graph from left to right, inputs in one rank and outputs in one."""
     lines = [
         "digraph network {",
         f"  label={_quoted(described(network))};",

@@ -11,7 +11,7 @@ TOLERANCE = 1e-6
 
 
 def evaluate(network: Network, inputs: np.ndarray) -> np.ndarray:
-    """The outputs (output, point) for inputs (input, point), NaN where there is no value."""
+    """Return outputs (output, point) for inputs (input, point), NaN where there is no value."""
     inputs = np.asarray(inputs, float)
     if inputs.ndim != 2 or len(inputs) != network.inputs:
         raise ValueError(f"`inputs` must be ({network.inputs}, points), got {inputs.shape}")
@@ -31,7 +31,7 @@ def evaluate(network: Network, inputs: np.ndarray) -> np.ndarray:
 
 
 def probes(inputs: int, points: int = 256) -> np.ndarray:
-    """Inputs (input, point) for comparisons, always the same: all 0, all 1, the rest normal."""
+    """Return inputs (input, point) for comparisons: all 0, all 1, the rest normal."""
     drawn = np.random.default_rng(0).normal(size=(inputs, points))
     drawn[:, 0], drawn[:, 1] = 0.0, 1.0
     return drawn
@@ -61,7 +61,7 @@ def require_agreement(what: str, one: Network, other: Network) -> None:
 
 
 def _value(network: Network, node: Node, values: dict[int, np.ndarray]) -> np.ndarray:
-    """A node's new value at every point, the old one if no message is live."""
+    """Return a node's new value at every point, the old one if no message is live."""
     old, links = values[node.key], network.incoming[node.key]
     if not links:
         return _emitted(network, node, np.zeros_like(old)) if network.rule == "always" else old

@@ -20,7 +20,7 @@ LARGEST = 64 * 2**20
 
 
 def dump_tensorneat(genome: Genome, fitness: float = float("nan")) -> bytes:
-    """A genome as TensorNEAT saves one, with its names beside it."""
+    """Write a genome as TensorNEAT saves one, with its names beside it."""
     stream, meta, value = BytesIO(), np.array(json.dumps(genome.meta)), np.float32(fitness)
     np.savez(stream, nodes=genome.nodes, conns=genome.conns, fitness=value, meta=meta)
     return stream.getvalue()
@@ -29,7 +29,7 @@ def dump_tensorneat(genome: Genome, fitness: float = float("nan")) -> bytes:
 def load_tensorneat(
     data: bytes, meta: Mapping[str, Any] | None = None
 ) -> tuple[Network, float]:
-    """The network in a file, and its fitness or NaN. Raises `ValueError` for other files.
+    """Return the network in a file, and its fitness or NaN. Raises `ValueError` for others.
 
     A file that TensorNEAT itself wrote holds no names: give them as `meta`.
     """
@@ -69,7 +69,7 @@ def _arrays(data: bytes) -> dict[str, np.ndarray]:
 
 
 def _array(name: str, file: ZipFile) -> np.ndarray:
-    """One array; its header must fit the bytes before memory is allocated."""
+    """Read one array; its header must fit the bytes before memory is allocated."""
     with file.open(name) as member:
         data = member.read(LARGEST + 1)
     if len(data) > LARGEST:

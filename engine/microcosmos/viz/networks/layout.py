@@ -28,7 +28,7 @@ class Layout:
 
 
 def layout(network: Network) -> Layout:
-    """Inputs on the left, outputs on the right, hidden nodes by the longest way to them."""
+    """Place inputs left, outputs right, hidden nodes by the longest path to them."""
     column = _columns(network)
     chains = {pair: _chain(pair, column) for pair in network.pairs}
     columns: list[list[Item]] = [[] for _ in range(max(column.values()) + 1)]
@@ -70,7 +70,7 @@ def _neighbours(chains: dict[tuple[int, int], list[Item]]) -> dict[Item, list[It
 
 
 def _ordered(columns: list[list[Item]], near: dict[Item, list[Item]]) -> dict[Item, float]:
-    """Heights, found by repeatedly moving every item towards its neighbours.
+    """Return heights: repeatedly, every item moves towards its neighbours.
 
     Inputs and outputs keep their order; the others are sorted by their targets.
     """
@@ -90,7 +90,7 @@ def _ordered(columns: list[list[Item]], near: dict[Item, list[Item]]) -> dict[It
 
 
 def _apart(items: list[Item], targets: list[float]) -> dict[Item, float]:
-    """Heights in this order and far enough apart, closest to the targets in least squares.
+    """Return heights in this order, far enough apart, nearest to the targets in least squares.
 
     The offsets taken away, this is isotonic regression by pooling neighbours.
     """

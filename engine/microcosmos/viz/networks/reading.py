@@ -23,7 +23,7 @@ MAX_STEPS = 10_000
 
 
 def read_tensorneat(nodes: np.ndarray, conns: np.ndarray, meta: Mapping[str, Any]) -> Network:
-    """The network of one genome: `nodes` (row, column), `conns` (row, column), NaN if unused.
+    """Return the network of one genome: `nodes` and `conns` (row, column), NaN if unused.
 
     `meta` names the classes and, in order, the functions; see `docs/networks.md`. Outputs are
     linear and inputs have no attributes, whatever their columns hold. Raises `ValueError`.
@@ -150,7 +150,7 @@ def _table(field: str, table: np.ndarray, columns: tuple[str, ...]) -> np.ndarra
 
 
 def _whole(field: str, column: str, values: np.ndarray, low: int, high: int) -> np.ndarray:
-    """Whole numbers from low to below high, −1 standing for an unused row."""
+    """Return whole numbers from low to below high, −1 for an unused row."""
     used = ~np.isnan(values)
     valid = (values == np.floor(values)) & (values >= low) & (values < high)
     if (wrong := values[used & ~valid]).size:
@@ -173,7 +173,7 @@ def _function(
 
 
 def _refuse_other_rows(keys: np.ndarray, ends: tuple[int, ...]) -> None:
-    """TensorNEAT writes inputs to rows and reads outputs from rows by their keys."""
+    """Refuse inputs and outputs outside the rows of their keys, which TensorNEAT uses."""
     for key in ends:
         if key >= len(keys) or keys[key] != key:
             came = keys[key] if key < len(keys) else "no such row"

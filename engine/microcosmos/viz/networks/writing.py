@@ -29,7 +29,7 @@ class Genome:
 def write_tensorneat(
     network: Network, max_nodes: int | None = None, max_conns: int | None = None
 ) -> Genome:
-    """The genome of a network, checked: read back, it computes the same for random inputs.
+    """Return the genome of a network, checked: read back, it computes the same.
 
     Raises `ValueError` if it does not, or if there is no room.
     """
