@@ -103,8 +103,8 @@ async (tags) => {
     playState === "running" && Number.isFinite(effect?.getComputedTiming().endTime);
   await Promise.allSettled(document.getAnimations().filter(ends).map((one) => one.finished));
   const { violations } = await axe.run({ runOnly: { type: "tag", values: tags } });
-  const told = ({ target, failureSummary }) => [target.join(" "), failureSummary];
-  return violations.map(({ id, help, nodes }) => ({ id, help, nodes: nodes.map(told) }));
+  const pair = ({ target, failureSummary }) => [target.join(" "), failureSummary];
+  return violations.map(({ id, help, nodes }) => ({ id, help, nodes: nodes.map(pair) }));
 }
 """
 POINTS = ".mark"

@@ -6,15 +6,14 @@ from collections.abc import Collection, Iterator
 from typing import Any, NamedTuple
 
 import httpx
-from playwright.sync_api import Page, expect
+from drive import Installation
+from playwright.sync_api import Locator, Page, expect
 
 NOWHERE = "Page not found"
 UNREST = ".loading, .rendering, [aria-busy=true], .waiting:has-text('…')"
 """Elements that stand for something that is loading."""
 CALM_S = 0.3
 SCRUBBER = "input[aria-label='Time in the replay']"
-
-
 GUIDED = "localStorage.setItem('microcosmos:guided', '1')"
 """Keeps the tour from opening by itself."""
 
@@ -87,6 +86,31 @@ def measured(http: httpx.Client, run: dict[str, Any] | None) -> Iterator[Place]:
         yield Place("swimmer", f"/creatures/{swimmer}?run={run['id']}")
 
 
+def the_map(page: Page) -> Locator:
+    return page.get_by_role("application", name=re.compile("^Archive map"))
+
+
+def elites(page: Page) -> Locator:
+    return page.get_by_text(re.compile(r"^[\d,]+ elites$"))
+
+
+def stage(page: Page) -> Locator:
+    return page.get_by_role("img", name=re.compile("The swimming creature"))
+
+
+def best_of(product: Installation, run: str) -> str:
+    """The name of a run's best creature."""
+    archive = product.get(f"runs/{run}/archive")
+    return max(zip(archive["fitness"], archive["creature"], strict=True))[1]
+
+
+def start_run(page: Page) -> str:
+    """Start the run of the form and return its id."""
+    page.get_by_role("button", name="Start run").click()
+    page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"))
+    return page.url.rpartition("/")[2]
+
+
 def visit(page: Page, address: str, place: Place, seconds: float = 120) -> bool:
     """Open a page and wait until it is loaded; false if it does not exist."""
     page.goto(address + place.path)
@@ -119,8 +143,7 @@ def pixels(page: Page) -> str:
 
 def see_it_swim(page: Page, seconds: float) -> None:
     """Wait for the creature, and see that its picture changes."""
-    canvas = page.get_by_role("img", name=re.compile("The swimming creature"))
-    expect(canvas).to_be_visible(timeout=1000 * seconds)
+    expect(stage(page)).to_be_visible(timeout=1000 * seconds)
     page.wait_for_timeout(300)
     before = pixels(page)
     page.wait_for_timeout(600)

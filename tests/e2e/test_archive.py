@@ -1,15 +1,14 @@
 """The archive of a run: map, time, gallery, tour."""
 
 import re
-from typing import Any
 
 import pytest
-from places import GUIDED
+from places import GUIDED, best_of, elites, the_map
 from playwright.sync_api import Page, expect
 from small import CENTROIDS
 from written import Written
 
-FAST, SLOW = 10_000, 120_000
+SLOW = 120_000
 
 FLASH_MS = 1200
 WHERE_DRAWN_DIFFERENTLY = """before => {
@@ -26,44 +25,36 @@ WHERE_DRAWN_DIFFERENTLY = """before => {
 
 CHANGED = "before => before !== document.querySelector('[data-gallery] canvas').toDataURL()"
 
-pytestmark = pytest.mark.e2e
+
+@pytest.fixture
+def searched(shared, page):
+    """A finished search whose page is open, without the tour."""
+    page.add_init_script(GUIDED)
+    run = shared.finished("search")
+    page.goto(f"{shared.product.url}/runs/{run}")
+    return run
 
 
 @pytest.fixture
-def searched(shared, shared_page: Page) -> str:
-    """The address of a finished search; the tour does not open."""
-    shared_page.add_init_script(GUIDED)
-    return f"{shared.product.url}/runs/{shared.finished('search')}"
+def size(shared, searched):
+    """The number of elites of the finished search, now or after a generation."""
+    return lambda **then: len(shared.product.get(f"runs/{searched}/archive", **then)["cell"])
 
 
-def archive_of(page: Page, address: str, **asked: Any) -> dict[str, Any]:
-    api = address.replace("/runs/", "/api/v1/runs/")
-    return page.request.get(f"{api}/archive", params=asked).json()
-
-
-def the_map(page: Page):
-    return page.get_by_role("application", name=re.compile("Archive map"))
-
-
-def test_arrow_keys_walk_the_map_and_enter_opens_a_creature(shared_page: Page, searched: str):
-    page = shared_page
-    page.goto(searched)
+def test_arrow_keys_walk_the_map_and_enter_opens_a_creature(shared, page, searched):
     the_map(page).focus()
     page.keyboard.press("ArrowRight")
-    archive = archive_of(page, searched)
-    best = archive["creature"][archive["fitness"].index(max(archive["fitness"]))]
+    best = best_of(shared.product, searched)
     reading = page.locator("#elite-measures")
-    expect(reading).to_contain_text(best[:8], timeout=FAST)
+    expect(reading).to_contain_text(best[:8])
     page.keyboard.press("ArrowLeft")
-    expect(reading).not_to_contain_text(best[:8], timeout=FAST)
+    expect(reading).not_to_contain_text(best[:8])
     other = reading.locator("code").inner_text()
     page.keyboard.press("Enter")
-    page.wait_for_url(re.compile(f"/creatures/{other}"), timeout=FAST)
+    page.wait_for_url(re.compile(f"/creatures/{other}"))
 
 
-def test_a_creature_swims_beside_the_pointer(shared_page: Page, searched: str):
-    page = shared_page
-    page.goto(searched)
+def test_a_creature_swims_beside_the_pointer(page, searched):
     the_map(page).focus()
     page.keyboard.press("ArrowUp")
     canvas = page.locator("[data-inset] canvas")
@@ -74,88 +65,72 @@ def test_a_creature_swims_beside_the_pointer(shared_page: Page, searched: str):
     assert canvas.evaluate("canvas => canvas.toDataURL()") != before
 
 
-def test_the_slider_shows_the_archive_of_every_generation(shared_page: Page, searched: str):
-    page = shared_page
-    page.goto(searched)
-    slider = page.get_by_role("slider", name=re.compile("Generation shown"))
-    elites = page.get_by_text(re.compile(r"^\d+ elites$"))
+def test_the_slider_shows_the_archive_of_every_generation(page, size):
     for generation in (1, 7, 20):
-        slider.fill(str(generation))
-        there = len(archive_of(page, searched, generation=generation)["cell"])
-        expect(elites).to_have_text(f"{there} elites", timeout=FAST)
-    page.wait_for_url(re.compile("at=20"), timeout=FAST)
+        page.get_by_role("slider", name="Generation shown").fill(str(generation))
+        then = f"{size(generation=generation)} elites"
+        expect(elites(page)).to_have_text(then)
+    page.wait_for_url(re.compile("at=20"))
     page.reload()
-    expect(elites).to_have_text(f"{there} elites", timeout=FAST)
+    expect(elites(page)).to_have_text(then)
     page.get_by_role("button", name="Newest").click()
-    now = len(archive_of(page, searched)["cell"])
-    expect(elites).to_have_text(f"{now} elites", timeout=FAST)
+    expect(elites(page)).to_have_text(f"{size()} elites")
 
 
-def test_the_history_plays_to_its_end(shared_page: Page, searched: str):
-    page = shared_page
-    page.goto(searched)
-    now = len(archive_of(page, searched)["cell"])
-    elites = page.get_by_text(re.compile(r"^\d+ elites$"))
-    expect(elites).to_have_text(f"{now} elites", timeout=FAST)
+def test_the_history_plays_to_its_end(page, size):
+    now = f"{size()} elites"
+    expect(elites(page)).to_have_text(now)
     page.get_by_role("button", name="Play the history").click()
-    expect(elites).not_to_have_text(f"{now} elites", timeout=FAST)
-    slider = page.get_by_role("slider", name=re.compile("Generation shown"))
+    expect(elites(page)).not_to_have_text(now)
+    slider = page.get_by_role("slider", name="Generation shown")
     slider.fill("26")  # Close to the end, so the wait is short.
     page.get_by_role("button", name="Play the history").click()
-    expect(page.get_by_role("button", name="Pause the history")).to_be_visible(timeout=FAST)
-    expect(page.get_by_role("button", name="Play the history")).to_be_visible(timeout=30_000)
-    expect(elites).to_have_text(f"{now} elites", timeout=FAST)
+    expect(page.get_by_role("button", name="Pause the history")).to_be_visible()
+    expect(page.get_by_role("button", name="Play the history")).to_be_visible()
+    expect(elites(page)).to_have_text(now)
 
 
-def test_colours_and_axes_offer_every_recorded_measure(shared_page: Page, searched: str):
-    page = shared_page
-    page.goto(searched)
+def test_colours_and_axes_offer_every_recorded_measure(page, searched):
     page.get_by_label("Colour").select_option("age")
-    legend = page.get_by_role("img", name=re.compile("^Age"))
-    expect(legend).to_be_visible(timeout=FAST)
+    expect(page.get_by_role("img", name=re.compile("^Age"))).to_be_visible()
     page.get_by_label("Palette").select_option("cividis")
     page.get_by_label("Horizontal axis").select_option("path_length")
-    page.wait_for_url(re.compile("x=path_length"), timeout=FAST)
-    fewer = page.get_by_label("Bending effort, from")
-    fewer.fill("8")
-    page.wait_for_url(re.compile(r"only\.bending_effort=8-"), timeout=FAST)
+    page.wait_for_url(re.compile("x=path_length"))
+    page.get_by_label("Bending effort, from").fill("8")
+    page.wait_for_url(re.compile(r"only\.bending_effort=8-"))
     assert re.search("colour=age.*palette=cividis", page.url)
 
 
-def test_the_gallery_moves_and_is_walked_by_keys(shared_page: Page, searched: str):
-    page = shared_page
-    page.goto(searched)
+def test_the_gallery_moves_and_is_walked_by_keys(page, searched):
     page.get_by_role("button", name="Gallery").click()
-    page.wait_for_url(re.compile("view=gallery"), timeout=FAST)
+    page.wait_for_url(re.compile("view=gallery"))
     canvas = page.locator("[data-gallery] canvas")
-    expect(canvas).to_be_visible(timeout=FAST)
+    expect(canvas).to_be_visible()
     for _ in range(5):  # Not once, as when it is first drawn, but again and again.
         drawn = canvas.evaluate("canvas => canvas.toDataURL()")
         page.wait_for_function(CHANGED, arg=drawn, timeout=SLOW)
-    wall = page.get_by_role("application", name=re.compile("Gallery"))
-    wall.focus()
+    page.get_by_role("application", name="Gallery").focus()
     page.keyboard.press("ArrowDown")
     sha = page.locator("#elite-measures code").inner_text()
     page.keyboard.press("Enter")
-    page.wait_for_url(re.compile(f"/creatures/{sha}"), timeout=FAST)
+    page.wait_for_url(re.compile(f"/creatures/{sha}"))
 
 
 @pytest.mark.parametrize("motion", ["no-preference", "reduce"])
-def test_a_cell_that_changes_live_flashes_once(idle_page: Page, idle, motion: str):
+def test_a_cell_that_changes_live_flashes_once(page, idle, motion):
     """Its outline, and nothing else; not for whom movement disturbs."""
-    page, run = idle_page, Written(idle.services, seed=41)
+    run = Written(idle.services, seed=41)
     run.begin("worker 1")
     run.go_on(1, 3)
     page.add_init_script(GUIDED)
     page.emulate_media(reduced_motion=motion)
     page.clock.install()
     page.goto(f"{idle.product.url}/runs/{run.id}")
-    elites = page.get_by_text(re.compile(r"^\d+ elites$"))
-    expect(elites).to_have_text("3 elites", timeout=FAST)
+    expect(elites(page)).to_have_text("3 elites")
     page.clock.run_for(2 * FLASH_MS)
     page.clock.pause_at(page.evaluate("Date.now() + 10"))
     run.go_on(4, 4)
-    expect(elites).to_have_text("4 elites", timeout=FAST)
+    expect(elites(page)).to_have_text("4 elites")
     page.clock.run_for(FLASH_MS // 4)
     drawn = page.evaluate(WHERE_DRAWN_DIFFERENTLY)["drawn"]
     page.clock.run_for(FLASH_MS)
@@ -178,7 +153,7 @@ def test_a_cell_that_changes_live_flashes_once(idle_page: Page, idle, motion: st
 
 def corners_of_the_marked(page: Page) -> list[list[float]]:
     """The corners of the marked cell, as shares of the map's sides."""
-    points = page.locator(".map-mark polygon").first.get_attribute("points", timeout=FAST)
+    points = page.locator(".map-mark polygon").first.get_attribute("points")
     assert points
     return [[float(share) for share in corner.split(",")] for corner in points.split()]
 
@@ -188,8 +163,7 @@ def box_of(points: list[list[float]]) -> tuple[float, float, float, float]:
     return min(xs), min(ys), max(xs), max(ys)
 
 
-def test_the_cells_of_a_tessellation_are_voronoi_cells(shared, shared_page: Page):
-    page = shared_page
+def test_the_cells_of_a_tessellation_are_voronoi_cells(shared, page):
     page.add_init_script(GUIDED)
     run = shared.finished("voronoi")
     with page.expect_response(re.compile("/archive/centroids$"), timeout=SLOW) as answer:
@@ -199,32 +173,30 @@ def test_the_cells_of_a_tessellation_are_voronoi_cells(shared, shared_page: Page
     corners = set()
     for key in ("ArrowRight", "ArrowLeft", "ArrowDown", "ArrowUp", "ArrowRight"):
         page.keyboard.press(key)
-        points = page.locator(".map-mark polygon").first.get_attribute("points", timeout=FAST)
-        corners.add(len((points or "").split()))
+        corners.add(len(corners_of_the_marked(page)))
     assert corners - {4}, "a cell of a grid has four corners, one of a tessellation seldom"
 
 
-def test_the_tour_scrolls_to_what_it_explains(shared, shared_page: Page):
-    page = shared_page
+def test_the_tour_scrolls_to_what_it_explains(shared, page):
     page.set_viewport_size({"width": 1280, "height": 800})
     page.goto(f"{shared.product.url}/runs/{shared.finished('search')}")
     tour = page.get_by_role("complementary", name="Tour")
-    expect(page.get_by_text(re.compile(r"^\d+ elites$"))).to_be_visible(timeout=FAST)
+    expect(page.get_by_text(re.compile(r"^\d+ elites$"))).to_be_visible()
     expect(tour).not_to_be_visible()  # It opens by itself over the demonstration only.
     page.get_by_role("button", name="Explain").click()
-    expect(tour).to_contain_text("of 256 kinds have one", timeout=FAST)
+    expect(tour).to_contain_text("of 256 kinds have one")
     for title in ("Cells are kinds", "Colour is fitness", "The history", "Open a creature"):
         tour.get_by_role("button", name="Next").press("Enter")
-        expect(tour.get_by_role("heading", name=title)).to_be_visible(timeout=FAST)
+        expect(tour.get_by_role("heading", name=title)).to_be_visible()
         if title == "The history":
-            expect(page.locator(".time-slider")).to_be_in_viewport(ratio=1, timeout=FAST)
+            expect(page.locator(".time-slider")).to_be_in_viewport(ratio=1)
     expect(page.locator("#elite-measures")).to_contain_text("Fitness")
     tour.get_by_role("button", name="Finish").press("Enter")
     expect(tour).not_to_be_visible()
     page.reload()
-    expect(page.get_by_text(re.compile(r"^\d+ elites$"))).to_be_visible(timeout=FAST)
+    expect(page.get_by_text(re.compile(r"^\d+ elites$"))).to_be_visible()
     expect(tour).not_to_be_visible()
     page.get_by_role("button", name="Explain").click()
-    expect(tour).to_be_visible(timeout=FAST)
+    expect(tour).to_be_visible()
     page.keyboard.press("Escape")
     expect(tour).not_to_be_visible()

@@ -10,7 +10,6 @@ import sys
 from pathlib import Path
 
 import numpy as np
-import pytest
 from browser import overhear
 from playwright.sync_api import Browser
 from small import TINY
@@ -21,23 +20,21 @@ from microcosmos.client import Client, Replay
 GUIDE = Path(__file__).parents[2] / "docs" / "client.md"
 
 
-@pytest.mark.e2e
 def test_a_run_is_driven_by_commands_and_read_by_the_client(shared, common, tmp_path, browser):
     address = shared.product.url
     (tmp_path / "tiny.json").write_text(json.dumps(TINY | {"seed": 77}))
     environment = os.environ | common | {"MICROCOSMOS_URL": address}
     submitted = ("-m", "microcosmos.cli", "submit", "tiny.json", "--watch", "--name", "mine")
-    id, *lines = told(submitted, tmp_path, environment)
+    id, *lines = output_of(submitted, tmp_path, environment)
     assert "finished" in lines[-1]
     with Client(address) as client:
         run = client.run(id[:8])
         assert (run.name, run.status, run.generation) == ("mine", "finished", 3)
-        pulled = told(("-m", "microcosmos.cli", "pull", id), tmp_path, environment)[0]
+        pulled = output_of(("-m", "microcosmos.cli", "pull", id), tmp_path, environment)[0]
         compare_with_the_file(run, tmp_path / pulled)
         play(run.archive().best().replay(), browser, tmp_path)
 
 
-@pytest.mark.e2e
 def test_the_example_in_the_client_guide_works(shared, common, tmp_path):
     examples = re.findall(r"```python\n(.*?)```", GUIDE.read_text(), re.DOTALL)
     (example,) = (text for text in examples if "mc.Client" in text)
@@ -45,12 +42,12 @@ def test_the_example_in_the_client_guide_works(shared, common, tmp_path):
     for written, small in ((spec, repr(TINY)), ("http://127.0.0.1:8000", shared.product.url)):
         assert written in example
         example = example.replace(written, small)
-    *_, last = told(("-c", example), tmp_path, os.environ | common)
+    *_, last = output_of(("-c", example), tmp_path, os.environ | common)
     assert last.endswith("True")
     assert (tmp_path / "first.h5").exists()
 
 
-def told(arguments: tuple[str, ...], folder: Path, environment: dict[str, str]) -> list[str]:
+def output_of(arguments: tuple[str, ...], folder: Path, environment: dict) -> list[str]:
     command = [sys.executable, *arguments]
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

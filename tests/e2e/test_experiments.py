@@ -3,16 +3,14 @@
 import re
 
 import places
-import pytest
+from places import stage, start_run, the_map
 from playwright.sync_api import Page, expect
 
-FAST, SLOW = 10_000, 300_000
+SLOW = 300_000
 
 
-@pytest.mark.e2e
-def test_a_population_is_started_watched_and_explored(shared_page: Page, shared_address: str):
-    page = shared_page
-    submit_a_small_population(page, shared_address)
+def test_a_population_is_started_watched_and_explored(shared, page):
+    submit_a_small_population(page, shared.product.url)
     watch_it_end(page)
     look_along_other_axes(page)
     open_the_best(page)
@@ -26,12 +24,10 @@ def submit_a_small_population(page: Page, address: str) -> None:
     page.get_by_label("Generations", exact=False).fill("12")
     search = page.get_by_role("group", name="Search", exact=True)
     search.get_by_label("Batch", exact=False).fill("16")
-    again = search.get_by_role("checkbox", name="Reevaluation")
-    again.check()
+    search.get_by_role("checkbox", name="Reevaluation").check()
     search.get_by_label("Every", exact=False).fill("4")
     search.get_by_label("Evaluations", exact=False).fill("128")
-    page.get_by_role("button", name="Start run").click()
-    page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
+    start_run(page)
 
 
 def watch_it_end(page: Page) -> None:
@@ -47,39 +43,31 @@ def look_along_other_axes(page: Page) -> None:
     page.get_by_label("Horizontal axis").select_option("path_length")
     page.get_by_label("Vertical axis").select_option(label="Fitness")
     assert "x=path_length&y=fitness" in page.url
-    expect(page.get_by_text("Path length (cells)")).to_be_visible(timeout=FAST)
+    expect(page.get_by_text("Path length (cells)")).to_be_visible()
     with page.expect_response(re.compile("measures=path_length")):
         page.reload()
-    expect(page.get_by_label("Horizontal axis")).to_have_value("path_length", timeout=FAST)
+    expect(page.get_by_label("Horizontal axis")).to_have_value("path_length")
 
 
 def open_the_best(page: Page) -> None:
-    plot = page.get_by_role("application", name=re.compile("Archive map"))
-    reading = page.locator("#elite-measures")
-    plot.focus()
+    the_map(page).focus()
     page.wait_for_timeout(300)  # What was fetched is drawn.
     page.keyboard.press("ArrowRight")
-    expect(reading).to_contain_text("Path length", timeout=FAST)
+    expect(page.locator("#elite-measures")).to_contain_text("Path length")
     page.keyboard.press("Enter")
-    page.wait_for_url(re.compile("/creatures/[0-9a-f]{64}"), timeout=FAST)
-    expect(page.get_by_role("group", name=re.compile("^Network:"))).to_be_visible(timeout=FAST)
+    page.wait_for_url(re.compile("/creatures/[0-9a-f]{64}"))
+    expect(page.get_by_role("group", name=re.compile("^Network:"))).to_be_visible()
     with page.expect_download(timeout=SLOW) as download:
         page.get_by_role("link", name="SVG").click()
     assert download.value.path().read_text().startswith("<svg")
 
 
-FAST, SLOW = 10_000, 120_000
-WIDTH = 1280
-
-
-@pytest.mark.e2e
-def test_gaits_are_submitted_plotted_and_watched(shared_page: Page, shared_address: str):
-    page = shared_page
-    submit_a_small_sweep(page, shared_address)
+def test_gaits_are_submitted_plotted_and_watched(shared, page):
+    submit_a_small_sweep(page, shared.product.url)
     watch_points_appear(page)
     sort_the_table(page)
-    swimmer = open_a_point(page)
-    see_it_swim(page, swimmer)
+    open_a_point(page)
+    see_it_swim(page)
 
 
 def submit_a_small_sweep(page: Page, address: str) -> None:
@@ -89,21 +77,20 @@ def submit_a_small_sweep(page: Page, address: str) -> None:
     page.get_by_role("checkbox", name="paper", exact=True).check()
     viscosities = page.get_by_label("Viscosities", exact=False)
     viscosities.fill("0.1, 3")
-    expect(page.get_by_text("Needs at most 2.")).to_be_visible(timeout=FAST)
+    expect(page.get_by_text("Needs at most 2.")).to_be_visible()
     viscosities.fill("0.1, 1")
     page.get_by_label("Period", exact=False).fill("40")
     page.get_by_role("checkbox", name="Steric").check()
     expect(page.get_by_label("Strength", exact=False)).to_have_value("4")
-    expect(page.get_by_label("Estimate", exact=True)).to_contain_text("8", timeout=FAST)
-    page.get_by_role("button", name="Start run").click()
-    page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
+    expect(page.get_by_label("Estimate", exact=True)).to_contain_text("8")
+    start_run(page)
 
 
 def watch_points_appear(page: Page) -> None:
     page.evaluate("window.neverReloaded = true")
     expect(page.get_by_text("4 / 4")).to_be_visible(timeout=SLOW)
     plot = page.get_by_role("group", name="Displacement against viscosity, Ours")
-    expect(plot.get_by_role("link")).to_have_count(4, timeout=FAST)
+    expect(plot.get_by_role("link")).to_have_count(4)
     page.get_by_role("button", name="Side by side").click()
     expect(page.get_by_role("link", name=re.compile("at ν ="))).to_have_count(8)
     expect(page.get_by_text("not force-free", exact=True)).to_be_visible()
@@ -139,10 +126,10 @@ def read_the_warnings(page: Page) -> None:
         expect(note).to_have_text(warning)
         box = note.bounding_box()
         assert box
-        assert 0 <= box["x"] < box["x"] + box["width"] <= WIDTH
+        assert 0 <= box["x"] < box["x"] + box["width"] <= 1280
 
 
-def open_a_point(page: Page) -> str:
+def open_a_point(page: Page) -> None:
     page.get_by_role("button", name="Paper").click()
     point = page.get_by_role("link", name=re.compile("^Worm at ν = 1,"))
     point.scroll_into_view_if_needed()
@@ -150,17 +137,16 @@ def open_a_point(page: Page) -> str:
     assert box
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     page.mouse.move(x, y)
-    expect(point.get_by_text("Worm at ν = 1", exact=True)).to_be_visible(timeout=FAST)
+    expect(point.get_by_text("Worm at ν = 1", exact=True)).to_be_visible()
     beside = page.get_by_role("complementary", name="Replay of the mark")
-    expect(beside.get_by_text("Worm at ν = 1", exact=True)).to_be_visible(timeout=FAST)
+    expect(beside.get_by_text("Worm at ν = 1", exact=True)).to_be_visible()
     expect(beside.get_by_role("img", name=re.compile("swimming"))).to_be_visible(timeout=SLOW)
     page.mouse.click(x, y)
-    page.wait_for_url(re.compile("/creatures/[0-9a-f]{64}"), timeout=FAST)
-    return "Worm"
+    page.wait_for_url(re.compile("/creatures/[0-9a-f]{64}"))
 
 
-def see_it_swim(page: Page, swimmer: str) -> None:
-    expect(page.get_by_role("heading", name=swimmer)).to_be_visible(timeout=FAST)
+def see_it_swim(page: Page) -> None:
+    expect(page.get_by_role("heading", name="Worm")).to_be_visible()
     expect(page.get_by_text("not force-free", exact=True)).to_be_visible()
     expect(page.get_by_role("group", name=re.compile("^Network:"))).to_have_count(0)
     places.see_it_swim(page, SLOW / 1000)
@@ -170,44 +156,33 @@ def see_it_swim(page: Page, swimmer: str) -> None:
     assert download.value.path().read_bytes().startswith(b"GIF89a")
 
 
-FAST, SLOW = 10_000, 120_000
-
-
-@pytest.mark.e2e
-def test_a_filament_folds_and_is_watched(shared_page: Page, shared_address: str):
-    page = shared_page
-    page.goto(f"{shared_address}/new")
+def test_a_filament_folds_and_is_watched(shared, page):
+    page.goto(f"{shared.product.url}/new")
     page.get_by_role("radio", name=re.compile("^Folding")).check()
     page.get_by_role("button", name=re.compile("fold into two digits without")).click()
     page.get_by_label("Updates", exact=False).fill("4")
-    page.get_by_role("button", name="Start run").click()
-    page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
+    start_run(page)
     expect(page.get_by_text("4 / 4")).to_be_visible(timeout=SLOW)
-    plot = page.get_by_role("group", name="Loss against updates")
-    expect(plot).to_be_visible(timeout=FAST)
+    expect(page.get_by_role("group", name="Loss against updates")).to_be_visible()
     rows = page.locator("table.results tbody tr")
-    expect(rows).to_have_count(2, timeout=FAST)
+    expect(rows).to_have_count(2)
     rows.first.get_by_role("link").click()
-    page.wait_for_url(re.compile("/creatures/[0-9a-f]{64}"), timeout=FAST)
+    page.wait_for_url(re.compile("/creatures/[0-9a-f]{64}"))
     expect(page.get_by_role("button", name="Refine")).to_have_count(0)
     see_it_move(page, 1)
 
 
-@pytest.mark.e2e
-def test_an_elite_is_refined_and_compared(shared, shared_page: Page):
-    page, address = shared_page, shared.product.url
-    found = page.request.get(
-        f"{address}/api/v1/runs/{shared.finished('voronoi')}/archive"
-    ).json()
-    page.goto(f"{address}/creatures/{found['creature'][0]}")
+def test_an_elite_is_refined_and_compared(shared, page):
+    found = shared.product.get(f"runs/{shared.finished('voronoi')}/archive")
+    page.goto(f"{shared.product.url}/creatures/{found['creature'][0]}")
     page.get_by_role("button", name="Refine").click()
-    expect(page.get_by_text("Queues a new run")).to_be_visible(timeout=FAST)
+    expect(page.get_by_text("Queues a new run")).to_be_visible()
     assert "/creatures/" in page.url  # Nothing is queued before it is confirmed.
     page.get_by_role("button", name="Refine now").click()
-    page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
+    page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"))
     expect(page.get_by_text("21 / 21")).to_be_visible(timeout=SLOW)
     expect(page.get_by_role("group", name="Fitness against steps")).to_be_visible()
-    expect(page.get_by_role("heading", name="Before and after")).to_be_visible(timeout=FAST)
+    expect(page.get_by_role("heading", name="Before and after")).to_be_visible()
     see_it_move(page, 2)
     expect(page.locator(".stages figcaption")).to_have_count(2)
     first, last = (one.inner_text() for one in page.locator(".stages figcaption").all())
@@ -216,8 +191,7 @@ def test_an_elite_is_refined_and_compared(shared, shared_page: Page):
 
 
 def see_it_move(page: Page, films: int) -> None:
-    canvas = page.get_by_role("img", name=re.compile("The swimming creature"))
-    expect(canvas).to_have_count(films, timeout=SLOW)
+    expect(stage(page)).to_have_count(films, timeout=SLOW)
     before = all_pixels(page)
     page.get_by_label("Time in the replay").focus()
     page.keyboard.press("End")

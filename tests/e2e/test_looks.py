@@ -15,20 +15,17 @@ DESK = 1280
 REDRAWN_MS = 150
 
 
-@pytest.mark.e2e
-def test_every_page_fits_its_window_and_axe_finds_nothing(
-    shared_page: Page, shared: Any, idle: Any, complaints: list[str]
-):
-    shared_page.add_init_script(GUIDED)
-    shared_page.emulate_media(reduced_motion="reduce")
+def test_every_page_fits_its_window_and_axe_finds_nothing(page, shared, idle, complaints):
+    page.add_init_script(GUIDED)
+    page.emulate_media(reduced_motion="reduce")
     wrong = []
     for address, place in every_place(shared, idle):
-        shared_page.set_viewport_size({"width": DESK, "height": WIDTHS[DESK]})
-        assert visit(shared_page, address, place), f"there is no page at {place.path}"
-        wrong += [f"{place.name}, {said}" for said in complaints_of(shared_page)]
+        page.set_viewport_size({"width": DESK, "height": WIDTHS[DESK]})
+        assert visit(page, address, place), f"there is no page at {place.path}"
+        wrong += [f"{place.name}, {fault}" for fault in faults_of(page)]
     assert wrong == []
     # Where nothing was shared, 404 is the page's status and the share's.
-    complaints[:] = [said for said in complaints if not re.search("404.*/nothing$", said)]
+    complaints[:] = [text for text in complaints if not re.search("404.*/nothing$", text)]
 
 
 def every_place(shared: Any, idle: Any) -> Iterator[tuple[str, Place]]:
@@ -61,12 +58,12 @@ def every_place(shared: Any, idle: Any) -> Iterator[tuple[str, Place]]:
 def published(http: Any, run: str) -> list[dict[str, Any]]:
     """An archive and one of its creatures, under long names."""
     creature = http.get(f"/api/v1/runs/{run}/archive").json()["creature"][0]
-    said = {"title": "A very long title, " * 8, "credit": ["Ada"], "listed": True}
-    asked = [{"run": run, **said}, {"creature": creature, **said}]
+    described = {"title": "A very long title, " * 8, "credit": ["Ada"], "listed": True}
+    asked = [{"run": run, **described}, {"creature": creature, **described}]
     return [http.post("/api/v1/shares", json=one).raise_for_status().json() for one in asked]
 
 
-def complaints_of(page: Page) -> Iterator[str]:
+def faults_of(page: Page) -> Iterator[str]:
     """In every theme and width, what a person would see to be wrong; at a desk, also axe."""
     for width, height in WIDTHS.items():
         page.set_viewport_size({"width": width, "height": height})
@@ -77,7 +74,6 @@ def complaints_of(page: Page) -> Iterator[str]:
             yield from (f"{width} wide, {theme}: {fault}" for fault in found)
 
 
-FAST = 15_000
 MOST_SHIFT = 0.05
 LEAST_CONTROL = 24
 
@@ -100,28 +96,22 @@ SMALL = """
 """
 
 
-@pytest.mark.e2e
 @pytest.mark.parametrize("width", [1280, 390])
-def test_opening_a_run_shifts_no_layout(shared: Any, shared_page: Page, width: int):
-    page = shared_page
+def test_opening_a_run_shifts_no_layout(shared, page, width):
     page.set_viewport_size({"width": width, "height": 800})
     page.add_init_script(SHIFT)
     page.goto(f"{shared.product.url}/runs/{shared.finished('search')}")
-    expect(page.locator(".map-plot canvas")).to_be_visible(timeout=FAST)
+    expect(page.locator(".map-plot canvas")).to_be_visible()
     page.wait_for_load_state("networkidle")
     assert page.evaluate("window.shift") <= MOST_SHIFT
 
 
-@pytest.mark.e2e
-def test_a_phone_has_one_row_of_navigation_and_controls_to_touch(
-    shared: Any, shared_page: Page
-):
-    page = shared_page
+def test_a_phone_has_one_row_of_navigation_and_controls_to_touch(shared, page):
     page.set_viewport_size({"width": 390, "height": 844})
     run = shared.finished("search")
     for path in ("/", f"/runs/{run}", "/new", "/workers", "/settings"):
         page.goto(f"{shared.product.url}{path}")
-        expect(page.get_by_role("heading", level=1)).to_be_visible(timeout=FAST)
+        expect(page.get_by_role("heading", level=1)).to_be_visible()
         links = page.get_by_role("navigation", name="Pages").get_by_role("link").all()
         boxes = [box for link in links if (box := link.bounding_box())]
         assert len({box["y"] for box in boxes}) == 1, path
@@ -129,27 +119,19 @@ def test_a_phone_has_one_row_of_navigation_and_controls_to_touch(
         assert page.evaluate(SMALL, LEAST_CONTROL) == [], path
 
 
-@pytest.mark.e2e
-def test_a_malformed_id_is_named_without_parser_words(
-    shared: Any, shared_page: Page, complaints: list[str]
-):
-    shared_page.goto(f"{shared.product.url}/runs/abc")
-    expect(shared_page.get_by_role("alert")).to_contain_text("abc", timeout=FAST)
-    expect(shared_page.get_by_text("UUID")).to_have_count(0)
+def test_a_malformed_id_is_named_without_parser_words(shared, page, complaints):
+    page.goto(f"{shared.product.url}/runs/abc")
+    expect(page.get_by_role("alert")).to_contain_text("abc")
+    expect(page.get_by_text("UUID")).to_have_count(0)
     # The browser logs the refused request itself.
-    complaints[:] = [said for said in complaints if not re.search("422.*/runs/abc$", said)]
+    complaints[:] = [text for text in complaints if not re.search("422.*/runs/abc$", text)]
 
 
-@pytest.mark.e2e
-def test_titles_of_a_family_tree_do_not_overlap(shared: Any, shared_page: Page):
-    page, address = shared_page, shared.product.url
-    archive = page.request.get(
-        f"{address}/api/v1/runs/{shared.finished('search')}/archive"
-    ).json()
+def test_titles_of_a_family_tree_do_not_overlap(shared, page):
+    archive = shared.product.get(f"runs/{shared.finished('search')}/archive")
     young = max(range(len(archive["cell"])), key=lambda i: archive["elite_generation"][i])
-    page.goto(f"{address}/creatures/{archive['creature'][young]}?back=5")
+    page.goto(f"{shared.product.url}/creatures/{archive['creature'][young]}?back=5")
     titles = page.locator(".family-title")
-    expect(titles.get_by_text("generations back").first).to_be_visible(timeout=FAST)
-    assert all(
-        title.evaluate("(e) => e.scrollWidth <= e.clientWidth") for title in titles.all()
-    )
+    expect(titles.get_by_text("generations back").first).to_be_visible()
+    fits = "(e) => e.scrollWidth <= e.clientWidth"
+    assert all(title.evaluate(fits) for title in titles.all())

@@ -11,7 +11,6 @@ from playwright.sync_api import Locator, Page, expect
 
 from microcosmos.archive import creature
 
-FAST = 10_000
 KINDS = {
     "Quality-diversity": "16 nodes",
     "Neuroevolution": "16 nodes",
@@ -23,12 +22,12 @@ SPEC = {"experiment": "gaits", "swimmers": ["ray", "cilia"], "period": 240}
 
 
 @pytest.fixture
-def new(idle_page: Page, idle, complaints: list[str]) -> Iterator[Page]:
-    idle_page.goto(f"{idle.product.url}/new")
-    expect(idle_page.get_by_label("Estimate", exact=True)).to_be_visible(timeout=FAST)
-    yield idle_page
+def new(page: Page, idle, complaints: list[str]) -> Iterator[Page]:
+    page.goto(f"{idle.product.url}/new")
+    expect(page.get_by_label("Estimate", exact=True)).to_be_visible()
+    yield page
     # The browser logs the refusal of a wrong value, which the page shows.
-    complaints[:] = [said for said in complaints if "status of 422" not in said]
+    complaints[:] = [text for text in complaints if "status of 422" not in text]
 
 
 def beginning(page: Page) -> Locator:
@@ -66,8 +65,7 @@ def field(page: Page, group: str, name: str) -> Locator:
     return page.get_by_role("group", name=group, exact=True).get_by_label(name, exact=True)
 
 
-@pytest.mark.e2e
-def test_a_spec_is_begun_changed_refused_kept_and_a_run_started(new: Page, idle):
+def test_a_spec_is_begun_changed_refused_kept_and_a_run_started(new, idle):
     """Runs are queued, and no worker takes them."""
     address = idle.product.url
     every_experiment_shows_its_body_and_cost(new)
@@ -83,13 +81,12 @@ def test_a_spec_is_begun_changed_refused_kept_and_a_run_started(new: Page, idle)
 def every_experiment_shows_its_body_and_cost(page: Page) -> None:
     for kind, nodes in KINDS.items():
         choose(page, kind)
-        expect(beginning(page)).to_contain_text("Same as preset “demo”", timeout=FAST)
-        drawing = page.locator(".body-drawing")
-        expect(drawing).to_contain_text(nodes, timeout=FAST)
+        expect(beginning(page)).to_contain_text("Same as preset “demo”")
+        expect(page.locator(".body-drawing")).to_contain_text(nodes)
         assert page.locator(".filament").first.get_attribute("d")
         expect(page.get_by_role("region", name="Cost")).to_contain_text("No worker is running")
     choose(page, "Folding")
-    expect(page.get_by_role("img", name=re.compile("^Picture"))).to_have_count(2, timeout=FAST)
+    expect(page.get_by_role("img", name=re.compile("^Picture"))).to_have_count(2)
     choose(page, "Refinement")
     expect(page.get_by_text("A refinement starts from a creature")).to_be_visible()
     page.get_by_role("radio", name=re.compile("^Quality")).check()
@@ -98,18 +95,15 @@ def every_experiment_shows_its_body_and_cost(page: Page) -> None:
 def a_wrong_value_is_named(page: Page) -> None:
     nodes = field(page, "Body", "Nodes")
     nodes.fill("2")
-    expect(page.get_by_text("Needs at least 3.")).to_be_visible(timeout=FAST)
+    expect(page.get_by_text("Needs at least 3.")).to_be_visible()
     nodes.fill("60")
-    expect(page.get_by_text(re.compile("World.width must be at least 75"))).to_be_visible(
-        timeout=FAST
-    )
+    expect(page.get_by_text(re.compile("World.width must be at least 75"))).to_be_visible()
     page.get_by_role("button", name="Start run").click()
-    expect(page.get_by_text("Fix the highlighted fields")).to_be_visible(timeout=FAST)
+    expect(page.get_by_text("Fix the highlighted fields")).to_be_visible()
     assert page.url.endswith("/new?preset=quality-diversity%2Fdemo")
-    page.get_by_role("group", name="Body", exact=True).get_by_label("Builder").select_option(
-        "ring"
-    )
-    expect(page.locator(".body-drawing")).to_contain_text("Ring 32 nodes", timeout=FAST)
+    body = page.get_by_role("group", name="Body", exact=True)
+    body.get_by_label("Builder").select_option("ring")
+    expect(page.locator(".body-drawing")).to_contain_text("Ring 32 nodes")
 
 
 def changes_are_counted_kept_and_undone(page: Page) -> None:
@@ -117,7 +111,7 @@ def changes_are_counted_kept_and_undone(page: Page) -> None:
     expect(beginning(page)).to_contain_text(re.compile(r"\d changes from preset “demo”"))
     text = beginning(page).inner_text().partition(".")[0]
     page.reload()
-    expect(beginning(page)).to_contain_text("Restored draft", timeout=FAST)
+    expect(beginning(page)).to_contain_text("Restored draft")
     expect(beginning(page)).to_contain_text(text)
     expect(field(page, "Task", "Steps")).to_have_value("120")
     page.get_by_role("button", name="Reset to 100", exact=True).click()
@@ -125,7 +119,7 @@ def changes_are_counted_kept_and_undone(page: Page) -> None:
     page.get_by_role("button", name="Discard draft").click()
     expect(beginning(page)).to_contain_text("Same as preset “demo”")
     page.get_by_role("button", name="Undo", exact=True).click()
-    expect(page.locator(".body-drawing")).to_contain_text("Ring", timeout=FAST)
+    expect(page.locator(".body-drawing")).to_contain_text("Ring")
 
 
 def json_and_form_stay_in_step(page: Page) -> None:
@@ -147,10 +141,10 @@ def json_and_form_stay_in_step(page: Page) -> None:
 
 def a_spec_is_pasted_and_what_is_none_is_refused(page: Page, address: str) -> None:
     page.goto(f"{address}/new?preset=scaling/demo")
-    expect(beginning(page)).to_contain_text("Same as preset “demo”", timeout=FAST)
+    expect(beginning(page)).to_contain_text("Same as preset “demo”")
     paste(page, SPEC)
-    expect(beginning(page)).to_contain_text("Same as the pasted spec", timeout=FAST)
-    expect(page.locator(".body-drawing")).to_contain_text("Cilia 88 nodes", timeout=FAST)
+    expect(beginning(page)).to_contain_text("Same as the pasted spec")
+    expect(page.locator(".body-drawing")).to_contain_text("Cilia 88 nodes")
     expect(field(page, "General", "Cycles")).to_have_value("3")
     paste(page, '{"experiment": "astrology"}')
     expect(page.get_by_text("“experiment” must be one of quality-diversity")).to_be_visible()
@@ -161,7 +155,7 @@ def a_spec_is_pasted_and_what_is_none_is_refused(page: Page, address: str) -> No
 def a_run_is_cloned(page: Page, address: str) -> None:
     run = page.request.post(f"{address}/api/v1/runs", data={**SPEC, "cycles": 5}).json()
     page.goto(f"{address}/new?from={run['id']}")
-    expect(beginning(page)).to_contain_text(f"Same as run {run['id'][:8]}", timeout=FAST)
+    expect(beginning(page)).to_contain_text(f"Same as run {run['id'][:8]}")
     expect(field(page, "General", "Cycles")).to_have_value("5")
     drop(page, "run.json", json.dumps(run))
     expect(beginning(page)).to_contain_text(f"Same as run {run['id'][:8]}")
@@ -173,17 +167,17 @@ def a_creature_gives_its_world(page: Page, address: str) -> None:
     file = creature_file()
     name = file["sha256"]
     drop(page, "creature.json", json.dumps(file))
-    expect(beginning(page)).to_contain_text(f"Same as creature {name[:8]}", timeout=FAST)
+    expect(beginning(page)).to_contain_text(f"Same as creature {name[:8]}")
     expect(field(page, "Task", "Steps")).to_have_value("60")
     page.get_by_role("button", name="Open this creature instead").click()
-    page.wait_for_url(f"{address}/creatures/{name}", timeout=FAST)
+    page.wait_for_url(f"{address}/creatures/{name}")
     page.goto(f"{address}/new?creature={name}")
-    expect(field(page, "World", "Width")).to_have_value("32", timeout=FAST)
+    expect(field(page, "World", "Width")).to_have_value("32")
 
 
 def a_run_is_started_by_keyboard_alone(new: Page, address: str) -> None:
     new.goto(f"{address}/new?preset=quality-diversity/demo")
-    expect(beginning(new)).to_contain_text("Same as preset “demo”", timeout=FAST)
+    expect(beginning(new)).to_contain_text("Same as preset “demo”")
     reach(new, "radio", "Quality-diversity")
     new.keyboard.press("ArrowRight")
     expect(beginning(new)).to_contain_text("Same as preset “demo”")
@@ -200,7 +194,7 @@ def a_run_is_started_by_keyboard_alone(new: Page, address: str) -> None:
     new.keyboard.type("5")
     expect(beginning(new)).to_contain_text("1 change from")
     new.keyboard.press("ControlOrMeta+Enter")
-    new.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
+    new.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"))
     assert new.evaluate("sessionStorage.length") == 0
 
 

@@ -2,19 +2,16 @@
 
 import re
 
-import pytest
 from playwright.sync_api import Page, expect
 from written import GENERATIONS, Written
 
 from microcosmos.spec import EXPERIMENTS
 
-FAST = 10_000
 CHANGED = "before => before !== document.querySelector('#curves canvas').toDataURL()"
 
 
-@pytest.mark.e2e
-def test_a_run_is_shown_from_the_queue_to_its_end_and_compared(idle_page: Page, idle):
-    page, services, address = idle_page, idle.services, idle.product.url
+def test_a_run_is_shown_from_the_queue_to_its_end_and_compared(page, idle):
+    services, address = idle.services, idle.product.url
     other = Written(services, 7)
     other.begin("worker 1")
     other.go_on(1, GENERATIONS)
@@ -35,17 +32,15 @@ def test_a_run_is_shown_from_the_queue_to_its_end_and_compared(idle_page: Page, 
 
 
 def watch_it_begin(page: Page, run: Written) -> None:
-    # Why it waits is said once.
-    expect(page.get_by_role("status").get_by_text("No worker is alive")).to_have_count(
-        1, timeout=FAST
-    )
+    # The page shows the reason once.
+    expect(page.get_by_role("status").get_by_text("No worker is alive")).to_have_count(1)
     run.begin("worker 1")
-    expect(page.get_by_text("up to a minute on a CPU")).to_be_visible(timeout=FAST)
+    expect(page.get_by_text("up to a minute on a CPU")).to_be_visible()
     elapsed = page.locator(".activity .quiet")
     before = elapsed.inner_text()
-    expect(elapsed).not_to_have_text(before, timeout=FAST)
+    expect(elapsed).not_to_have_text(before)
     run.go_on(1, 4)
-    expect(page.get_by_text("up to a minute on a CPU")).to_have_count(0, timeout=FAST)
+    expect(page.get_by_text("up to a minute on a CPU")).to_have_count(0)
 
 
 def follow_the_log(page: Page, run: Written) -> None:
@@ -54,7 +49,7 @@ def follow_the_log(page: Page, run: Written) -> None:
     run.begin("worker 2")
     run.go_on(5, GENERATIONS)
     run.attempt.finish()
-    expect(log.get_by_text("Finished.")).to_be_visible(timeout=FAST)
+    expect(log.get_by_text("Finished.")).to_be_visible()
     entries = log.get_by_role("listitem")
     expect(entries.first).to_contain_text("Finished.")
     expect(entries.last).to_contain_text("Submitted: neuroevolution")
@@ -66,14 +61,14 @@ def follow_the_log(page: Page, run: Written) -> None:
     expect(log.get_by_text("File x")).to_be_visible()
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     log.get_by_role("button", name="Copy").click()
-    expect(page.get_by_text("Log copied.")).to_be_visible(timeout=FAST)
+    expect(page.get_by_text("Log copied.")).to_be_visible()
     assert "File x\nZeroDivisionError" in page.evaluate("navigator.clipboard.readText()")
     log.get_by_label("Show").select_option("info")
 
 
 def see_species_and_the_best_network(page: Page, run: Written) -> None:
     plot = page.get_by_role("application", name=re.compile("^Species over generations"))
-    expect(plot).to_have_attribute("aria-label", re.compile("2 in all"), timeout=FAST)
+    expect(plot).to_have_attribute("aria-label", re.compile("2 in all"))
     reading = page.locator("#species-at-cursor")
     plot.focus()
     page.keyboard.press("Home")
@@ -85,7 +80,7 @@ def see_species_and_the_best_network(page: Page, run: Written) -> None:
     page.mouse.move(box["x"] + 60, box["y"] + 0.75 * box["height"])
     expect(reading).to_contain_text("species 0, 10 members, of 2 species")
     best = page.get_by_role("region", name="Best network so far")
-    expect(best).to_contain_text(f"fitness {GENERATIONS}", timeout=FAST)
+    expect(best).to_contain_text(f"fitness {GENERATIONS}")
     expect(best.get_by_role("img", name=re.compile("^Network: 5 nodes"))).to_be_visible()
 
 
@@ -127,7 +122,7 @@ def lay_another_run_beside(page: Page, other: Written) -> None:
     expect(curves.get_by_role("link", name=re.compile(str(other.id)[:8]))).to_be_visible()
     page.wait_for_function(CHANGED, arg=alone)
     score = curves.get_by_role("img", name=re.compile(f"^QD score .*{str(other.id)[:8]}"))
-    expect(score).to_be_visible(timeout=FAST)
+    expect(score).to_be_visible()
     assert f"with={other.id}" in page.url
 
 
@@ -145,7 +140,7 @@ def see_what_differs_in_the_spec(page: Page, other: Written) -> None:
 def come_back_by_the_address(page: Page, other: Written) -> None:
     page.reload()
     curves = page.get_by_role("region", name="Curves")
-    expect(curves.get_by_label("Log scale")).to_be_checked(timeout=FAST)
+    expect(curves.get_by_label("Log scale")).to_be_checked()
     expect(curves.get_by_label("Smoothing")).to_have_value("5")
     expect(curves.get_by_role("link", name=re.compile(str(other.id)[:8]))).to_be_visible()
     curves.get_by_role("button", name=re.compile("^Remove")).click()
@@ -167,8 +162,8 @@ def walk_by_keyboard(page: Page) -> None:
     expect(difference).to_be_focused()
     page.keyboard.press("Enter")
     choice = page.get_by_role("combobox", name="Compare specs")
-    expect(choice).to_be_focused(timeout=FAST)
-    expect(choice.get_by_role("option")).not_to_have_count(1, timeout=FAST)
+    expect(choice).to_be_focused()
+    expect(choice.get_by_role("option")).not_to_have_count(1)
     page.keyboard.press("ArrowDown")  # Of a closed list this takes one, which is no decision.
     expect(choice).to_be_focused()
     assert "against=" not in page.url
@@ -176,14 +171,13 @@ def walk_by_keyboard(page: Page) -> None:
     expect(difference).to_be_focused()
 
 
-@pytest.mark.e2e
-def test_a_folding_shows_its_pictures_while_it_learns(idle_page: Page, idle):
-    page, address = idle_page, idle.product.url
+def test_a_folding_shows_its_pictures_while_it_learns(page, idle):
+    address = idle.product.url
     spec = next(p.spec for p in EXPERIMENTS["folding"].presets if p.name == "demo")
     run = idle.product.submit(spec.model_dump(mode="json"))
     page.goto(f"{address}/runs/{run}")
     card = page.get_by_role("region", name="Pictures")
-    expect(card).to_contain_text("when all updates are done", timeout=FAST)
+    expect(card).to_contain_text("when all updates are done")
     inked = page.evaluate(
         """() => [...document.querySelectorAll(".fold-choice canvas")].map((canvas) =>
             canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height)

@@ -1,22 +1,20 @@
+"""A run is submitted and watched; its creature is opened, downloaded and dropped back in."""
+
 import json
 import re
 from pathlib import Path
-from typing import Any
 
-import pytest
-from places import pixels, see_it_swim
+from drive import Installation
+from places import elites, pixels, see_it_swim, start_run, the_map
 from playwright.sync_api import Page, expect
 
-FAST, SLOW = 10_000, 120_000
+SLOW = 120_000
 
 
-@pytest.mark.e2e
-def test_a_run_is_submitted_watched_and_its_creature_swims(
-    page: Page, address: str, tmp_path: Path
-):
-    run = submit_a_short_run(page, address)
+def test_a_run_is_submitted_watched_and_its_creature_swims(product, page, tmp_path):
+    run = submit_a_short_run(page, product.url)
     watch_it_live(page)
-    sha = open_an_elite(page, address, run)
+    sha = open_an_elite(page, product, run)
     see_it_move(page)
     file = download_it(page, sha, tmp_path)
     drop_it_back_in(page, file, sha)
@@ -27,57 +25,51 @@ def submit_a_short_run(page: Page, address: str) -> str:
     presets = page.get_by_role("group", name=re.compile("^Quality-diversity"))
     demo = presets.get_by_role("button", name=re.compile("^Demo A small"))
     demo.click()
-    expect(demo).to_have_attribute("aria-pressed", "true", timeout=FAST)
+    expect(demo).to_have_attribute("aria-pressed", "true")
     generations = page.get_by_label("Generations", exact=False)
     generations.fill("-1")
-    expect(page.get_by_text("Needs at least 1.")).to_be_visible(timeout=FAST)
+    expect(page.get_by_text("Needs at least 1.")).to_be_visible()
     generations.fill("30")
-    expect(page.get_by_label("Estimate", exact=True)).to_contain_text("480", timeout=FAST)
-    page.get_by_role("button", name="Start run").click()
-    page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"), timeout=FAST)
-    return page.url.rpartition("/")[2]
+    expect(page.get_by_label("Estimate", exact=True)).to_contain_text("480")
+    return start_run(page)
 
 
 def watch_it_live(page: Page) -> None:
     page.evaluate("window.neverReloaded = true")
-    elites = page.get_by_text(re.compile(r"^\d+ elites$"))
-    expect(elites).not_to_have_text("0 elites", timeout=SLOW)
+    expect(elites(page)).not_to_have_text("0 elites", timeout=SLOW)
     expect(page.get_by_text(re.compile(r"^\d+ / 30$"))).not_to_have_text("0 / 30", timeout=SLOW)
     expect(page.get_by_text("30 / 30")).to_be_visible(timeout=SLOW)
-    expect(
-        page.get_by_role("img", name=re.compile("QD score over generations"))
-    ).to_be_visible()
+    expect(page.get_by_role("img", name="QD score over generations")).to_be_visible()
     assert page.evaluate("window.neverReloaded")
 
 
-def open_an_elite(page: Page, address: str, run: str) -> str:
-    archive: dict[str, Any] = page.request.get(f"{address}/api/v1/runs/{run}/archive").json()
+def open_an_elite(page: Page, product: Installation, run: str) -> str:
+    archive = product.get(f"runs/{run}/archive")
     k = max(range(len(archive["cell"])), key=lambda i: archive["fitness"][i])
     columns, rows = (axis["bins"] for axis in archive["axes"])
     i, j = divmod(archive["cell"][k], rows)
-    plot = page.get_by_role("application", name=re.compile("Archive map"))
-    plot.scroll_into_view_if_needed()
-    box = plot.bounding_box()
+    the_map(page).scroll_into_view_if_needed()
+    box = the_map(page).bounding_box()
     assert box
     x = box["x"] + (i + 0.5) * box["width"] / columns
     y = box["y"] + (rows - j - 0.5) * box["height"] / rows
     sha = archive["creature"][k]
     page.mouse.move(x, y)
-    expect(page.locator("#elite-measures")).to_contain_text(sha[:8], timeout=FAST)
+    expect(page.locator("#elite-measures")).to_contain_text(sha[:8])
     page.mouse.click(x, y)
-    page.wait_for_url(re.compile(f"/creatures/{sha}"), timeout=FAST)
+    page.wait_for_url(re.compile(f"/creatures/{sha}"))
     return sha
 
 
 def see_it_move(page: Page) -> None:
     see_it_swim(page, SLOW / 1000)
     page.keyboard.press("Space")
-    expect(page.get_by_role("button", name="Play")).to_be_visible(timeout=FAST)
+    expect(page.get_by_role("button", name="Play")).to_be_visible()
     page.wait_for_timeout(200)  # What was about to be drawn is drawn.
     still = pixels(page)
     page.wait_for_timeout(300)
     assert pixels(page) == still
-    expect(page.get_by_role("group", name=re.compile("^Network:"))).to_be_visible(timeout=FAST)
+    expect(page.get_by_role("group", name=re.compile("^Network:"))).to_be_visible()
 
 
 def download_it(page: Page, sha: str, folder: Path) -> Path:
@@ -92,7 +84,7 @@ def download_it(page: Page, sha: str, folder: Path) -> Path:
 
 def drop_it_back_in(page: Page, file: Path, sha: str) -> None:
     page.get_by_role("link", name="Microcosmos").click()
-    expect(page.get_by_role("heading", name="Runs", exact=True)).to_be_visible(timeout=FAST)
+    expect(page.get_by_role("heading", name="Runs", exact=True)).to_be_visible()
     transfer = page.evaluate_handle(
         """([text, name]) => {
             const transfer = new DataTransfer();
@@ -102,7 +94,7 @@ def drop_it_back_in(page: Page, file: Path, sha: str) -> None:
         [file.read_text(), file.name],
     )
     page.dispatch_event("body", "dragover", {"dataTransfer": transfer})
-    expect(page.get_by_text("Drop a creature file to open it")).to_be_visible(timeout=FAST)
+    expect(page.get_by_text("Drop a creature file to open it")).to_be_visible()
     page.dispatch_event("body", "drop", {"dataTransfer": transfer})
-    page.wait_for_url(re.compile(f"/creatures/{sha}$"), timeout=FAST)
-    expect(page.get_by_role("heading", name=f"Creature {sha[:8]}")).to_be_visible(timeout=FAST)
+    page.wait_for_url(re.compile(f"/creatures/{sha}$"))
+    expect(page.get_by_role("heading", name=f"Creature {sha[:8]}")).to_be_visible()

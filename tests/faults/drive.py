@@ -107,6 +107,10 @@ class Installation:
 
     # Runs, over HTTP.
 
+    def get(self, path: str, **query: Any) -> Any:
+        """Return the JSON of a path of the API."""
+        return self.http.get(f"/api/v1/{path}", params=query).raise_for_status().json()
+
     def submit(self, spec: dict[str, Any]) -> str:
         answer = self.http.post("/api/v1/runs", json=spec)
         answer.raise_for_status()
@@ -116,7 +120,7 @@ class Installation:
         """Read a run, retrying while the server is restarted."""
         for _ in range(100):
             try:
-                return self.http.get(f"/api/v1/runs/{run}").raise_for_status().json()
+                return self.get(f"runs/{run}")
             except httpx.TransportError:
                 time.sleep(0.1)
         raise TimeoutError("the server does not answer")
@@ -155,11 +159,9 @@ class Installation:
 
     def account(self, run: str) -> dict[str, Any]:
         """Curves and archive of a run in the API, without wall times."""
-        curves = self.http.get(f"/api/v1/runs/{run}/generations").raise_for_status().json()
-        archive = self.http.get(f"/api/v1/runs/{run}/archive").raise_for_status().json()
-        summary = {**(curves.get("summary") or {}), "device_seconds": None}
-        curves = {**curves, "seconds": None, "summary": summary}
-        return {"curves": curves, "archive": archive}
+        curves = self.get(f"runs/{run}/generations")
+        curves |= {"seconds": None, "summary": curves["summary"] | {"device_seconds": None}}
+        return {"curves": curves, "archive": self.get(f"runs/{run}/archive")}
 
     # Processes.
 
@@ -178,7 +180,7 @@ class Installation:
         """The supervisor whose job computes a run."""
 
         def there() -> psutil.Process | None:
-            for worker in self.http.get("/api/v1/workers").raise_for_status().json():
+            for worker in self.get("workers"):
                 if worker["run"] == run:
                     return psutil.Process(int(worker["name"].rpartition("-")[2]))
             return None

@@ -11,31 +11,3 @@ from .refine import Refined, subdivided
 from .shape import from_edges
 from .thinning import thinned
 from .unfolding import Unfolded, drawn, unfolded
-
-__all__ = [
-    "MIN_GAP",
-    "Body",
-    "Colour",
-    "Refined",
-    "Unfolded",
-    "arc",
-    "chain",
-    "colour",
-    "drawn",
-    "extent",
-    "from_edges",
-    "from_graph",
-    "graph",
-    "placed",
-    "polyline",
-    "refuse_outside",
-    "ring",
-    "star",
-    "subdivided",
-    "svg",
-    "thinned",
-    "together",
-    "tree",
-    "unfolded",
-    "walk",
-]

@@ -1,4 +1,4 @@
-"""The command line. JAX is loaded only to compute."""
+"""The command line: each module registers its commands. JAX is loaded only to compute."""
 
 from . import (
     creature,
@@ -14,5 +14,3 @@ from . import (
     sharing,
 )
 from .app import app
-
-__all__ = ["app"]

@@ -2,5 +2,3 @@
 
 from .examination import examine
 from .finding import Finding
-
-__all__ = ["Finding", "examine"]

@@ -4,26 +4,3 @@ from .declaration import KINDS, Axis, Declaration, is_plugin
 from .declaring import body, descriptor, encoding, fitness, gait
 from .loading import Unloaded, load, load_all, load_module
 from .registry import LOADED, Broken, Catalogue, Missing, Plugin, find, loaded
-
-__all__ = [
-    "KINDS",
-    "LOADED",
-    "Axis",
-    "Broken",
-    "Catalogue",
-    "Declaration",
-    "Missing",
-    "Plugin",
-    "Unloaded",
-    "body",
-    "descriptor",
-    "encoding",
-    "find",
-    "fitness",
-    "gait",
-    "is_plugin",
-    "load",
-    "load_all",
-    "load_module",
-    "loaded",
-]

@@ -9,7 +9,7 @@ import os
 import sqlite3
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -48,7 +48,7 @@ class Laptop:
 
 
 @pytest.fixture
-def laptop(tmp_path: Path, product: Installation) -> Laptop:
+def laptop(tmp_path, product):
     """The wheel, built and installed as `pip install` does, without what it depends on."""
     folder, packages = tmp_path / "laptop", tmp_path / "packages"
     folder.mkdir()
@@ -58,15 +58,12 @@ def laptop(tmp_path: Path, product: Installation) -> Laptop:
         check=True,
         timeout=120,
     )
-    environment = product.environment | {
-        "PYTHONPATH": str(packages),
-        "MICROCOSMOS_URL": product.url,
-    }
-    return Laptop(folder, environment)
+    ours = {"PYTHONPATH": str(packages), "MICROCOSMOS_URL": product.url}
+    return Laptop(folder, product.environment | ours)
 
 
 @pytest.fixture
-def elsewhere(common: dict[str, str], tmp_path: Path) -> Iterator[Client]:
+def elsewhere(common, tmp_path):
     """A colleague's server, where nothing has been run."""
     with (
         running(tmp_path / "elsewhere", common | {"WORKERS": "0"}) as place,
@@ -75,8 +72,7 @@ def elsewhere(common: dict[str, str], tmp_path: Path) -> Iterator[Client]:
         yield client
 
 
-@pytest.mark.e2e
-def test_a_first_day(laptop: Laptop, product: Installation, elsewhere: Client, stranger: Page):
+def test_a_first_day(laptop, product, elsewhere, stranger):
     client = Client(product.url)
     first, *others = sweep(client, laptop)
     extend(laptop, first)
@@ -89,8 +85,8 @@ def test_a_first_day(laptop: Laptop, product: Installation, elsewhere: Client, s
     kept = {run.id: product.archive(run.id) for run in (fork, *others)}
     delete_for_good(client, laptop, product, first)
     assert {run.id: product.archive(run.id) for run in (fork, *others)} == kept
-    nothing_is_lost(client, best.sha)
-    nothing_is_left_behind(product, first)
+    find_the_ancestors(client, best.sha)
+    find_nothing_left_behind(product, first)
     client.close()
 
 
@@ -178,26 +174,19 @@ def delete_for_good(client: Client, laptop: Laptop, product: Installation, run: 
     )
 
 
-def nothing_is_lost(client: Client, sha: str) -> None:
-    """Whom the fork came from is still there, though their run is not."""
+def find_the_ancestors(client: Client, sha: str) -> None:
+    """The ancestors of the fork are still there, although their run is not."""
     kept = [one for one in client.creature(sha).ancestors(32)["items"] if one["kept"]]
     assert kept
     for one in kept:
         assert client.creature(one["creature"]).identity
 
 
-def nothing_is_left_behind(product: Installation, run: Run) -> None:
+def find_nothing_left_behind(product: Installation, run: Run) -> None:
     """No row of the run, no file without a row, and no creature that nobody knows."""
-    own = bytes.fromhex(run.id.replace("-", ""))
-    for table in (
-        "generations",
-        "elites",
-        "results",
-        "artifacts",
-        "log_entries",
-        "initial_creatures",
-    ):
-        assert not rows(product, f"{table} WHERE run_id = ?", run.id.replace("-", "")), own
+    tables = "generations elites results artifacts log_entries initial_creatures"
+    for table in tables.split():
+        assert not rows(product, f"{table} WHERE run_id = ?", run.id.replace("-", "")), table
     folder = product.folder / "artifacts"
     files = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
     assert files == {row[0] for row in rows(product, "artifacts", column="path")}

@@ -1,34 +1,28 @@
 """A page that is left open misses nothing, whatever happens to the server meanwhile."""
 
 import re
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 import psutil
-import pytest
 from drive import Installation, wait_until
-from places import GUIDED
-from playwright.sync_api import Browser, Locator, Page, expect
+from places import GUIDED, best_of, the_map
+from playwright.sync_api import Locator, Page, expect
 from small import TINY
 
-FAST, SLOW = 10_000, 120_000
-MAP = re.compile("^Archive map")
-WINDOW = {"width": 1280, "height": 900}
+SLOW = 120_000
 SPEC = TINY | {"seed": 7, "search": TINY["search"] | {"generations": 5000}}
 """Longer than the test, which pauses it at the end."""
 
 
-@pytest.mark.e2e
 def test_no_update_is_lost_while_the_server_is_started_again(
-    product: Installation, page: Page, complaints: list[str], browser: Browser
+    product, page, complaints, new_page
 ):
     run = product.submit(SPEC)
     page.add_init_script(GUIDED)
     page.goto(f"{product.url}/runs/{run}?colour=turning")  # Which is asked for as it grows.
     page.evaluate("window.neverReloaded = true")
     product.reach(run, 3)
-    expect(connection(page)).to_have_attribute("title", "Live", timeout=FAST)
+    expect(connection(page)).to_have_attribute("title", "Live")
     for sent in ("terminate", "kill"):
         before = product.read(run)["generation"]
         restart_server(product, sent)
@@ -36,13 +30,15 @@ def test_no_update_is_lost_while_the_server_is_started_again(
         expect(connection(page)).to_have_attribute("title", "Live", timeout=SLOW)
     product.ask(run, "pause")
     product.wait(run, "paused")
-    expect(page.get_by_role("button", name=re.compile("^Resume"))).to_be_visible(timeout=FAST)
-    told = told_of(product, run)
-    wait_until(lambda: shown(page) == told, 10, f"the page shows {told}")
-    with opened_anew(browser, page.url) as anew:
-        wait_until(lambda: looks(page) == looks(anew), 20, "it looks as if opened anew")
+    expect(page.get_by_role("button", name=re.compile("^Resume"))).to_be_visible()
+    expected = figures_of(product, run)
+    wait_until(lambda: figures_on(page) == expected, 10, f"the page shows {expected}")
+    anew = new_page()
+    anew.add_init_script(GUIDED)
+    anew.goto(page.url)
+    wait_until(lambda: looks(page) == looks(anew), 20, "it looks as if opened anew")
     assert page.evaluate("window.neverReloaded")
-    complaints[:] = [said for said in complaints if "net::ERR" not in said]  # It was away.
+    complaints[:] = [text for text in complaints if "net::ERR" not in text]  # It was away.
 
 
 def restart_server(product: Installation, sent: str) -> None:
@@ -58,21 +54,19 @@ def connection(page: Page) -> Locator:
     return page.get_by_role("status").and_(page.locator(".connection"))
 
 
-def told_of(product: Installation, run: str) -> dict[str, float]:
+def figures_of(product: Installation, run: str) -> dict[str, Any]:
     """The figures of a paused run in the API."""
-    archive = product.http.get(f"/api/v1/runs/{run}/archive").raise_for_status().json()
-    curves = product.http.get(f"/api/v1/runs/{run}/generations").raise_for_status().json()
-    best = max(range(len(archive["cell"])), key=lambda i: archive["fitness"][i])
+    curves = product.get(f"runs/{run}/generations")
     return {
-        "elites": len(archive["cell"]),
+        "elites": len(product.get(f"runs/{run}/archive")["cell"]),
         "generation": curves["generation"][-1],
         "QD score": rounded(curves["qd_score"][-1]),
         "Best fitness": rounded(curves["best"][-1]),
-        "creature": archive["creature"][best][:8],
+        "creature": best_of(product, run)[:8],
     }
 
 
-def shown(page: Page) -> dict[str, Any]:
+def figures_on(page: Page) -> dict[str, Any]:
     """The same figures on the page."""
     return {
         "elites": first_number(page.get_by_text(re.compile(r"^[\d,]+ elites"))),
@@ -93,7 +87,7 @@ def newest(page: Page, curve: str) -> float:
 def best_creature(page: Page) -> str:
     """The best elite of the archive, to which the first arrow key leads."""
     if "cell=" not in page.url:
-        page.get_by_role("application", name=MAP).press("ArrowRight")
+        the_map(page).press("ArrowRight")
     return page.locator("#elite-measures code").inner_text()
 
 
@@ -112,20 +106,10 @@ def rounded(value: float) -> float:
     return float(f"{value:.3g}")
 
 
-@contextmanager
-def opened_anew(browser: Browser, url: str) -> Iterator[Page]:
-    context = browser.new_context(viewport=WINDOW)
-    context.add_init_script(GUIDED)
-    page = context.new_page()
-    page.goto(url)
-    yield page
-    context.close()
-
-
 def looks(page: Page) -> tuple[bytes, list[str | None]]:
-    """The archive's map as pixels, and what every picture of the run is named."""
+    """The archive's map as pixels, and the name of every picture of the run."""
     pictures = page.get_by_role("main").get_by_role("img").all()
     names = [picture.get_attribute("aria-label") for picture in pictures]
     page.mouse.move(0, 0)
     page.evaluate("document.activeElement?.blur()")
-    return page.get_by_role("application", name=MAP).screenshot(), names
+    return the_map(page).screenshot(), names

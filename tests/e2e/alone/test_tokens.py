@@ -2,55 +2,45 @@
 
 import re
 import stat
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from drive import Installation, running
 from looks import faults, violations
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 from small import TINY
 
 SECRET = re.compile(r"mc_[\w-]{43}")
 
 
 @pytest.fixture
-def guarded(chromium: str, common: dict[str, str], tmp_path: Path) -> Iterator[Installation]:
+def guarded(common, tmp_path):
     """A product without workers that needs a token even from this machine."""
     needed = {"MICROCOSMOS_AUTH": "required", "WORKERS": "0"}
     with running(tmp_path / "data", common | needed) as place:
         yield place
 
 
-@pytest.mark.e2e
-def test_an_admin_signs_in_and_manages_tokens(
-    guarded: Installation, browser: Browser, stranger: Page
-):
-    alice, first = stranger, told_at_the_start(guarded)
-    context = browser.new_context(viewport={"width": 1280, "height": 900})
-    admin = context.new_page()
-    try:
-        sign_in(admin, guarded.url, first)
-        secret = make_a_token(admin, guarded.url)
-        use_it(alice, guarded.url, secret)
-        stay_within_what_it_may(alice, guarded, first)
-        revoke_it(admin)
-        # The stream that she watches ends, and the page finds out why.
-        expect(alice.get_by_role("heading", name="Sign in")).to_be_visible(timeout=20_000)
-        admin.get_by_role("button", name="Sign out").click()
-        expect(admin.get_by_role("heading", name="Sign in")).to_be_visible()
-    finally:
-        context.close()
+def test_an_admin_signs_in_and_manages_tokens(guarded, new_page):
+    alice, admin, first = new_page(), new_page(), first_token(guarded)
+    sign_in(admin, guarded.url, first)
+    secret = make_a_token(admin)
+    use_it(alice, guarded.url, secret)
+    stay_within_its_scope(alice, guarded, first)
+    revoke_it(admin)
+    # The event stream of the page ends, and the page asks for a token.
+    expect(alice.get_by_role("heading", name="Sign in")).to_be_visible()
+    admin.get_by_role("button", name="Sign out").click()
+    expect(admin.get_by_role("heading", name="Sign in")).to_be_visible()
 
 
-def told_at_the_start(place: Installation) -> str:
+def first_token(place: Installation) -> str:
     """The token, printed once and kept in a private file."""
-    (told,) = SECRET.findall(place.output.read_text())
+    (secret,) = SECRET.findall(place.output.read_text())
     file = place.folder / "admin-token"
-    assert file.read_text().strip() == told
+    assert file.read_text().strip() == secret
     assert stat.S_IMODE(file.stat().st_mode) == 0o600
-    assert told not in (place.folder / "logs" / "server.log").read_text()
-    return told
+    assert secret not in (place.folder / "logs" / "server.log").read_text()
+    return secret
 
 
 def sign_in(page: Page, address: str, secret: str) -> None:
@@ -67,7 +57,7 @@ def sign_in(page: Page, address: str, secret: str) -> None:
     expect(page.get_by_role("status").filter(has_text="Live")).to_be_visible()
 
 
-def make_a_token(page: Page, address: str) -> str:
+def make_a_token(page: Page) -> str:
     page.get_by_role("link", name="Settings").click()
     expect(page.get_by_role("heading", name="admin")).to_be_visible()
     page.get_by_label("Owner").fill("alice")
@@ -98,7 +88,7 @@ def use_it(page: Page, address: str, secret: str) -> None:
     page.goto(address)
 
 
-def stay_within_what_it_may(page: Page, place: Installation, first: str) -> None:
+def stay_within_its_scope(page: Page, place: Installation, first: str) -> None:
     """Another's run names its owner and has no buttons; one's own has them."""
     as_admin = {"Authorization": f"Bearer {first}"}
     asked = place.http.post("/api/v1/runs", json=TINY, headers=as_admin).raise_for_status()
@@ -108,9 +98,8 @@ def stay_within_what_it_may(page: Page, place: Installation, first: str) -> None
     expect(row.get_by_role("button")).to_have_count(0)
     page.goto(f"{place.url}/runs/{theirs}")
     expect(page.get_by_text("Only admin or an admin can change it.")).to_be_visible()
-    expect(page.get_by_role("button", name=re.compile("^(Cancel|Pause|Rename)"))).to_have_count(
-        0
-    )
+    buttons = page.get_by_role("button", name=re.compile("^(Cancel|Pause|Rename)"))
+    expect(buttons).to_have_count(0)
     own = page.request.post(f"{place.url}/api/v1/runs", data={**TINY, "seed": 1})
     page.goto(f"{place.url}/runs/{own.json()['id']}")
     expect(page.get_by_role("button", name=re.compile("^Cancel"))).to_be_visible()

@@ -2,13 +2,3 @@
 
 from .file import CreatureError, CreatureFile, check, fitness_of, room, scene_of
 from .identity import Identity
-
-__all__ = [
-    "CreatureError",
-    "CreatureFile",
-    "Identity",
-    "check",
-    "fitness_of",
-    "room",
-    "scene_of",
-]

@@ -3,16 +3,3 @@
 from .digits import DIGITS, digit
 from .placing import MAX_PIXELS, decoded, encoded, field, fitted
 from .sources import mnist, png, text
-
-__all__ = [
-    "DIGITS",
-    "MAX_PIXELS",
-    "decoded",
-    "digit",
-    "encoded",
-    "field",
-    "fitted",
-    "mnist",
-    "png",
-    "text",
-]
