@@ -132,22 +132,15 @@ def _simulate(task: search.Task, driven: Drive) -> tuple[Simulation, Rest]:
     def run(start, inputs):
         begun = replace(driven, start=start, inputs=inputs)
         end, watched = search.simulate(begun, partial(search.watch, driven.world))
-        values = search.motion_of(task, begun, end, watched.observed)
-        path = jnp.sum(watched.observed.node_speed)
-        displacement = watched.observed.centre[-1] - world.centre(driven.world, start)
-        return (
-            displacement,
-            path,
-            jnp.max(watched.mach),
-            values,
-            search.impulse(watched),
-            watched.observed.rest,
-        )
+        seen = watched.observed
+        values, path = search.motion_of(task, begun, end, seen), jnp.sum(seen.node_speed)
+        displacement = seen.centre[-1] - world.centre(driven.world, start)
+        mach, push = jnp.max(watched.mach), search.impulse(watched)
+        return displacement, path, mach, values, push, seen.rest
 
     program = jax.jit(run, compiler_options=compiler_options())
-    displacement, path, mach, values, push, rest = jax.device_get(
-        program(driven.start, driven.inputs)
-    )
+    results = jax.device_get(program(driven.start, driven.inputs))
+    displacement, path, mach, values, push, rest = results
     found = Simulation(
         displacement=np.asarray(displacement, float),
         path=float(path),

@@ -2,7 +2,7 @@
 
 from .control import CPPNControl
 from .cppn import ACTIVATIONS, CPPN, evaluate, minimal
-from .development import Controls, develop, linear, respond, sine_cosine
+from .development import Controls, develop, linear, reading, rest_shape, sine_cosine
 from .direct import Direct
 from .encoding import Drive, Encoding
 from .fold import Fold, added, scaled

@@ -15,8 +15,6 @@ from jax.flatten_util import ravel_pytree
 from jaxtyping import Array, Float
 
 from ..device import compiler_options
-from ..genomes import Drive
-from ..world import Measures, State
 from . import gradients
 from .evaluation import Actuator, Task, drive, mapped, motion_of, simulate
 from .reevaluation import Disturbance, Spread, disturbance, moved
@@ -93,7 +91,8 @@ def report_gradient(
     others = np.asarray(_from_other_starts(task, actuator, of, starts, seed)(values))
     size = np.abs(own) / max(np.abs(own).sum(), 1e-30)
     lengths = np.linalg.norm(others, axis=1) * _length(own)
-    end, observed = _simulated(driven)
+    options = compiler_options()
+    end, observed = jax.jit(lambda: simulate(driven), compiler_options=options)()
     return GradientReport(
         of=of,
         by=by,
@@ -105,10 +104,6 @@ def report_gradient(
         starts=starts,
         limited=float(motion_of(task, driven, end, observed)["limited"]),
     )
-
-
-def _simulated(driven: Drive) -> tuple[State, Measures]:
-    return jax.jit(lambda: simulate(driven), compiler_options=compiler_options())()
 
 
 def _length(vector: Any) -> float:

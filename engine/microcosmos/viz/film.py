@@ -42,16 +42,15 @@ def gif(
     image = require("PIL.Image")
     numbers = range(0, replay.frames, -(-replay.frames // frames))
     pictures = [frame(replay, k, width=width, **options) for k in numbers]
-    palette = _palette(pictures)
+    # One palette for all pictures, so that still parts do not flicker.
+    some = np.concatenate(pictures[:: -(-len(pictures) // SAMPLES)])
+    palette = image.fromarray(some).quantize(256, image.Quantize.MEDIANCUT)
     first, *others = (
         image.fromarray(picture).quantize(palette=palette, dither=image.Dither.NONE)
         for picture in pictures
     )
-    out = io.BytesIO()
-    duration = 10 * round(100 / rate)
-    first.save(
-        out, "GIF", save_all=True, append_images=others, duration=duration, loop=0, disposal=1
-    )
+    out, moving = io.BytesIO(), {"save_all": True, "append_images": others, "loop": 0}
+    first.save(out, "GIF", **moving, duration=10 * round(100 / rate), disposal=1)
     return out.getvalue()
 
 
@@ -63,26 +62,15 @@ def mp4(replay: Replay, *, width: int = 480, rate: int = 25, **options: Any) -> 
     if not 1 <= rate <= 120:
         raise ValueError(f"`rate` must be from 1 to 120 frames a second, got {rate}.")
     pictures = (frame(replay, k, width=width, **options) for k in range(replay.frames))
-    _refuse_without_encoder()
-    with tempfile.TemporaryDirectory() as folder:  # The index is moved to the front at the end.
-        path = Path(folder) / "film.mp4"
-        _encode(pictures, path, rate)
-        return path.read_bytes()
-
-
-def _palette(pictures: list[np.ndarray]) -> Any:
-    """Return an image with one palette for all pictures: still parts do not flicker."""
-    some = pictures[:: -(-len(pictures) // SAMPLES)]
-    image = require("PIL.Image")
-    return image.fromarray(np.concatenate(some)).quantize(256, image.Quantize.MEDIANCUT)
-
-
-def _refuse_without_encoder() -> None:
     if ENCODER not in require("av").codecs_available:
         raise ValueError(
             f"An MP4 needs PyAV with {ENCODER}, which this one was built without; "
             "make a GIF instead."
         )
+    with tempfile.TemporaryDirectory() as folder:  # The index is moved to the front at the end.
+        path = Path(folder) / "film.mp4"
+        _encode(pictures, path, rate)
+        return path.read_bytes()
 
 
 def _encode(pictures: Iterator[np.ndarray], path: Path, rate: int) -> None:

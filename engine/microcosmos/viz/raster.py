@@ -122,7 +122,9 @@ def frame(
     number, colours = frame_number(replay, number), theme_of(theme)
     middle = replay.positions[number].mean(0, dtype=float)
     seen = view(replay.size, width, middle if follow else np.array(replay.size) / 2)
-    picture = _water(replay, number, seen, theme)
+    # The strongest vorticity has the colours at the ends.
+    share = seen.sampled(replay.levels[number]) * np.float32(replay.quantum / replay.strongest)
+    picture = _table(theme)[np.rint(255 * np.clip(share, -1, 1)).astype(np.int16) + 255]
     dots = seen.pixels(_grid(seen))
     _blend(picture, colours.ink, 0.22 * coverage(distance(dots, dots, seen.shape, 2), 2))
     if way:
@@ -150,11 +152,6 @@ def theme_of(name: str) -> Theme:
     if name not in THEMES:
         raise ValueError(f"`theme` must be one of {', '.join(THEMES)}, got {name!r}.")
     return THEMES[name]
-
-
-def _water(replay: Replay, number: int, seen: View, theme: str) -> np.ndarray:
-    share = seen.sampled(replay.levels[number]) * np.float32(replay.quantum / replay.strongest)
-    return _table(theme)[np.rint(255 * np.clip(share, -1, 1)).astype(np.int16) + 255]
 
 
 @lru_cache
@@ -221,17 +218,15 @@ def distance(
     """
     field = np.full(shape[0] * shape[1], reach, np.float32)
     starts, ends = _pieces(starts, ends)
-    around = np.arange(
-        -int(np.ceil(reach + PIECE / 2)) - 1, int(np.ceil(reach + PIECE / 2)) + 2
-    )
+    side = int(np.ceil(reach + PIECE / 2)) + 1
+    around = np.arange(-side, side + 1)
     for first in range(0, len(starts), BATCH):
         a, b = (points[first : first + BATCH] for points in (starts, ends))
         pixels = np.floor((a + b) / 2).astype(int)[:, :, None] + around  # (piece, 2, place)
         column = (pixels[:, 0] + 0.5 - a[:, :1]).astype(np.float32)[:, None, :]
         row = (pixels[:, 1] + 0.5 - a[:, 1:]).astype(np.float32)[:, :, None]
-        places = (pixels[:, 1] % shape[0] * shape[1])[:, :, None] + (pixels[:, 0] % shape[1])[
-            :, None, :
-        ]
+        rows, columns = pixels[:, 1] % shape[0], pixels[:, 0] % shape[1]
+        places = (rows * shape[1])[:, :, None] + columns[:, None, :]
         np.minimum.at(field, places.ravel(), _to_line(column, row, b - a).ravel())
     return field.reshape(shape)
 

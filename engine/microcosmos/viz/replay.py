@@ -63,9 +63,8 @@ def record(file: Mapping[str, Any]) -> bytes:
         raise creature.CreatureError("identity", needed, "one that diverges")
     present = film.present
     edges, joints = graph_among(scene, present)
-    scales = {
-        name: float(np.max(np.abs(getattr(film, name)), initial=0.0)) or 1.0 for name in LEVELS
-    }
+    planes = {name: getattr(film, name) for name in LEVELS}
+    scales = {n: float(np.max(np.abs(x), initial=0.0)) or 1.0 for n, x in planes.items()}
     header = {
         "format": REPLAY_FORMAT,
         "creature": file["sha256"],
@@ -89,7 +88,7 @@ def record(file: Mapping[str, Any]) -> bytes:
         np.asarray(film.positions[:, present], "<f4"),
         np.asarray(film.rest.angle[:, there[1]], "<f4"),
         np.asarray(film.rest.length[:, there[0]], "<f4"),
-        *(_levels(getattr(film, name), scales[name], kind) for name, kind in LEVELS.items()),
+        *(_levels(planes[name], scales[name], kind) for name, kind in LEVELS.items()),
     )
 
 
@@ -227,11 +226,8 @@ def _filmed(
         u = world.flow(task.world, state)
         return state.positions, vorticity(u), u, state.energy if changes else None
 
-    def go_on(state, given):
-        return search.simulate(replace(driven, start=state, inputs=given))
-
     def advance(state, given):
-        end, seen = go_on(state, given)
+        end, seen = search.simulate(replace(driven, start=state, inputs=given))
         return end, (frame(end), seen)
 
     whole = jax.tree.map(
@@ -239,7 +235,7 @@ def _filmed(
     )
     left = jax.tree.map(lambda x: x[frames * every :], driven.inputs)
     end, (shown, seen) = jax.lax.scan(advance, driven.start, whole)
-    end, last = go_on(end, left)
+    end, last = search.simulate(replace(driven, start=end, inputs=left))
     seen = jax.tree.map(
         lambda x, y: jnp.concatenate([x.reshape(-1, *x.shape[2:]), y]), seen, last
     )
@@ -247,17 +243,14 @@ def _filmed(
         lambda first, rest: jnp.concatenate([first[None], rest]), frame(driven.start), shown
     )
     if energy is None:
-        energy = _unchanging(driven.start.energy, task.world.size)
+        start = driven.start.energy
+        energy = jnp.zeros((0, *task.world.size)) if start is None else start[None]
     before = np.maximum(np.arange(frames + 1) * every - 1, 0)
     rest = jax.tree.map(lambda x: x[before], seen.rest)
     present = driven.world.present
     if present is None:
         present = jnp.ones(positions.shape[1], bool)
     return Film(positions, curl, velocity, energy, rest, present), end, seen
-
-
-def _unchanging(energy: Array | None, size: tuple[int, int]) -> Array:
-    return jnp.zeros((0, *size)) if energy is None else energy[None]
 
 
 def _mean_motion(task: search.Task, driven: Drive) -> dict[str, Any]:

@@ -13,8 +13,6 @@ from ...spec import Descriptor, Neuroevolution, PluginVersion, QualityDiversity,
 Search = QualityDiversity | Neuroevolution
 """The specs whose runs fill an archive."""
 
-NO_ARCHIVE = "an archive is needed, as searches have; got the table of {!r}"
-
 
 @dataclass(frozen=True, eq=False)
 class Archive:
@@ -71,12 +69,10 @@ class Archive:
 def read(data: bytes) -> Archive:
     """Return the archive in a run's file. Raises `ValueError` if it is missing or empty."""
     tree, attributes = file.load(data)
-    document = json.loads(attributes["spec"])
-    if "archive" not in tree:
-        raise ValueError(NO_ARCHIVE.format(document["experiment"]))
-    spec = parse(document)
-    if not isinstance(spec, Search):
-        raise ValueError(NO_ARCHIVE.format(document["experiment"]))
+    spec = parse(json.loads(attributes["spec"]))
+    if "archive" not in tree or not isinstance(spec, Search):
+        table = f"the table of {spec.experiment!r}"
+        raise ValueError(f"an archive is needed, as searches have; got {table}")
     archive = tree["archive"]
     if not len(archive["cell"]):
         raise ValueError("an archive with an elite is needed, got one without")
