@@ -112,7 +112,6 @@ VERDICT_ROWS = ("refined", "delta", "impulse")
 
 
 def _developed(scene: spec.Scene, driven: Drive, rest: Rest) -> tuple[bodies.Body, Rest]:
-    """Return the developed body of a creature, and its rest shapes."""
     try:
         body, joints, edges = body_of(scene, driven)
     except ValueError as error:
@@ -127,8 +126,6 @@ def _simulate_rest(task: search.Task, rest: Rest) -> tuple[Simulation, Rest]:
 
 
 def _simulate(task: search.Task, driven: Drive) -> tuple[Simulation, Rest]:
-    """Return the result, and the applied rest shapes."""
-
     def run(start, inputs):
         begun = replace(driven, start=start, inputs=inputs)
         end, watched = search.simulate(begun, partial(search.watch, driven.world))
@@ -165,7 +162,6 @@ def _row(name: str, quantity: str, value: float, unit: str, bar: str, passed, no
 
 
 def _simulation_rows(scene: spec.Scene, found: Simulation) -> list[dict[str, Any]]:
-    """Return the rows of the recorded simulation, some with an upper limit."""
     pushed = "" if scene.coupling.force_free else ": this form of the coupling lets it"
     fast = "the flow is so fast that it is compressible"
     limits = "limits act: they decide in part how it swims"

@@ -53,7 +53,9 @@ class QdaxEmitter:
         with jax.numpy_rank_promotion("allow"):
             empty = needed("core.containers.mapelites_repertoire").MapElitesRepertoire
             empty = empty.init_default(genes[0], jnp.asarray(self.cells.centres))
-            state = self.emitter.init(_raw(key), empty, genes, fitness, place, {})
+            state = self.emitter.init(
+                jax.random.key_data(key), empty, genes, fitness, place, {}
+            )
         none = jnp.zeros(self.slots, bool)
         state = jax.tree.map(jnp.asarray, state)
         return Pending(state, genes, fitness, place, none, jnp.zeros((), bool))
@@ -66,7 +68,7 @@ class QdaxEmitter:
             learnt = jax.lax.cond(
                 state.due, lambda: self._learnt(state, repertoire), lambda: state.emitter
             )
-            genes, _ = self.emitter.emit(repertoire, learnt, _raw(keys[0]))
+            genes, _ = self.emitter.emit(repertoire, learnt, jax.random.key_data(keys[0]))
         bred = orphans(Vector(jnp.clip(genes, -1.0, 1.0)), self.slots, self.operator)
         children = either(archive, bred, newcomers(self.newcomer, keys))
         due = jnp.any(archive.occupied)
@@ -180,7 +182,3 @@ def _beyond(networks: CPPN, counters: Counters) -> Counters:
         jnp.maximum(counters.innovation, jnp.max(used) + 1),
         jnp.maximum(counters.node, jnp.max(nodes) + 1),
     )
-
-
-def _raw(key: PRNGKeyArray) -> Array:
-    return jax.random.key_data(key)

@@ -27,33 +27,28 @@ INK, GREY, PALE = "#1b2226", "#5f6b73", "#c9d0d4"
 EMPTY = "#eef1f2"
 """Colour of empty cells."""
 
+TICK = {
+    "labelsize": 6.0,
+    "color": GREY,
+    "labelcolor": INK,
+    "major.width": 0.5,
+    "minor.width": 0.4,
+    "major.size": 2.5,
+    "minor.size": 1.5,
+    "major.pad": 2.0,
+}
 RC: dict[str, Any] = {
+    **{f"{axis}tick.{name}": value for axis in "xy" for name, value in TICK.items()},
     "font.family": ["DejaVu Sans"],  # Comes with matplotlib: the same letters everywhere.
     "mathtext.fontset": "dejavusans",
     "font.size": 7.0,
     "axes.titlesize": 7.0,
     "axes.labelsize": 7.0,
-    "xtick.labelsize": 6.0,
-    "ytick.labelsize": 6.0,
     "legend.fontsize": 6.0,
     "axes.linewidth": 0.5,
     "axes.edgecolor": GREY,
     "axes.labelcolor": INK,
     "text.color": INK,
-    "xtick.color": GREY,
-    "ytick.color": GREY,
-    "xtick.labelcolor": INK,
-    "ytick.labelcolor": INK,
-    "xtick.major.width": 0.5,
-    "ytick.major.width": 0.5,
-    "xtick.minor.width": 0.4,
-    "ytick.minor.width": 0.4,
-    "xtick.major.size": 2.5,
-    "ytick.major.size": 2.5,
-    "xtick.minor.size": 1.5,
-    "ytick.minor.size": 1.5,
-    "xtick.major.pad": 2.0,
-    "ytick.major.pad": 2.0,
     "axes.labelpad": 2.5,
     "lines.linewidth": 1.0,
     "pdf.fonttype": 42,  # TrueType, which journals ask for.
