@@ -17,9 +17,7 @@ def devices_of(
     Raises `ValueError` for another spec, and `OtherDevice` for another kind of device unless
     `other_device` allows it.
     """
-    _refuse_other(
-        dict(_values(json.loads(attributes["spec"]))), dict(_values(json.loads(spec)))
-    )
+    _refuse_other(*(dict(_values(json.loads(text))) for text in (attributes["spec"], spec)))
     devices = json.loads(attributes["device"])
     if devices[-1] != device and not other_device:
         raise OtherDevice(
@@ -36,11 +34,11 @@ def _refuse_other(held: dict[str, Any], wanted: dict[str, Any]) -> None:
     other = [path for path in paths if held.get(path, ...) != wanted.get(path, ...)]
     if any(path.split(".")[-1] != "source" for path in other):
         raise ValueError("`spec` in the file must be the run's own, got another")
-    for path in other:
-        then, present = held.get(path, "none"), wanted.get(path, "none")
+    if other:
+        then, present = (values.get(other[0], "none") for values in (held, wanted))
         raise ValueError(
-            f"`{path}` must be {then[:12]}, the version with which the run was computed, got "
-            f"{present[:12]}: continue with that version, or begin a new run"
+            f"`{other[0]}` must be {then[:12]}, the version with which the run was computed, "
+            f"got {present[:12]}: continue with that version, or begin a new run"
         )
     if now < before:
         raise ValueError(
