@@ -4,6 +4,7 @@ With emitters that draw parents from the archive it is MAP-Elites (Mouret and Cl
 arXiv:1504.04909, 2015); with a population of its own the archive only records.
 """
 
+import json
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -19,7 +20,7 @@ from ..genomes import Genotype
 from ..search.emitters.population import Population
 from ..search.emitters.tensorneat import TensorNeatState
 from . import archive_file, lineage, reevaluation
-from .offspring import Offspring, Programs, next_offspring, refuse_lacking
+from .offspring import Offspring, Programs, next_offspring
 from .state import CURVES, ENDS, MAX_DIVERGED, Diverged, Plan, State, start
 
 
@@ -34,7 +35,11 @@ class Evolution:
 
     def init(self) -> State:
         """Raise `ValueError` if files of initial creatures are missing."""
-        refuse_lacking(self.plan)
+        named = json.loads(self.plan.spec)["search"].get("initial", [])
+        if named and self.plan.initial is None:
+            raise ValueError(
+                f"`search.initial` names {len(named)} creatures, whose files are needed to begin"
+            )
         return start(self.plan)
 
     def done(self, state: State) -> bool:

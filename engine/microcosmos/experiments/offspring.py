@@ -4,7 +4,6 @@ A search with initial creatures evaluates those first, a batch at a time. Their 
 the rest of the last such batch.
 """
 
-import json
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -93,15 +92,6 @@ class Offspring:
         """Return the states; an emitter must not learn from children that replaced its own."""
         pairs = zip_longest(states, self.before)
         return tuple(old[0] if old else new for new, old in pairs)
-
-
-def refuse_lacking(plan: Plan) -> None:
-    """Raise `ValueError` if the spec names creatures whose files are missing."""
-    named = json.loads(plan.spec)["search"].get("initial", [])
-    if named and plan.initial is None:
-        raise ValueError(
-            f"`search.initial` names {len(named)} creatures, whose files are needed to begin"
-        )
 
 
 def next_offspring(

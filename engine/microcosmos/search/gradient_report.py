@@ -73,7 +73,6 @@ def report_gradient(
     by: tuple[str, ...] = ("genes",),
     *,
     starts: int = 8,
-    seed: int = 0,
 ) -> GradientReport:
     """Return the report for a creature; `build(dtype)` makes its task and actuator."""
     with jax.enable_x64(True):
@@ -88,7 +87,7 @@ def report_gradient(
     norms = {}
     for horizon in (max(1, round(share * steps)) for share in HORIZONS):
         norms[horizon] = _length(_gradient(task, actuator, of, horizon)(values)[1])
-    others = np.asarray(_from_other_starts(task, actuator, of, starts, seed)(values))
+    others = np.asarray(_from_other_starts(task, actuator, of, starts)(values))
     size = np.abs(own) / max(np.abs(own).sum(), 1e-30)
     lengths = np.linalg.norm(others, axis=1) * _length(own)
     options = compiler_options()
@@ -144,11 +143,11 @@ def _error(program: Callable, values: gradients.Values, sizes: tuple[float, ...]
 
 
 def _from_other_starts(
-    task: Task, actuator: Actuator, of: str, starts: int, seed: int
+    task: Task, actuator: Actuator, of: str, starts: int
 ) -> Callable[[gradients.Values], Float[Array, "start value"]]:
     """Return the program from values to gradients with other phases, places and directions."""
     spread = Spread(viscosity=0.0, energy=False)
-    keys = jax.random.split(jax.random.key(seed), starts)
+    keys = jax.random.split(jax.random.key(0), starts)
     size = task.world.size
     draws = jax.vmap(lambda key: disturbance(spread, size, key=key))(keys)
 

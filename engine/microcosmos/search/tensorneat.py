@@ -18,8 +18,6 @@ from ..genomes import ACTIVATIONS, CPPN
 from ..neat import Settings
 from .populations import cppns
 
-COMMAND = "make tensorneat"
-
 State = Any
 """TensorNEAT's: a pytree of arrays by name, one of them (`species`) such a state itself."""
 
@@ -27,15 +25,6 @@ State = Any
 def available() -> bool:
     """Return whether the package can be imported."""
     return find_spec("tensorneat") is not None
-
-
-def require() -> None:
-    """Raise `ValueError` with the command to install the package, unless it is there."""
-    if not available():
-        raise ValueError(
-            "`neat.backend` tensorneat needs the package tensorneat (GPL-3), which is not "
-            f"installed; install it with: {COMMAND}"
-        )
 
 
 @dataclass(frozen=True)
@@ -89,7 +78,11 @@ def build(
 
     Raises `ValueError` if it is not installed, or cannot follow the settings.
     """
-    require()
+    if not available():
+        raise ValueError(
+            "`neat.backend` tensorneat needs the package tensorneat (GPL-3), which is not "
+            "installed; install it with: make tensorneat"
+        )
     if settings.rates.recurrent:
         raise ValueError("`neat.backend` tensorneat needs feed-forward networks, got recurrent")
     names = tuple(ACTIVATIONS)

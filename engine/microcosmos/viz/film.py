@@ -93,8 +93,6 @@ def _encode(pictures: Iterator[np.ndarray], path: Path, rate: int) -> None:
 
 
 MAKERS = {".png": strip, ".gif": gif, ".mp4": mp4}
-NEEDS = {".png": ("PIL.Image",), ".gif": ("PIL.Image",), ".mp4": ("PIL.Image", "av")}
-"""Optional modules of each kind of file."""
 
 
 def check(path: Path) -> None:
@@ -102,8 +100,9 @@ def check(path: Path) -> None:
     kind = path.suffix.lower()
     if kind not in MAKERS:
         raise ValueError(f"`path` must end in {', '.join(MAKERS)}, got {str(path)!r}.")
-    for module in NEEDS[kind]:
-        require(module)
+    require("PIL.Image")
+    if kind == ".mp4":
+        require("av")
 
 
 def export(data: bytes, path: str | Path, **options: Any) -> None:

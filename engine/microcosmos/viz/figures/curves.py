@@ -85,8 +85,7 @@ def _dress(panel: Any, name: str, against: str, groups: Sequence[Group]) -> None
     panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:,.0f}"))
     panel.set_axisbelow(True)
     panel.grid(color=GREY, alpha=0.18, lw=0.4)
-    for side in ("top", "right"):
-        panel.spines[side].set_visible(False)
+    panel.spines[["top", "right"]].set_visible(False)
 
 
 def _label(name: str, groups: Sequence[Group]) -> str:

@@ -163,5 +163,4 @@ def _dress(panel: Any, last: int) -> None:
     panel.margins(y=0.02)
     panel.autoscale_view(scalex=False)
     panel.xaxis.set_major_locator(MaxNLocator(8, integer=True))
-    for side in ("top", "right", "left"):
-        panel.spines[side].set_visible(False)
+    panel.spines[["top", "right", "left"]].set_visible(False)

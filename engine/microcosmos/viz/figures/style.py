@@ -128,8 +128,7 @@ def tidy(panel: Any) -> None:
     """Draw a faint grid behind the lines, and no box around them."""
     panel.set_axisbelow(True)
     panel.grid(color=GREY, alpha=0.18, lw=0.6)
-    for side in ("left", "right", "top", "bottom"):
-        panel.spines[side].set_color(GREY)
+    panel.spines[:].set_color(GREY)
     panel.tick_params(colors="#333b40", which="both", labelsize=9)
 
 

@@ -30,9 +30,9 @@ def evaluate(network: Network, inputs: np.ndarray) -> np.ndarray:
         return ACTIVATIONS[network.output_transform or "identity"](outputs)
 
 
-def probes(inputs: int, points: int = 256) -> np.ndarray:
+def probes(inputs: int) -> np.ndarray:
     """Return inputs (input, point) for comparisons: all 0, all 1, the rest normal."""
-    drawn = np.random.default_rng(0).normal(size=(inputs, points))
+    drawn = np.random.default_rng(0).normal(size=(inputs, 256))
     drawn[:, 0], drawn[:, 1] = 0.0, 1.0
     return drawn
 

@@ -52,8 +52,8 @@ def read_tensorneat(nodes: np.ndarray, conns: np.ndarray, meta: Mapping[str, Any
         kept.tolist(),
         np.where(is_input, 0, columns["bias"]).tolist(),
         np.where(is_input, 1, response).tolist(),
-        _replaced(aggregation, is_input, "sum"),
-        _replaced(activation, linear, "identity"),
+        np.where(is_input, "sum", aggregation).tolist(),
+        np.where(linear, "identity", activation).tolist(),
     )
     return Network(
         inputs=inputs,
@@ -180,7 +180,3 @@ def _refuse_other_rows(keys: np.ndarray, ends: tuple[int, ...]) -> None:
             raise ValueError(
                 f"`nodes` must have the input or output {key} in row {key}, got {came}"
             )
-
-
-def _replaced(names: tuple[str, ...], where: np.ndarray, name: str) -> tuple[str, ...]:
-    return tuple(name if there else old for old, there in zip(names, where, strict=True))
