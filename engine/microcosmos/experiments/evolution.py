@@ -37,9 +37,8 @@ class Evolution:
         """Raise `ValueError` if files of initial creatures are missing."""
         named = json.loads(self.plan.spec)["search"].get("initial", [])
         if named and self.plan.initial is None:
-            raise ValueError(
-                f"`search.initial` names {len(named)} creatures, whose files are needed to begin"
-            )
+            count = f"{len(named)} creatures"
+            raise ValueError(f"`search.initial` names {count}, whose files are needed to begin")
         return start(self.plan)
 
     def done(self, state: State) -> bool:
