@@ -64,7 +64,7 @@ class Evolution:
         after = replace(after, curves=np.concatenate([after.curves, row[None]]))
         seconds = after.device_seconds - state.device_seconds
         summary = _summary(self.plan, after, seconds, np.asarray(evaluation.status))
-        return after, _report(after, elites, {**summary, **offspring.taught.summary()})
+        return after, _report(after, elites, {**summary, **offspring.results.summary()})
 
     def _inserted(
         self, state: State, offspring: Offspring, evaluation: search.Evaluation
@@ -83,7 +83,7 @@ class Evolution:
         emitters = offspring.allowed(programs.tell(offspring.emitters, outcome))
         inserted = jax.device_get(inserted)
         clipped = search.clipped(candidates, state.cells)
-        simulated = offspring.taught.simulated + len(evaluation.fitness)
+        simulated = offspring.results.simulated + len(evaluation.fitness)
         after, new = lineage.record(
             self.plan, state, children, evaluation, inserted, offspring.names
         )

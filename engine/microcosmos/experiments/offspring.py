@@ -33,7 +33,7 @@ class Lessons:
 
 
 @dataclass(frozen=True)
-class Taught:
+class LessonResults:
     """The results of a generation's lessons."""
 
     simulated: int = 0
@@ -44,16 +44,16 @@ class Taught:
     """Lengths of the finite slopes of fitness."""
 
     def summary(self) -> dict[str, float]:
-        """Return figures for the report; none if nothing was taught."""
+        """Return figures for the report; none without lessons."""
         if not self.simulated:
             return {}
         found = {"slopes: finite": self.finite / self.simulated}
         return found | ({"slopes: length": float(np.median(self.norms))} if self.norms else {})
 
-    def with_lesson(self, slopes: search.Slopes) -> "Taught":
+    def with_lesson(self, slopes: search.Slopes) -> "LessonResults":
         finite = np.asarray(slopes.finite)
         norms = np.linalg.norm(np.asarray(slopes.rows)[finite, 0], axis=-1)
-        return Taught(
+        return LessonResults(
             self.simulated + len(finite),
             self.finite + int(finite.sum()),
             self.norms + tuple(norms.tolist()),
@@ -80,7 +80,7 @@ class Offspring:
     children: search.Children
     emitters: tuple[Any, ...]
     counters: neat.Counters
-    taught: Taught
+    results: LessonResults
     began: float
     """Start of lessons and evaluation, of the monotonic clock."""
     names: np.ndarray
@@ -120,10 +120,10 @@ def _emitted(
     )
     children, began = jax.device_get(children), time.monotonic()
     slots = tuple(emitter.slots for emitter in plan.emitters)
-    children, emitters, taught = _teach(
+    children, emitters, results = _teach(
         programs.lessons, slots, children, emitters, block=plan.block, stop=stop
     )
-    return Offspring(children, emitters, counters, taught, began, names)
+    return Offspring(children, emitters, counters, results, began, names)
 
 
 def _gathered(
@@ -177,8 +177,8 @@ def _teach(
     *,
     block: int,
     stop: Callable[[], bool],
-) -> tuple[search.Children, tuple[Any, ...], Taught]:
-    parts, kept, taught, first = [], [], Taught(), 0
+) -> tuple[search.Children, tuple[Any, ...], LessonResults]:
+    parts, kept, results, first = [], [], LessonResults(), 0
     for lesson, count, state in zip(lessons, slots, states, strict=True):
         offspring = jax.tree.map(lambda x, a=first, b=first + count: x[a:b], children)
         for _ in range(lesson.number if lesson else 0):
@@ -189,11 +189,11 @@ def _teach(
                 lesson.slopes, asked, block=min(block, number), stop=stop
             )
             offspring, state = lesson.learn(state, offspring, found)
-            taught = taught.with_lesson(found)
+            results = results.with_lesson(found)
         parts.append(jax.device_get(offspring))
         kept.append(state)
         first += count
-    if not taught.simulated:
-        return children, states, taught
+    if not results.simulated:
+        return children, states, results
     whole = jax.tree.map(lambda *rows: np.concatenate(rows), *parts)
-    return whole, tuple(kept), taught
+    return whole, tuple(kept), results

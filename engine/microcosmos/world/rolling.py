@@ -57,7 +57,7 @@ def rollout(
         return jnp.concatenate([many.reshape(-1, *many.shape[2:]), few])
 
     # Within a loop no other code could share the repeated results.
-    again = jax.checkpoint(partial(jax.lax.scan, advance), prevent_cse=False)
-    state, seen = jax.lax.scan(again, state, jax.tree.map(cut, inputs))
+    segments = jax.checkpoint(partial(jax.lax.scan, advance), prevent_cse=False)
+    state, seen = jax.lax.scan(segments, state, jax.tree.map(cut, inputs))
     state, last = jax.lax.scan(advance, state, jax.tree.map(lambda x: x[whole:], inputs))
     return state, jax.tree.map(joined, seen, last)

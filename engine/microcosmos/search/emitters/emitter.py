@@ -33,7 +33,7 @@ NO_PARENT = -1
 
 Keys = Key[Array, "slot"]
 
-Kept = PyTree[Array | np.ndarray]
+State = PyTree[Array | np.ndarray]
 """The state of an emitter."""
 
 
@@ -83,17 +83,17 @@ class Emitter(Protocol):
         """Children a generation."""
         ...
 
-    def init(self, *, key: PRNGKeyArray) -> Kept:
+    def init(self, *, key: PRNGKeyArray) -> State:
         """Return the state before the first generation."""
         ...
 
     def emit(
-        self, state: Kept, archive: Elites, counters: Counters, *, keys: Keys
-    ) -> tuple[Children, Kept, Counters]:
+        self, state: State, archive: Elites, counters: Counters, *, keys: Keys
+    ) -> tuple[Children, State, Counters]:
         """Return children, one for each key; `counters` number new genes."""
         ...
 
-    def tell(self, state: Kept, outcome: Outcome) -> Kept:
+    def tell(self, state: State, outcome: Outcome) -> State:
         """Return the state once its children are measured and inserted."""
         ...
 
@@ -117,24 +117,24 @@ class Learner(Emitter, Protocol):
         """Lessons in a generation."""
         ...
 
-    def asks(self, state: Kept, children: Children) -> Genotype:
+    def asks(self, state: State, children: Children) -> Genotype:
         """Return the genotypes whose derivatives are wanted, their number first."""
         ...
 
-    def learn(self, state: Kept, children: Children, slopes: Slopes) -> tuple[Children, Kept]:
+    def learn(self, state: State, children: Children, slopes: Slopes) -> tuple[Children, State]:
         """Return the children and the state after a lesson."""
         ...
 
 
 def emit(
     emitters: tuple[Emitter, ...],
-    states: tuple[Kept, ...],
+    states: tuple[State, ...],
     archive: Elites,
     counters: Counters,
     generation: Int[Array, ""],
     *,
     key: PRNGKeyArray,
-) -> tuple[Children, tuple[Kept, ...], Counters]:
+) -> tuple[Children, tuple[State, ...], Counters]:
     """Return the children of all emitters, one after another, and the emitters' new states.
 
     Every slot has its own key, derived from the seed, the generation and the slot.
@@ -154,8 +154,8 @@ def emit(
 
 
 def tell(
-    emitters: tuple[Emitter, ...], states: tuple[Kept, ...], outcome: Outcome
-) -> tuple[Kept, ...]:
+    emitters: tuple[Emitter, ...], states: tuple[State, ...], outcome: Outcome
+) -> tuple[State, ...]:
     """Return the state of each emitter after the outcome of its own children."""
     after, first = [], 0
     for emitter, state in zip(emitters, states, strict=True):
