@@ -38,7 +38,7 @@ def pytest_itemcollected(item: pytest.Item) -> None:
 
 
 def share(nodeid: str) -> str:
-    """The tests of one process: a folder that shares a product, else a file."""
+    """The group of tests that one process runs: a folder that shares a product, else a file."""
     file = nodeid.partition("::")[0]
     folder = file.rpartition("/")[0]
     return folder if folder.startswith(SHARING) else file
@@ -63,7 +63,5 @@ def pytest_xdist_make_scheduler(config, log):
 
 
 class Shares(LoadScopeScheduling):
-    """Give every share of the tests to one process, in the order of collection."""
-
     def _split_scope(self, nodeid: str) -> str:
         return share(nodeid)

@@ -45,7 +45,7 @@ def test_templates_are_valid_yaml(path):
 
 
 def test_the_glossary_has_one_paragraph_for_each_term_in_order():
-    """The page reads it as text: see web/src/ui/glossary.ts."""
+    """The page reads it as text: see web/src/ui/Term.tsx."""
     text = (ROOT / "docs/glossary.md").read_text()
     terms = []
     for entry in text.split("\n## ")[1:]:

@@ -27,8 +27,6 @@ expect.set_options(timeout=30_000)
 
 
 class Shared(NamedTuple):
-    """A running product with small runs, by name."""
-
     product: Installation
     submitted: dict[str, str]
 
@@ -78,7 +76,6 @@ def common(browser):
 
 @pytest.fixture
 def product(common, tmp_path):
-    """The whole product over an empty data folder."""
     with running(tmp_path / "data", common) as place:
         yield place
 

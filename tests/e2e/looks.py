@@ -113,7 +113,6 @@ which is what target size (WCAG 2.5.8) makes exceptions for."""
 
 
 def violations(page: Page) -> list[str]:
-    """Violations that axe finds on a page, with place and remedy."""
     page.evaluate(AXE.read_text())  # Pages run no script that is not the server's own.
     found: list[dict[str, Any]] = page.evaluate(RUN, RULES)
     return [

@@ -18,7 +18,7 @@ from browser import launched, overhear
 from drive import ROOT, Installation, running
 from looks import THEMES, WIDTHS, faults
 from PIL import Image
-from places import GUIDED, NOWHERE, hold_still, places, visit
+from places import NOWHERE, TOUR_TAKEN, hold_still, places, visit
 from playwright.sync_api import Browser, Page, TimeoutError
 
 FOLDER = ROOT / "docs" / "pictures" / "page"
@@ -54,9 +54,8 @@ def main() -> None:
 
 
 def carry_out(place: Installation) -> None:
-    """After the demonstration of a new folder: first presets, a sweep, and the README's run."""
-    experiments = place.http.get("/api/v1/experiments").raise_for_status().json()
-    presets = {one["experiment"]: one["presets"] for one in experiments}
+    """Run the first preset of each experiment, a sweep, and the README's run."""
+    presets = {one["experiment"]: one["presets"] for one in place.get("experiments")}
     for experiment, known in presets.items():
         if experiment != "quality-diversity" and known:
             place.submit(known[0]["spec"])
@@ -64,13 +63,13 @@ def carry_out(place: Installation) -> None:
     standard = next(one for one in presets["quality-diversity"] if one["name"] == "standard")
     search = standard["spec"]["search"] | {"generations": 120}
     place.submit(standard["spec"] | {"search": search})
-    for run in place.http.get("/api/v1/runs").raise_for_status().json()["items"]:
+    for run in place.get("runs")["items"]:
         place.wait(run["id"], "finished", seconds=HOUR)
         print(f"{run['experiment']} is finished", flush=True)
 
 
 def take_all(browser: Browser, address: str) -> list[str]:
-    """A picture of every page in every theme and width; what is wrong with them."""
+    """Take a picture of every page in every theme and width, and return the faults."""
     FOLDER.mkdir(parents=True, exist_ok=True)
     wrong: list[str] = []
     for theme in THEMES:
@@ -78,7 +77,7 @@ def take_all(browser: Browser, address: str) -> list[str]:
             context = browser.new_context(
                 viewport={"width": width, "height": height}, color_scheme=theme
             )
-            context.add_init_script(GUIDED)
+            context.add_init_script(TOUR_TAKEN)
             page = context.new_page()
             overhear(page, wrong)
             for place in places(address):
@@ -96,7 +95,7 @@ def take_all(browser: Browser, address: str) -> list[str]:
 
 
 def photographed(page: Page, width: int, height: int) -> bytes:
-    """The page in a window so high that one sees all of it, or far down."""
+    """A picture of the page in a window as high as the page, within limits."""
     whole = page.evaluate("document.documentElement.scrollHeight")
     high = max(height, min(whole, AREA // width))
     page.set_viewport_size({"width": width, "height": high})
@@ -112,7 +111,7 @@ def photographed(page: Page, width: int, height: int) -> bytes:
 
 
 def await_motions(page: Page) -> None:
-    """Until a gallery asks for no more; what is being rendered it asks for every second."""
+    """Wait until a gallery has requested no motion for three seconds."""
     if page.locator(GALLERY).count():
         with suppress(TimeoutError):
             while True:

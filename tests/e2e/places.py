@@ -14,13 +14,11 @@ UNREST = ".loading, .rendering, [aria-busy=true], .waiting:has-text('…')"
 """Elements that stand for something that is loading."""
 CALM_S = 0.3
 SCRUBBER = "input[aria-label='Time in the replay']"
-GUIDED = "localStorage.setItem('microcosmos:guided', '1')"
+TOUR_TAKEN = "localStorage.setItem('microcosmos:tour-taken', '1')"
 """Keeps the tour from opening by itself."""
 
 
 class Place(NamedTuple):
-    """A page to visit."""
-
     name: str
     path: str
     press: str | None = None
@@ -99,7 +97,6 @@ def stage(page: Page) -> Locator:
 
 
 def best_of(product: Installation, run: str) -> str:
-    """The name of a run's best creature."""
     archive = product.get(f"runs/{run}/archive")
     return max(zip(archive["fitness"], archive["creature"], strict=True))[1]
 
@@ -137,12 +134,10 @@ def settle(page: Page, seconds: float) -> None:
 
 
 def pixels(page: Page) -> str:
-    """The picture of a creature's stage."""
     return page.evaluate("document.querySelector('.stage canvas').toDataURL()")
 
 
 def see_it_swim(page: Page, seconds: float) -> None:
-    """Wait for the creature, and see that its picture changes."""
     expect(stage(page)).to_be_visible(timeout=1000 * seconds)
     page.wait_for_timeout(300)
     before = pixels(page)

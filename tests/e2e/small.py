@@ -40,10 +40,9 @@ OF_PRESETS: dict[str, tuple[str, str, dict[str, Any]]] = {
 
 def submit_small_runs(place: Installation) -> dict[str, str]:
     """Submit one of each: their ids by name."""
-    experiments = place.http.get("/api/v1/experiments").raise_for_status().json()
     presets = {
         (experiment["experiment"], preset["name"]): preset["spec"]
-        for experiment in experiments
+        for experiment in place.get("experiments")
         for preset in experiment["presets"]
     }
     of_presets = {

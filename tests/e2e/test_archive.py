@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from places import GUIDED, best_of, elites, the_map
+from places import TOUR_TAKEN, best_of, elites, the_map
 from playwright.sync_api import Page, expect
 from small import CENTROIDS
 from written import Written
@@ -29,7 +29,7 @@ CHANGED = "before => before !== document.querySelector('[data-gallery] canvas').
 @pytest.fixture
 def searched(shared, page):
     """A finished search whose page is open, without the tour."""
-    page.add_init_script(GUIDED)
+    page.add_init_script(TOUR_TAKEN)
     run = shared.finished("search")
     page.goto(f"{shared.product.url}/runs/{run}")
     return run
@@ -118,11 +118,11 @@ def test_the_gallery_moves_and_is_walked_by_keys(page, searched):
 
 @pytest.mark.parametrize("motion", ["no-preference", "reduce"])
 def test_a_cell_that_changes_live_flashes_once(page, idle, motion):
-    """Its outline, and nothing else; not for whom movement disturbs."""
+    """Only its outline flashes; nothing does where reduced motion is preferred."""
     run = Written(idle.services, seed=41)
     run.begin("worker 1")
     run.go_on(1, 3)
-    page.add_init_script(GUIDED)
+    page.add_init_script(TOUR_TAKEN)
     page.emulate_media(reduced_motion=motion)
     page.clock.install()
     page.goto(f"{idle.product.url}/runs/{run.id}")
@@ -164,7 +164,7 @@ def box_of(points: list[list[float]]) -> tuple[float, float, float, float]:
 
 
 def test_the_cells_of_a_tessellation_are_voronoi_cells(shared, page):
-    page.add_init_script(GUIDED)
+    page.add_init_script(TOUR_TAKEN)
     run = shared.finished("voronoi")
     with page.expect_response(re.compile("/archive/centroids$"), timeout=SLOW) as answer:
         page.goto(f"{shared.product.url}/runs/{run}")

@@ -55,7 +55,6 @@ def output_of(arguments: tuple[str, ...], folder: Path, environment: dict) -> li
 
 
 def compare_with_the_file(run, pulled: Path) -> None:
-    """The client returns the same as the file and the table."""
     tree, _ = load(pulled.read_bytes())
     archive, lineage = run.archive(), run.lineage()
     np.testing.assert_array_equal(archive.fitness, tree["archive"]["fitness"])

@@ -3,7 +3,7 @@
 import re
 
 from looks import violations
-from places import GUIDED, the_map
+from places import TOUR_TAKEN, the_map
 from playwright.sync_api import Locator, Page, expect
 from small import TINY
 
@@ -16,7 +16,7 @@ LAST = TINY["search"]["generations"]
 
 def test_a_run_is_forked_extended_deleted_and_restored(page, shared, complaints):
     address, run = shared.product.url, shared.finished("voronoi")
-    page.add_init_script(GUIDED)
+    page.add_init_script(TOUR_TAKEN)
     page.goto(f"{address}/runs/{run}")
     choose_by_keyboard(page)
     choose_by_mouse(page)
@@ -38,7 +38,7 @@ def chosen(page: Page) -> Locator:
 
 
 def choose_by_keyboard(page: Page) -> None:
-    """Space turns one, Shift with an arrow goes on, Escape lets go; the address follows."""
+    """Space toggles a cell, Shift with an arrow adds one, Escape clears the selection."""
     the_map(page).focus()
     for key in ("ArrowRight", "Space"):
         page.keyboard.press(key)
@@ -59,7 +59,7 @@ def choose_by_keyboard(page: Page) -> None:
 
 
 def choose_by_mouse(page: Page) -> None:
-    """A box over all of the map, then one elite less by a click with Shift."""
+    """Drag a box over the map, then remove one elite by the button."""
     box = the_map(page).bounding_box()
     assert box
     page.mouse.move(box["x"] + 2, box["y"] + 2)
@@ -75,7 +75,7 @@ def choose_by_mouse(page: Page) -> None:
 
 
 def fork_the_chosen(page: Page, address: str, run: str) -> None:
-    """The form says whom the run begins from, and leads back to them."""
+    """The form names the selected creatures and links back to them."""
     text = chosen(page).inner_text().removesuffix(" selected")
     page.locator(".selection-bar").get_by_role("link", name="Fork").click()
     beginning = page.locator(".base-bar")
@@ -97,7 +97,7 @@ def fork_the_past(page: Page, address: str, run: str) -> None:
 
 
 def fork_an_elite_in_another_viscosity(page: Page, address: str, run: str) -> str:
-    """The id of the new run, which its page says came of one creature."""
+    """Fork one elite, and return the id of the new run."""
     page.goto(f"{address}/runs/{run}")
     the_map(page).focus()
     page.keyboard.press("ArrowRight")

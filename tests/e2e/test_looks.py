@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from looks import THEMES, WIDTHS, faults, violations
-from places import GUIDED, Place, places, visit
+from places import TOUR_TAKEN, Place, places, visit
 from playwright.sync_api import Page, expect
 from small import CENTROIDS, TINY
 
@@ -16,7 +16,7 @@ REDRAWN_MS = 150
 
 
 def test_every_page_fits_its_window_and_axe_finds_nothing(page, shared, idle, complaints):
-    page.add_init_script(GUIDED)
+    page.add_init_script(TOUR_TAKEN)
     page.emulate_media(reduced_motion="reduce")
     wrong = []
     for address, place in every_place(shared, idle):
@@ -29,7 +29,7 @@ def test_every_page_fits_its_window_and_axe_finds_nothing(page, shared, idle, co
 
 
 def every_place(shared: Any, idle: Any) -> Iterator[tuple[str, Place]]:
-    """The shared pages, and what only a product without workers shows for long."""
+    """All pages of the shared product, and those that need a product without workers."""
     runs = {shared.finished(name): name for name in shared.submitted}
     voronoi = next(run for run, name in runs.items() if name == "voronoi")
     address = shared.product.url
@@ -64,7 +64,7 @@ def published(http: Any, run: str) -> list[dict[str, Any]]:
 
 
 def faults_of(page: Page) -> Iterator[str]:
-    """In every theme and width, what a person would see to be wrong; at a desk, also axe."""
+    """Faults of a page in every theme and width; at a desk, also those that axe finds."""
     for width, height in WIDTHS.items():
         page.set_viewport_size({"width": width, "height": height})
         for theme in THEMES:
@@ -78,7 +78,7 @@ MOST_SHIFT = 0.05
 LEAST_CONTROL = 24
 
 SHIFT = """
-localStorage.setItem("microcosmos:guided", "1");
+localStorage.setItem("microcosmos:tour-taken", "1");
 window.shift = 0;
 new PerformanceObserver((list) => {
   for (const entry of list.getEntries()) if (!entry.hadRecentInput) window.shift += entry.value;

@@ -35,7 +35,7 @@ def beginning(page: Page) -> Locator:
 
 
 def paste(page: Page, document: Any) -> None:
-    """As the clipboard does it, outside of any field."""
+    """Dispatch the clipboard's event outside of any field."""
     script = """(text) => {
         const data = new DataTransfer();
         data.setData("text", text);
@@ -199,14 +199,13 @@ def a_run_is_started_by_keyboard_alone(new: Page, address: str) -> None:
 
 
 def creature_file() -> dict[str, Any]:
-    """A swimmer with one weight and 60 steps."""
     identity = reports.identity()
     identity["task"]["steps"] = 60
     return creature.document(identity, None, None)
 
 
 def reach(page: Page, role: str, name: str) -> None:
-    """Goes on with the tabulator until something of that role and name has the focus."""
+    """Press Tab until an element of this role and name has the focus."""
     wanted = page.get_by_role(role, name=re.compile(f"^{name}"))  # pyright: ignore[reportArgumentType]
     for _ in range(60):
         page.keyboard.press("Tab")

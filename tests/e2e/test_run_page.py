@@ -109,7 +109,6 @@ def choose_how_curves_are_drawn(page: Page) -> None:
 
 
 def pixels(page: Page) -> str:
-    """The picture of the first curve."""
     return page.evaluate("document.querySelector('#curves canvas').toDataURL()")
 
 

@@ -3,7 +3,7 @@
 import re
 from urllib.parse import urlsplit
 
-from places import GUIDED, best_of, stage, the_map
+from places import TOUR_TAKEN, best_of, stage, the_map
 from playwright.sync_api import Page, Request, expect
 
 SLOW = 300_000
@@ -32,8 +32,8 @@ def test_a_creature_is_published_viewed_and_revoked(shared, page, stranger):
 
 def test_an_archive_is_published_and_its_elites_are_opened(shared, page, stranger):
     address = shared.product.url
-    page.add_init_script(GUIDED)
-    stranger.add_init_script(GUIDED)
+    page.add_init_script(TOUR_TAKEN)
+    stranger.add_init_script(TOUR_TAKEN)
     page.goto(f"{address}/runs/{shared.finished('voronoi')}")
     link = publish(page, "Eels", listed=False)
     asked = requests_of(stranger)
@@ -66,7 +66,7 @@ def publish(page: Page, title: str, *, listed: bool) -> str:
 
 
 def requests_of(page: Page) -> list[tuple[str, str | None]]:
-    """The paths that a page asks for from now on, each with the share that it names."""
+    """Requests of a page from now on, as path and share."""
     asked: list[tuple[str, str | None]] = []
 
     def note(request: Request) -> None:
@@ -104,7 +104,7 @@ def tell_other_sites(stranger: Page, link: str) -> None:
 
 
 def import_it(stranger: Page, address: str, sha: str) -> None:
-    """The file that is handed out is taken again: the same name, licence and credit."""
+    """An imported download keeps name, licence and credit."""
     with stranger.expect_download() as event:
         stranger.get_by_role("link", name="JSON").click()
     text = event.value.path().read_text()

@@ -12,7 +12,7 @@ from server.tables import FINISHED, Generation, Run
 
 
 def compute(services: Any, run: str, qd_scores: list[float]) -> None:
-    """Write down what a worker would have, and end the run."""
+    """Write generations as a worker does, and finish the run."""
     with services.sessions.write.begin() as session:
         row = session.get_one(Run, UUID(run))
         for generation, value in enumerate(qd_scores, 1):

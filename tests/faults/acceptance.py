@@ -74,20 +74,10 @@ def searches(place: Installation) -> bool:
     return good
 
 
-def foraging(place: Installation) -> bool:
-    """Tell whether creatures that sense energy collect more of it."""
-    return forage(place, carry_out, console)
-
-
 def slopes(place: Installation) -> bool:
     """Print searches with derivatives and without; either may win."""
     compare_slopes(place, carry_out, console, PICTURES / "slopes.png")
     return True
-
-
-def page(place: Installation) -> bool:
-    """Tell whether a page that is left open leaks no memory."""
-    return leave_open(place, console, MINUTES)
 
 
 def databases(place: Installation) -> bool:
@@ -116,30 +106,29 @@ def uploads(place: Installation) -> bool:
     """Tell whether thousands of malformed files are refused in time, and no other is read."""
     canary = place.folder / "canary.h5"
     canary.write_bytes(malformed_hdf5.whole())
-    with watched(canary) as told:
+    with watched(canary) as readings:
         found = send(place, all_cases(canary))
     console.print(
         f"{found.refused} malformed files: {len(found.wrong)} not refused as they should be, "
         f"the slowest in {found.slowest:.2f} s, {found.growth >> 20} MiB more memory at most, "
-        f"{len(told)} readings of other files"
+        f"{len(readings)} readings of other files"
     )
     console.print("\n".join(found.wrong))
     in_time, little = found.slowest < 2, found.growth < 300 << 20
-    return found.refused >= 1000 and in_time and little and not found.wrong and not told
+    return found.refused >= 1000 and in_time and little and not found.wrong and not readings
 
 
 PARTS = {
     "searches": searches,
     "databases": databases,
-    "foraging": foraging,
+    "foraging": lambda place: forage(place, carry_out, console),
     "slopes": slopes,
-    "page": page,
+    "page": lambda place: leave_open(place, console, MINUTES),
     "uploads": uploads,
 }
 
 
 def main(names: list[str]) -> None:
-    """Carry out all parts, or those named."""
     if unknown := set(names) - PARTS.keys():
         sys.exit(f"parts must be of {', '.join(PARTS)}, got {', '.join(sorted(unknown))}")
     with (

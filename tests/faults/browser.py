@@ -34,11 +34,11 @@ def launched(path: str | None = None) -> Iterator[Browser]:
 
 
 def overhear(page: Page, complaints: list[str]) -> None:
-    """Note what a page complains of from now on: errors, and what it tells the console."""
+    """Collect the errors and warnings of a page."""
 
     def note(kind: str, text: str) -> None:
         if kind in ("error", "warning"):
             complaints.append(f"{kind}: {text}")
 
     page.on("pageerror", lambda error: note("error", str(error)))
-    page.on("console", lambda said: note(said.type, f"{said.text} at {said.location['url']}"))
+    page.on("console", lambda line: note(line.type, f"{line.text} at {line.location['url']}"))

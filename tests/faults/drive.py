@@ -60,7 +60,6 @@ class Installation:
         self.http = httpx.Client(base_url=self.url, timeout=30)
 
     def start(self, seconds: float = 60) -> None:
-        """Start it and return when its server answers."""
         self.folder.mkdir(parents=True, exist_ok=True)
         settings = {"MICROCOSMOS_DATA": str(self.folder), "PORT": str(self.port)}
         inherited = {name: value for name, value in os.environ.items() if name not in SERVICES}
@@ -98,7 +97,6 @@ class Installation:
         return self.process.wait(seconds)
 
     def close(self) -> None:
-        """Kill all its processes."""
         for process in self.processes():
             process.kill()
         if hasattr(self, "process"):
@@ -112,9 +110,7 @@ class Installation:
         return self.http.get(f"/api/v1/{path}", params=query).raise_for_status().json()
 
     def submit(self, spec: dict[str, Any]) -> str:
-        answer = self.http.post("/api/v1/runs", json=spec)
-        answer.raise_for_status()
-        return answer.json()["id"]
+        return self.http.post("/api/v1/runs", json=spec).raise_for_status().json()["id"]
 
     def read(self, run: str) -> dict[str, Any]:
         """Read a run, retrying while the server is restarted."""
@@ -259,7 +255,7 @@ RENDERER, REDIS = "worker.renderer", "redis-server"
 
 
 def kill_job(place: Installation, run: str) -> None:
-    """The process that computes is killed, as the kernel does when memory runs out."""
+    """Kill the process that computes, as the kernel does when memory runs out."""
     place.signal(JOB, signal.SIGKILL)
 
 
@@ -268,7 +264,7 @@ def kill_supervisor(place: Installation, run: str) -> None:
 
 
 def stop_worker(place: Installation, run: str) -> None:
-    """The whole worker is told to stop; what started it starts it again."""
+    """Terminate the worker; the process that started it starts it again."""
     place.signal(SUPERVISOR, signal.SIGTERM)
 
 
@@ -288,10 +284,7 @@ def interrupt(
     moments: Sequence[int],
     seconds: float = 120,
 ) -> None:
-    """Cause the faults, each to an attempt of its own that has reached a generation.
-
-    `seconds` is how long that may take.
-    """
+    """Cause the faults, each to an attempt of its own that has reached a generation."""
     attempt = 0
     for fault, generation in zip(faults, moments, strict=True):
         attempt = place.reach(run, generation, after=attempt, seconds=seconds)

@@ -10,7 +10,7 @@ import random
 import statistics
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from browser import launched
 from drive import Installation
@@ -48,19 +48,12 @@ SPEC = {
 """A generation takes a second or so, as those of real runs do; it is cancelled at the end."""
 
 
-@dataclass(frozen=True)
-class Sample:
-    """The memory of a page at a moment."""
-
+class Sample(NamedTuple):
     seconds: float
     parts: Sequence[float]
     """Bytes of each of `PARTS`."""
     nodes: int
     generation: int
-
-    @property
-    def heap(self) -> float:
-        return sum(self.parts)
 
 
 def leave_open(place: Installation, console: Console, minutes: float) -> bool:
@@ -69,7 +62,7 @@ def leave_open(place: Installation, console: Console, minutes: float) -> bool:
     place.reach(run, 2, seconds=300)
     with launched() as browser:
         page = browser.new_page(viewport={"width": 1280, "height": 900})
-        page.add_init_script("localStorage.setItem('microcosmos:guided', '1')")
+        page.add_init_script("localStorage.setItem('microcosmos:tour-taken', '1')")
         page.goto(f"{place.url}/runs/{run}")
         page.evaluate("window.neverReloaded = true")
         samples = watched(page, place, run, 60 * minutes)
@@ -94,7 +87,6 @@ def watched(page: Page, place: Installation, run: str, seconds: float) -> list[S
 
 
 def look_at_gallery(page: Page) -> None:
-    """Open the gallery and return, within the page."""
     for query in ("?view=gallery", "?"):
         page.evaluate(MOVE, query)
         page.wait_for_timeout(1000 * HOVER_S)
@@ -124,18 +116,18 @@ def judged(samples: Sequence[Sample], console: Console) -> bool:
     table = Table(
         "", "first third", "second", "last", "bar for the last", "", title="Left open"
     )
-    heaps = [statistics.median(one.heap for one in third) for third in thirds]
+    heaps = [statistics.median(sum(one.parts) for one in third) for third in thirds]
     nodes = [statistics.median(one.nodes for one in third) for third in thirds]
     most_heap = heaps[1] + max(SHARE * heaps[1], BYTES)
     most_nodes = nodes[1] + max(SHARE * nodes[1], NODES)
     good = heaps[2] <= most_heap, nodes[2] <= most_nodes
-    said = ["holds" if one else "FAILS" for one in good]
+    verdicts = ["holds" if one else "FAILS" for one in good]
     table.add_row("minutes", *(f"to {third[-1].seconds / 60:.1f}" for third in thirds), "", "")
     table.add_row("generation", *(f"to {third[-1].generation}" for third in thirds), "", "")
-    table.add_row("heap, MB", *(f"{one / 1e6:.2f}" for one in (*heaps, most_heap)), said[0])
+    table.add_row("heap, MB", *(f"{one / 1e6:.2f}" for one in (*heaps, most_heap)), verdicts[0])
     for i, part in enumerate(PARTS.values()):
         medians = (statistics.median(one.parts[i] for one in third) for third in thirds)
         table.add_row(f"  {part}", *(f"{one / 1e6:.2f}" for one in medians), "", "")
-    table.add_row("nodes", *(f"{one:.0f}" for one in (*nodes, most_nodes)), said[1])
+    table.add_row("nodes", *(f"{one:.0f}" for one in (*nodes, most_nodes)), verdicts[1])
     console.print(table)
     return all(good)

@@ -4,7 +4,6 @@ import base64
 import gzip
 import json
 import random
-import re
 import struct
 from collections.abc import Iterator
 from copy import deepcopy
@@ -30,7 +29,7 @@ class Case:
 
 
 def good() -> dict[str, Any]:
-    """A creature file with a network of its own, and nothing that may be said freely."""
+    """A valid creature file with a network."""
     identity = example()
     genome = identity["genome"]
     inputs, outputs = len(genome["inputs"]), len(genome["outputs"])
@@ -63,13 +62,12 @@ def broken(whole: bytes) -> Iterator[Case]:
     chance = random.Random(7)
     for at in sorted(chance.sample(range(len(whole) - 1), 120)):
         yield Case(f"truncated at {at}", whole[:at], "JSON")
-    told = json.loads(whole)
+    document = json.loads(whole)
     for at in sorted(chance.sample(range(whole.index(b'"licence"')), 200)):
         flipped = bytearray(whole)
         flipped[at] ^= 1 << chance.randrange(8)
-        if same(bytes(flipped), told):
-            continue
-        yield Case(f"bit flipped in {at}", bytes(flipped))
+        if not same(bytes(flipped), document):
+            yield Case(f"bit flipped in {at}", bytes(flipped))
     for at in sorted(chance.sample(range(len(whole)), 30)):
         for name, byte in (("no UTF-8", b"\xff"), ("NUL", b"\0")):
             yield Case(f"{name} at {at}", whole[:at] + byte + whole[at:], "JSON")
@@ -80,16 +78,14 @@ def broken(whole: bytes) -> Iterator[Case]:
     yield Case("gzip bomb", gzip.compress(bytes(50 << 20), mtime=0), "JSON")
     yield Case("twice", whole + whole, "JSON")
     for name in ("identity", "sha256", "encoding", "viscosity", "weight", "width"):
-        again = re.sub(
-            rb'("%s":)' % name.encode(), rb'"%s":1,\1' % name.encode(), whole, count=1
-        )
-        yield Case(f"{name} twice", again, f"{name}' twice")
+        key = b'"%s":' % name.encode()
+        yield Case(f"{name} twice", whole.replace(key, key + b"1," + key, 1), f"{name}' twice")
 
 
-def same(body: bytes, told: Any) -> bool:
+def same(body: bytes, document: Any) -> bool:
     """Tell whether bytes mean the same, such as 1E-05 for 1e-05."""
     try:
-        return json.loads(body) == told
+        return json.loads(body) == document
     except ValueError:
         return False
 
@@ -129,9 +125,8 @@ def changed(document: dict[str, Any]) -> Iterator[Case]:
             body = changed_at(document, path, None, drop=True)
             yield Case(f"{place} missing", body, harmless=True)
         if isinstance(here, dict):
-            yield Case(
-                f"{place}: surprise", changed_at(document, path, {**here, "surprise": 1})
-            )
+            body = changed_at(document, path, {**here, "surprise": 1})
+            yield Case(f"{place}: surprise", body)
     text = changed_at(document, ("licence",), "@here@")
     for escape in (b'"\\ud800"', b'"\\u0000"', b'"\\x41"', b'"\n"'):
         yield Case(f"licence: {escape!r}", text.replace(b'"@here@"', escape))
@@ -150,10 +145,7 @@ def replacements(here: Any) -> Iterator[tuple[str, Any]]:
         "many": [0] * 9000,
         "long": "A" * 100_000,
     }
-    nothing = here is None
-    yield from (
-        (name, value) for name, value in found.items() if not (nothing and value is None)
-    )
+    yield from (item for item in found.items() if here is not None or item[1] is not None)
 
 
 def paths(document: Any, before: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:

@@ -32,7 +32,7 @@ def cases(canary: Path) -> Iterator[Case]:
 
 
 def damaged(file: bytes) -> Iterator[Case]:
-    """Cut off, turned over, and with addresses and lengths that lie."""
+    """Files cut off, with bits flipped, and with wrong addresses and lengths."""
     chance = random.Random(11)
     for at in sorted(chance.sample(range(8, len(file) - 1), 120)):
         yield Case(f"cut off at {at}", file[:at], "", HDF5)
@@ -57,15 +57,10 @@ def edited(file: bytes, edit: Edit) -> bytes:
 
 
 def members(file: bytes) -> list[str]:
-    """The paths of a file's datasets."""
-    found: list[str] = []
+    names: list[str] = []
     with h5py.File(BytesIO(file), "r") as opened:
-        opened.visititems(lambda name, item: found.append(name) if is_data(item) else None)
-    return found
-
-
-def is_data(item: Any) -> bool:
-    return isinstance(item, h5py.Dataset)
+        opened.visit(names.append)
+        return [name for name in names if isinstance(opened[name], h5py.Dataset)]
 
 
 MEMBERS = members(whole())
@@ -129,17 +124,14 @@ def bombs() -> Edits:
             ("huge chunks", {"chunks": (1 << 29,)}),
             ("nothing at all", {}),
         ):
-            yield f"{name}: {title}", huge(name, **options), "stored plainly|one text|must be"
+            edit = made(name, shape=HUGE, dtype="u1", **options)
+            yield f"{name}: {title}", edit, "stored plainly|one text|must be"
         many = {"shape": (0,), "maxshape": (None,), "chunks": (8,), "dtype": "f4"}
         yield f"{name}: growing", made(name, **many), "stored plainly"
     yield "many attributes", lambda file: with_attributes(file, 3000), "attributes must be"
     yield "many groups", lambda file: with_groups(file, 3000), "must hold"
     yield "deep groups", lambda file: deep(file, 500), "must hold"
-    yield "a group in itself", lambda file: cycle(file), "must hold|must be"
-
-
-def huge(name: str, **options: Any) -> Edit:
-    return made(name, shape=HUGE, dtype="u1", **options)
+    yield "a group in itself", cycle, "must hold|must be"
 
 
 def made(name: str, **options: Any) -> Edit:
@@ -192,17 +184,10 @@ def others() -> Edits:
         yield f"{name} beside", lambda file, name=name: beside(file, name), "must hold"
     for name in creature_h5.ATTRIBUTES:
         for title, value in values.items():
-            yield f"@{name}: {title}", lambda file, n=name, v=value: said(file, n, v), ""
-        for text in (
-            b"",
-            b"\xff",
-            b"NaN",
-            b"null ",
-            b"[" * 20_000,
-            b'{"a": 1, "a": 2}',
-            b"0" * 64,
-        ):
-            yield f"@{name}: {text[:9]!r}", lambda file, n=name, t=text: said(file, n, t), ""
+            yield f"@{name}: {title}", with_attribute(name, value), ""
+        texts = (b"", b"\xff", b"NaN", b"null ", b"[" * 20_000, b'{"a": 1, "a": 2}', b"0" * 64)
+        for text in texts:
+            yield f"@{name}: {text[:9]!r}", with_attribute(name, np.bytes_(text)), ""
         yield f"@{name} missing", lambda file, n=name: file.attrs.pop(n), "attributes must be"
 
 
@@ -224,6 +209,9 @@ def beside(file: h5py.File, name: str) -> None:
     file[f"{name}_" if name in MEMBERS else name] = np.zeros(2)
 
 
-def said(file: h5py.File, name: str, value: Any) -> None:
-    del file.attrs[name]
-    file.attrs[name] = np.bytes_(value) if isinstance(value, bytes) else value
+def with_attribute(name: str, value: Any) -> Edit:
+    def edit(file: h5py.File) -> None:
+        del file.attrs[name]
+        file.attrs[name] = value
+
+    return edit

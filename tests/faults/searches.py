@@ -55,7 +55,6 @@ SENSOR = 3
 
 
 def written(spec: dict[str, Any]) -> dict[str, Any]:
-    """The whole spec, with its defaults."""
     return parse({"experiment": "quality-diversity", **spec}).model_dump(mode="json")
 
 
@@ -82,11 +81,11 @@ def table(title: str, columns: Sequence[str], found: Mapping[str, list[list[floa
     """Medians and ranges of lists of values: a row for each name."""
     rows = Table(title, *columns)
     for method, lists in found.items():
-        rows.add_row(method, *map(_summary, lists))
+        rows.add_row(method, *map(summary, lists))
     return rows
 
 
-def _summary(values: list[float]) -> str:
+def summary(values: list[float]) -> str:
     digits = 3 if max(values) <= 1 else 2
     low, middle, high = min(values), statistics.median(values), max(values)
     return f"{middle:.{digits}f} ({low:.{digits}f}–{high:.{digits}f})"
@@ -110,11 +109,9 @@ def draw(runs: dict[str, list[dict]], path: Path) -> None:
 
 
 def fittest(place: Installation, run: str, count: int) -> list[dict]:
-    """The creature files of a run's fittest elites."""
-    archive = place.http.get(f"/api/v1/runs/{run}/archive").raise_for_status().json()
+    archive = place.get(f"runs/{run}/archive")
     order = np.argsort(archive["fitness"])[::-1][:count]
-    addresses = [f"/api/v1/creatures/{archive['creature'][i]}" for i in order]
-    return [place.http.get(address).raise_for_status().json() for address in addresses]
+    return [place.get(f"creatures/{archive['creature'][i]}") for i in order]
 
 
 def sinusoidal(place: Installation, runs: dict[str, list[dict]], console: Console) -> None:
@@ -189,7 +186,7 @@ def compare_slopes(
 
 def curve(place: Installation, run: dict) -> np.ndarray:
     """Evaluations, device-seconds without compilation, and QD score, (3, generation)."""
-    found = place.http.get(f"/api/v1/runs/{run['id']}/generations").raise_for_status().json()
+    found = place.get(f"runs/{run['id']}/generations")
     seconds = np.array(found["summary"]["device_seconds"], float)
     seconds[0] = 0.0  # The first generation compiles the programs.
     return np.array([found["evaluations"], np.cumsum(seconds), found["qd_score"]])
@@ -264,7 +261,6 @@ def blinded(file: dict) -> dict:
 
 
 def collected(file: dict) -> float:
-    """The energy that a creature collects, measured again."""
     from microcosmos.audit.reproducibility import check
 
     return check(file).repeated["energy"]

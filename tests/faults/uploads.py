@@ -7,7 +7,7 @@ import socket
 import struct
 import time
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
@@ -26,8 +26,6 @@ OURS = ("Errno", "No module", "took too long", "cannot be read", "Traceback")
 
 @dataclass
 class Findings:
-    """The outcome of sending malformed files."""
-
     refused: int = 0
     wrong: list[str] = field(default_factory=list)
     slowest: float = 0.0
@@ -38,14 +36,14 @@ class Findings:
 @contextmanager
 def watched(canary: Path) -> Iterator[list[str]]:
     """Collect the kernel's events of opening or reading a file."""
-    libc, told = ctypes.CDLL(None, use_errno=True), []
+    libc, readings = ctypes.CDLL(None, use_errno=True), []
     watch = libc.inotify_init1(os.O_NONBLOCK | os.O_CLOEXEC)
     assert watch >= 0
     added = libc.inotify_add_watch(watch, os.fsencode(canary), IN_ACCESS | IN_OPEN)
     assert added >= 0, os.strerror(ctypes.get_errno())
     try:
-        yield told
-        told += [f"event {kind:#x}" for kind in events(watch)]
+        yield readings
+        readings += [f"event {kind:#x}" for kind in events(watch)]
     finally:
         os.close(watch)
 
@@ -65,7 +63,7 @@ def all_cases(canary: Path) -> Iterable[Case]:
 
 def send(place: Installation, cases: Iterable[Case]) -> Findings:
     """Post each file as a creature's; the answer has to refuse it with what was wrong."""
-    found, sound = Findings(), malformed.good()["sha256"]
+    found, expected = Findings(), malformed.good()["sha256"]
     before = None
     for case in cases:
         began = time.monotonic()
@@ -77,7 +75,7 @@ def send(place: Installation, cases: Iterable[Case]) -> Findings:
         else:
             found.slowest = max(found.slowest, time.monotonic() - began)
             found.growth = max(found.growth, memory(place) - before)
-        if answer.is_success and case.harmless and answer.json()["creature"] == sound:
+        if answer.is_success and case.harmless and answer.json()["creature"] == expected:
             continue
         found.refused += 1
         if fault := complaint(case, answer.status_code, answer.text):
@@ -94,18 +92,12 @@ def complaint(case: Case, status: int, text: str) -> str | None:
 
 
 def memory(place: Installation) -> int:
-    """Bytes in the memory of the server and of all who read files for it."""
+    """Bytes in the memory of the server and of the sandboxes that read files for it."""
     total = 0
-    for process in place.named("server.main"):
-        # A reader may end while it is looked at.
-        try:
-            if process.cmdline()[1:] in (
-                ["-m", "server.main"],
-                ["-m", "server.creatures.sandbox_process"],
-            ):
-                total += process.memory_info().rss
-        except (psutil.Error, OSError):
-            continue
+    sandboxes = place.named("server.creatures.sandbox_process")
+    for process in place.named("server.main") + sandboxes:
+        with suppress(psutil.Error, OSError):  # A sandbox may end meanwhile.
+            total += process.memory_info().rss
     return total
 
 
@@ -128,7 +120,7 @@ LIES = {
 
 
 def lie(port: int, sent: bytes) -> bytes:
-    """The first line of the answer to a request whose length is not what it says."""
+    """The first line of the answer to a request with a wrong length."""
     with socket.create_connection(("127.0.0.1", port), timeout=20) as connection:
         try:
             connection.sendall(HEAD + sent)

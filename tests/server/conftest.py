@@ -14,12 +14,13 @@ import pytest
 import reports
 from databases import Missing, own_postgresql, own_redis
 from installation import Installation, empty_redis, running
-from sqlalchemy import func, select
+from sqlalchemy import event, func, select, update
 
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, parse
 from server.attempts.attempt import Attempt
 from server.attempts.claim import claim
+from server.core.database import ago
 from server.runs.submission import submit
 from server.services.services import Services
 from server.settings import Settings
@@ -97,8 +98,6 @@ def flush(services) -> Callable[[], None]:
 
 @pytest.fixture
 def eventually() -> Callable[[Callable[[], Any]], None]:
-    """Waits until a condition holds, and fails after 20 seconds."""
-
     def wait(condition: Callable[[], Any]) -> None:
         deadline = time.monotonic() + 20
         while not condition():
@@ -116,7 +115,6 @@ def serve(services) -> Callable[[], Any]:
 
 @pytest.fixture
 def address(installation) -> str:
-    """The server that all tests share."""
     return installation.address
 
 
@@ -134,32 +132,56 @@ def spec() -> dict[str, Any]:
 
 @pytest.fixture
 def run_id(services, spec) -> UUID:
-    """A queued run."""
     demo = EXPERIMENTS["quality-diversity"].presets[0].spec
     return submit(services, demo)[0].id
 
 
 @pytest.fixture
-def attempt(services, run_id) -> Attempt:
-    """A worker's claim on the queued run."""
-    return claim(services, run_id, "worker")
+def claim_run(services, run_id) -> Callable[..., Attempt | None]:
+    return lambda worker="worker": claim(services, run_id, worker)
 
 
 @pytest.fixture
-def record(services, run_id, request) -> Callable[..., None]:
+def attempt(claim_run) -> Attempt:
+    return claim_run()
+
+
+@pytest.fixture
+def record(request) -> Callable[..., None]:
     """Records a generation of the queued run, as `attempt`; takes what `report` does."""
 
-    def record(*said: Any, seconds: float = 1.0, **more: Any) -> None:
-        held = request.getfixturevalue("attempt")
-        held.record(reports.report(*said, **more), seconds)
+    def record(*figures: Any, seconds: float = 1.0, **more: Any) -> None:
+        attempt = request.getfixturevalue("attempt")
+        attempt.record(reports.report(*figures, **more), seconds)
 
     return record
 
 
 @pytest.fixture
-def row(services, run_id) -> Callable[[], Run]:
-    """The run as the database has it now."""
+def update_rows(services) -> Callable[..., None]:
+    """Sets columns of a table, in all rows or where some conditions hold."""
 
+    def change(table: type[Base], *where: Any, **values: Any) -> None:
+        with services.sessions.write.begin() as session:
+            session.execute(update(table).where(*where).values(**values))
+
+    return change
+
+
+@pytest.fixture
+def silence(services, update_rows) -> Callable[[], None]:
+    """Lets the leases of all runs expire."""
+
+    def silence() -> None:
+        with services.sessions.read() as session:
+            then = ago(session, services.settings.lease + 0.1)
+        update_rows(Run, heartbeat_at=then)
+
+    return silence
+
+
+@pytest.fixture
+def row(services, run_id) -> Callable[[], Run]:
     def read() -> Run:
         with services.sessions.read() as session:
             return session.get_one(Run, run_id)
@@ -169,11 +191,27 @@ def row(services, run_id) -> Callable[[], Run]:
 
 @pytest.fixture
 def count(services) -> Callable[[type[Base]], int]:
-    """Counts the rows of a table."""
-
     def count(table: type[Base]) -> int:
         with services.sessions.read() as session:
             return session.scalar(select(func.count()).select_from(table))
+
+    return count
+
+
+@pytest.fixture
+def statements(services) -> Callable[..., int]:
+    """Counts the statements that an action sends to the database."""
+
+    def count(action: Callable[..., Any], *arguments: Any) -> int:
+        sent = []
+
+        def note(_connection: Any, _cursor: Any, statement: str, *_: Any) -> None:
+            sent.append(statement)
+
+        event.listen(services.sessions.engine, "before_cursor_execute", note)
+        action(*arguments)
+        event.remove(services.sessions.engine, "before_cursor_execute", note)
+        return len(sent)
 
     return count
 
@@ -196,8 +234,18 @@ def identity() -> Callable[[int], dict[str, Any]]:
 
 @pytest.fixture
 def file() -> dict[str, Any]:
-    """A creature file."""
     return creature.document(reports.identity(3), None, None)
+
+
+@pytest.fixture
+def upload(api) -> Callable[..., str]:
+    """Uploads a creature with an identity, and returns its hash."""
+
+    def upload(identity: dict[str, Any], *more: Any) -> str:
+        file = creature.document(identity, *more or (None, None))
+        return api.post("creatures", json=file).json()["creature"]
+
+    return upload
 
 
 @pytest.fixture

@@ -66,7 +66,6 @@ def instructions(path):
 
 
 def settings():
-    """Every variable that `Settings` reads."""
     names = {f"MICROCOSMOS_{name.upper()}" for name in Settings.model_fields}
     for field in Settings.model_fields.values():
         names |= set(getattr(field.validation_alias, "choices", ()))
@@ -140,7 +139,7 @@ def test_an_unhealthy_container_is_restarted_after_its_start_period(ours):
 
 
 def test_a_database_is_ready_once_it_listens_to_others(services):
-    """While its files are made, PostgreSQL answers on its socket alone, and then ends."""
+    """PostgreSQL answers on its socket alone while it creates its files, and then restarts."""
     assert "pg_isready -h 127.0.0.1" in services["postgres"]["healthcheck"]["test"][1]
 
 
@@ -192,19 +191,19 @@ def test_only_the_server_has_a_port_on_loopback(services):
 
 
 def test_a_local_proxy_names_the_client(services):
-    """Else wrong tokens of one count for all, and cookies go where nothing is encrypted."""
-    seen: dict[str, Any] = {}
+    """Otherwise all clients share one rate limit, and cookies lack `Secure`."""
+    received: dict[str, Any] = {}
 
     async def app(scope, receive, send):
-        seen.update(scope)
+        received.update(scope)
 
-    told = {"x-forwarded-for": "10.0.0.7, 203.0.113.5", "x-forwarded-proto": "https"}
-    headers = [(name.encode(), value.encode()) for name, value in told.items()]
+    forwarded = {"x-forwarded-for": "10.0.0.7, 203.0.113.5", "x-forwarded-proto": "https"}
+    headers = [(name.encode(), value.encode()) for name, value in forwarded.items()]
     scope = {"type": "http", "scheme": "http", "client": ("172.18.0.1", 1), "headers": headers}
     trusted = services["server"]["environment"]["FORWARDED_ALLOW_IPS"]
     asyncio.run(ProxyHeadersMiddleware(app, trusted)(scope, None, None))
     # The client may have claimed the first address; the proxy added the second.
-    assert (seen["client"][0], seen["scheme"]) == ("203.0.113.5", "https")
+    assert (received["client"][0], received["scheme"]) == ("203.0.113.5", "https")
 
 
 def test_every_gpu_worker_has_a_device_of_its_own(services):

@@ -88,7 +88,6 @@ def test_no_request_breaks_the_server_or_its_document(serve, services, known):
 def broken(
     operation: Any, address: str, known: dict[str, list[str]], reached: set[str]
 ) -> list[str]:
-    """Send requests to an operation and return wrong answers."""
     wrong: list[str] = []
     modes = [operation.as_strategy(generation_mode=mode) for mode in GenerationMode]
 
@@ -133,25 +132,27 @@ def names(field, info):
 
 
 def test_every_setting_is_there_with_its_default_and_no_other():
-    told = {name: row[1] for row in rows("Settings") for name in re.findall(r"`(\w+)`", row[0])}
+    documented = {
+        name: row[1] for row in rows("Settings") for name in re.findall(r"`(\w+)`", row[0])
+    }
     fields = Settings.model_fields
     known = {name: field for field, info in fields.items() for name in names(field, info)}
-    assert told.keys() == known.keys()
+    assert documented.keys() == known.keys()
     for name, field in known.items():
         if field not in ELSEWHERE:
             default = fields[field].default
             default = str(default).lower() if isinstance(default, bool) else default
             shown = f"{default:g}" if isinstance(default, float) else str(default)
-            assert told[name].strip("`") == shown, name
+            assert documented[name].strip("`") == shown, name
 
 
 def test_every_metric_is_there_and_no_other(address):
     found = httpx.get(f"{address}/metrics", verify=False).text
     there = set(re.findall(r"^# TYPE (\w+)", found, re.MULTILINE))
-    told = {
+    documented = {
         n for row in rows("Health and figures") for n in re.findall(r"microcosmos_\w+", row[0])
     }
-    assert told == there
+    assert documented == there
 
 
 @pytest.mark.parametrize("row", rows("Size"), ids=lambda row: row[0])

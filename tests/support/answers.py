@@ -12,7 +12,6 @@ def detail(answer: httpx.Response, status: int) -> str:
 
 
 def errors(answer: httpx.Response, status: int = 422) -> list[dict[str, Any]]:
-    """The errors of an invalid request, each with its field."""
     assert answer.status_code == status, answer.text
     return answer.json()["errors"]
 

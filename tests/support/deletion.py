@@ -12,7 +12,6 @@ from server.tables import Base, Run
 
 
 def rows(services):
-    """The number of rows of each table."""
     with services.sessions.read() as session:
         return {
             table.name: session.scalar(select(func.count()).select_from(table))
@@ -50,3 +49,4 @@ def delete_for_good(api, services, run_id):
     assert api.delete(f"runs/{run_id}").status_code == 200
     let_time_pass(services, run_id)
     reconcile(services)
+    assert api.get(f"runs/{run_id}").status_code == 404

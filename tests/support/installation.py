@@ -30,7 +30,6 @@ class Installation:
         return self._stack.enter_context(running(self.services.settings))
 
     def clean(self) -> None:
-        """Delete all rows, keys and files."""
         with self.services.sessions.write.begin() as session:
             for left in session.scalars(select(Run.id)):
                 self.services.jobs.forget(str(left))
@@ -41,7 +40,6 @@ class Installation:
 
 
 def empty_redis(services: Services) -> None:
-    """Delete all our keys."""
     for queue in (*services.jobs.run_queues, services.jobs.renderings, services.jobs.audits):
         queue.delete(delete_jobs=True)
     pattern = f"*{services.settings.redis_prefix[:-1]}*"

@@ -52,7 +52,6 @@ class Relay:
         hang_up(server)
 
     def cut(self) -> None:
-        """Break all connections off."""
         for each in self.open:
             hang_up(each)
 

@@ -45,14 +45,11 @@ def settings(services):
 
 @pytest.fixture
 def run_id(services):
-    """A queued run."""
     return submit(services, EXPERIMENTS["quality-diversity"].presets[0].spec)[0].id
 
 
 @pytest.fixture
 def row(services, run_id):
-    """The run as the database has it now."""
-
     def read():
         with services.sessions.read() as session:
             return session.get_one(Run, run_id)

@@ -192,8 +192,8 @@ def test_a_heartbeat_reports_the_latest_usage(services):
 @pytest.mark.parametrize("error", [OSError("gone"), ValueError("no number")])
 def test_a_gauge_reads_until_its_end_and_drops_what_is_old_after_a_failure(error):
     failed, go_on, enough = Event(), Event(), Event()
-    seen = [Usage(load=1.0)]
-    looks = iter([*seen, error])
+    usages = [Usage(load=1.0)]
+    looks = iter([*usages, error])
 
     def look():
         found = next(looks, None)
@@ -202,17 +202,17 @@ def test_a_gauge_reads_until_its_end_and_drops_what_is_old_after_a_failure(error
         if found is None:
             failed.set()
             assert go_on.wait(20)
-            seen.append(Usage(load=float(len(seen))))
-            if len(seen) == 3:
+            usages.append(Usage(load=float(len(usages))))
+            if len(usages) == 3:
                 enough.set()
-        return seen[-1]
+        return usages[-1]
 
     gauge = usage.Gauge(look, 0.001)
     gauge.start()
     assert failed.wait(20)
-    assert gauge.last == Usage(), "what was seen before the failure is old"
+    assert gauge.last == Usage(), "the reading before the failure is dropped"
     go_on.set()
     assert enough.wait(20)
     gauge.end()
     gauge.join()
-    assert gauge.last == seen[-1]
+    assert gauge.last == usages[-1]

@@ -1,4 +1,4 @@
-"""Health checks tell the living from the dead."""
+"""Health checks: alive and dead parts, and the restart of failing containers."""
 
 import os
 import socket

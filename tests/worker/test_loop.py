@@ -32,7 +32,7 @@ def worker(services):
 
 @pytest.fixture
 def ask(services):
-    """Enqueue a call, and what it calls is recorded."""
+    """Enqueues a call."""
 
     def enqueue(name):
         return services.jobs.renderings.enqueue(
@@ -84,7 +84,7 @@ CREATURE = "ab" * 32
 
 @pytest.fixture
 def begin(services):
-    """Takes the order as far as a renderer that dies while it works on it."""
+    """Takes an order as a renderer does that dies while it works."""
 
     def take():
         queue = services.jobs.renderings

@@ -86,7 +86,7 @@ from types import SimpleNamespace
 from server.settings import Settings
 from worker.evolution import carry_out
 
-said = {}
+outcome = {}
 for spec in json.loads(sys.argv[1]):
     attempt = SimpleNamespace(
         spec=spec,
@@ -94,11 +94,11 @@ for spec in json.loads(sys.argv[1]):
         record_device=lambda device: None,
         restore=lambda: None,
         initial=lambda: [],
-        pause_until_resumed=lambda text: said.update(aside=text),
-        refuse=lambda text: said.update(refused=text),
+        pause_until_resumed=lambda text: outcome.update(aside=text),
+        refuse=lambda text: outcome.update(refused=text),
     )
     carry_out(attempt)
-print(json.dumps(said))
+print(json.dumps(outcome))
 """
 
 
@@ -113,6 +113,6 @@ def test_a_run_on_the_wrong_worker_is_paused_or_refused(settings):
         specs.append({**spec, "body": {"builder": "mine.stick", "plugin": version}})
     command = [sys.executable, "-c", CARRY_OUT, json.dumps(specs)]
     done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True)
-    said = json.loads(done.stdout.splitlines()[-1])
-    assert "must be of version aaaaaaaaaaaa, got version" in said["aside"]
-    assert "mine.stick must return a body, got int" in said["refused"]
+    outcome = json.loads(done.stdout.splitlines()[-1])
+    assert "must be of version aaaaaaaaaaaa, got version" in outcome["aside"]
+    assert "mine.stick must return a body, got int" in outcome["refused"]

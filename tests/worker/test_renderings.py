@@ -34,7 +34,6 @@ def replay() -> bytes:
 
 @pytest.fixture
 def known(services):
-    """A creature that swims by a gait."""
     sweep = next(p.spec for p in EXPERIMENTS["gaits"].presets if isinstance(p.spec, Gaits))
     written = sweep.scene("ours", "worm", 0.5).model_dump(mode="json")
     whole = {

@@ -39,7 +39,7 @@ CREATURES = 10 if os.environ.get("SMALL") else 100
 
 NOTES = """
 window.noted = [];
-localStorage.setItem("microcosmos:guided", "1");
+localStorage.setItem("microcosmos:tour-taken", "1");
 new PerformanceObserver((list) => {
   for (const { name, entryType, startTime, duration } of list.getEntries())
     window.noted.push({ name, entryType, startTime, duration });

@@ -64,7 +64,6 @@ def laptop(tmp_path, product):
 
 @pytest.fixture
 def elsewhere(common, tmp_path):
-    """A colleague's server, where nothing has been run."""
     with (
         running(tmp_path / "elsewhere", common | {"WORKERS": "0"}) as place,
         Client(place.url) as client,
@@ -102,7 +101,7 @@ def sweep(client: Client, laptop: Laptop) -> list[Run]:
 
 
 def extend(laptop: Laptop, run: Run) -> None:
-    """Without a server, as many generations from the start come to the same bytes."""
+    """A run that is extended has the bytes of one that was longer from the start."""
     laptop.run("extend", run.id, str(MORE))
     laptop.run("watch", run.id)
     assert run.refresh().generation == GENERATIONS + MORE
@@ -114,7 +113,7 @@ def extend(laptop: Laptop, run: Run) -> None:
 
 
 def swim_in_another_viscosity(client: Client, run: Run) -> Run:
-    """The best elite begins a run of its own, in whose archive it is found as an ancestor."""
+    """Fork the best elite; the archive of the fork names it as an ancestor."""
     best = run.archive().best()
     viscosity = 2 * run.spec["world"]["viscosity"]
     fork = run.fork(creatures=[best], spec={"world": {"viscosity": viscosity}}, name="honey")
@@ -155,7 +154,7 @@ def draw_the_contact_sheet(laptop: Laptop, run: Run) -> None:
 
 
 def delete_for_good(client: Client, laptop: Laptop, product: Installation, run: Run) -> None:
-    """Undone once; then a day passes."""
+    """Delete a run, restore it, delete it again, and let its day in the bin pass."""
     laptop.run("delete", run.id, "--yes")
     assert run.id not in {one.id for one in client.runs()}
     laptop.run("restore", run.id)

@@ -5,7 +5,7 @@ from typing import Any
 
 import psutil
 from drive import Installation, wait_until
-from places import GUIDED, best_of, the_map
+from places import TOUR_TAKEN, best_of, the_map
 from playwright.sync_api import Locator, Page, expect
 from small import TINY
 
@@ -18,7 +18,7 @@ def test_no_update_is_lost_while_the_server_is_started_again(
     product, page, complaints, new_page
 ):
     run = product.submit(SPEC)
-    page.add_init_script(GUIDED)
+    page.add_init_script(TOUR_TAKEN)
     page.goto(f"{product.url}/runs/{run}?colour=turning")  # Which is asked for as it grows.
     page.evaluate("window.neverReloaded = true")
     product.reach(run, 3)
@@ -34,7 +34,7 @@ def test_no_update_is_lost_while_the_server_is_started_again(
     expected = figures_of(product, run)
     wait_until(lambda: figures_on(page) == expected, 10, f"the page shows {expected}")
     anew = new_page()
-    anew.add_init_script(GUIDED)
+    anew.add_init_script(TOUR_TAKEN)
     anew.goto(page.url)
     wait_until(lambda: looks(page) == looks(anew), 20, "it looks as if opened anew")
     assert page.evaluate("window.neverReloaded")
@@ -55,7 +55,6 @@ def connection(page: Page) -> Locator:
 
 
 def figures_of(product: Installation, run: str) -> dict[str, Any]:
-    """The figures of a paused run in the API."""
     curves = product.get(f"runs/{run}/generations")
     return {
         "elites": len(product.get(f"runs/{run}/archive")["cell"]),
@@ -67,7 +66,6 @@ def figures_of(product: Installation, run: str) -> dict[str, Any]:
 
 
 def figures_on(page: Page) -> dict[str, Any]:
-    """The same figures on the page."""
     return {
         "elites": first_number(page.get_by_text(re.compile(r"^[\d,]+ elites"))),
         "generation": first_number(page.get_by_text(re.compile(r"^[\d,]+ / 5,000$"))),
@@ -78,7 +76,7 @@ def figures_on(page: Page) -> dict[str, Any]:
 
 
 def newest(page: Page, curve: str) -> float:
-    """The last value of a curve, which its picture is named with."""
+    """The last value of a curve, from the label of its plot."""
     picture = page.get_by_role("img", name=re.compile(f"^{curve} .*now "))
     name = picture.first.get_attribute("aria-label") or ""
     return rounded(number(name.partition("now")[2]))

@@ -65,7 +65,6 @@ def tag_and_filter_by_mouse(page: Page, tagged: str, other: str) -> None:
 
 
 def see_only_what_matches(page: Page, product: Installation, named: str) -> None:
-    """New runs appear only if they match the search."""
     page.get_by_role("searchbox").fill("short")
     expect(rows(page)).to_have_count(1)
     third = submit(product, 3, 100_000)
@@ -101,7 +100,7 @@ def sort_by_keyboard(page: Page) -> None:
 
 
 def compare_by_keyboard(page: Page) -> None:
-    """From the field that finds runs on, with nothing but keys."""
+    """Start in the search field and use the keyboard alone."""
     page.get_by_role("searchbox").focus()
     page.keyboard.type("short one")
     expect(rows(page)).to_have_count(1)
@@ -123,7 +122,7 @@ def compare_by_keyboard(page: Page) -> None:
 
 
 def press_until(page: Page, label: str, key: str) -> None:
-    """Tab on to what is called so, and press a key there."""
+    """Press Tab until an element of this label has the focus, then press a key."""
     named = "document.activeElement.ariaLabel || document.activeElement.textContent"
     for _ in range(80):
         page.keyboard.press("Tab")

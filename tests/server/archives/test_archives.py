@@ -17,7 +17,6 @@ from server.runs.submission import submit
 
 @pytest.fixture
 def saved(spec, attempt, record) -> bytes:
-    """The checkpoint of the run, an archive with one elite."""
     record(1)
     content = archive_file(spec)
     attempt.save(1, content)
@@ -103,9 +102,8 @@ def test_the_table_has_the_columns_of_pyribs(api, run_id, saved):
     assert answer.headers["content-type"].startswith("text/csv")
     header, row = (line.split(",") for line in answer.text.splitlines())
     table = dict(zip(header, row, strict=True))
-    assert [name for name in table if name.startswith("solution_")] == [
-        f"solution_{i}" for i in range(5)
-    ]
+    solution = [name for name in table if name.startswith("solution_")]
+    assert solution == [f"solution_{i}" for i in range(5)]
     assert float(table["objective"]) == 2.5
     assert [float(table["measures_0"]), float(table["measures_1"])] == [-2.0, 0.0]
     assert table["index"] == "17"
@@ -163,19 +161,18 @@ def test_unknown_measures_and_too_long_histories_are_refused(api, run_id, record
 def test_elites_have_any_number_of_descriptors(api, run_id, descriptors, record, published):
     record(1, {5: 1.0}, descriptors)
     assert api.get(f"runs/{run_id}/archive").json()["descriptors"] == [list(descriptors)]
-    (told,) = [data for kind, data in published() if kind == "elites"]
-    assert told["descriptors"] == [list(descriptors)]
+    (event,) = [data for kind, data in published() if kind == "elites"]
+    assert event["descriptors"] == [list(descriptors)]
+
+
+THREE = [{"name": name} for name in ("nodes", "mach", "power")]
 
 
 @pytest.mark.parametrize(
     ("archive", "kind", "cells"),
     [
         ({"descriptors": [{"name": "turning", "bins": 7}]}, "grid", 7),
-        (
-            {"descriptors": [{"name": name} for name in ("nodes", "mach", "power")]},
-            "grid",
-            8000,
-        ),
+        ({"descriptors": THREE}, "grid", 8000),
         ({"centroids": 500}, "cvt", 500),
     ],
 )
@@ -199,13 +196,8 @@ def test_a_measure_comes_with_title_unit_and_ends(api, run_id, record):
     assert known["bending_effort"]["title"] == "Bending effort"
     assert known["bending_effort"]["unit"] == "rad²"
     assert known["bending_effort"]["low"] < known["bending_effort"]["high"]
-    assert known["old"] == {
-        "title": "Old",
-        "unit": "",
-        "low": None,
-        "high": None,
-        "scale": "linear",
-    }
+    unknown = {"title": "Old", "unit": "", "low": None, "high": None, "scale": "linear"}
+    assert known["old"] == unknown
 
 
 def test_the_history_contains_the_archive_of_every_generation(api, run_id, record):
@@ -236,10 +228,8 @@ def test_the_centroids_of_a_tessellation_are_those_of_its_file(api, services, sp
     run_id = submit(services, parse(spec))[0].id
     assert api.get(f"runs/{run_id}/archive/centroids").json() == {"centroids": None}
     places = np.array([[0.25, 0.5], [0.75, 0.125], [0.5, 1.0]], np.float32)
-    attributes = {"format": file.FORMAT}
-    data = file.dump({"archive": {"centroids": places}}, attributes)
     attempt = claim(services, run_id, "worker")
     attempt.record(report(1, {2: 1.0}), 1.0)
-    attempt.save(1, data)
+    attempt.save(1, file.dump({"archive": {"centroids": places}}, {"format": file.FORMAT}))
     answer = api.get(f"runs/{run_id}/archive/centroids").json()
     assert answer["centroids"] == places.tolist()

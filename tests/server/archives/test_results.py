@@ -17,8 +17,13 @@ WORM = {"swimmer": "worm", "viscosity": 0.5, "ok": True, "number": 1}
 RAY = {"swimmer": "ray", "viscosity": 2.0, "ok": False, "number": 2}
 
 
-def test_rows_are_read_in_order_with_their_creatures(api, services, sweep_id, table):
-    attempt = claim(services, sweep_id, "worker")
+@pytest.fixture
+def attempt(services, sweep_id):
+    """An attempt at the run whose result is a table."""
+    return claim(services, sweep_id, "worker")
+
+
+def test_rows_are_read_in_order_with_their_creatures(api, sweep_id, attempt, table):
     attempt.record(table(1, WORM), 1.0)
     attempt.record(table(2, RAY, {"note": "no creature"}, summary={"best": 3.5}), 1.0)
     found = api.get(f"runs/{sweep_id}/results").json()
@@ -29,8 +34,8 @@ def test_rows_are_read_in_order_with_their_creatures(api, services, sweep_id, ta
     assert all(api.get(f"creatures/{sha}").status_code == 200 for sha in creatures[:2])
 
 
-def test_a_table_has_a_run_and_curves(api, services, sweep, sweep_id, table):
-    claim(services, sweep_id, "worker").record(table(1, WORM, summary={"best": 2.0}), 4.0)
+def test_a_table_has_a_run_and_curves(api, attempt, sweep, sweep_id, table):
+    attempt.record(table(1, WORM, summary={"best": 2.0}), 4.0)
     run = api.get(f"runs/{sweep_id}").json()
     total = len(sweep["swimmers"]) * len(sweep["forms"])
     assert (run["generation"], run["generations"]) == (1, total)
@@ -65,16 +70,15 @@ def test_a_refinement_has_both_cells_and_a_table(api, services, identity, table)
     assert large.json()["errors"][0]["field"] == "segment"
 
 
-def test_numbers_that_json_lacks_become_null(api, services, sweep_id, table):
+def test_numbers_that_json_lacks_become_null(api, attempt, sweep_id, table):
     rows = ({"displacement": float("nan")}, {"displacement": float("inf")})
-    claim(services, sweep_id, "worker").record(table(1, *rows), 1.0)
+    attempt.record(table(1, *rows), 1.0)
     found = api.get(f"runs/{sweep_id}/results").json()["rows"]
     assert [row["displacement"] for row in found] == [None, None]
 
 
-def test_the_table_as_csv_has_every_column(api, services, sweep_id, table):
+def test_the_table_as_csv_has_every_column(api, attempt, sweep_id, table):
     assert api.get(f"runs/{sweep_id}/results.csv").status_code == 404
-    attempt = claim(services, sweep_id, "worker")
     attempt.record(table(1, WORM), 1.0)
     attempt.record(table(2, {"swimmer": "ray, flat", "late": 1.5}), 1.0)
     answer = api.get(f"runs/{sweep_id}/results.csv")
@@ -86,11 +90,12 @@ def test_the_table_as_csv_has_every_column(api, services, sweep_id, table):
     assert (second["swimmer"], second["late"]) == ("ray, flat", "1.5")
 
 
-def test_a_rewind_drops_rows_and_summary_after_the_checkpoint(api, services, sweep_id, table):
-    first = claim(services, sweep_id, "worker")
-    first.record(table(1, WORM, summary={"best": 1.0}), 1.0)
-    first.save(1, b"after 1")
-    first.record(table(2, RAY, RAY, summary={"best": 2.0}), 1.0)
+def test_a_rewind_drops_rows_and_summary_after_the_checkpoint(
+    api, services, attempt, sweep_id, table
+):
+    attempt.record(table(1, WORM, summary={"best": 1.0}), 1.0)
+    attempt.save(1, b"after 1")
+    attempt.record(table(2, RAY, RAY, summary={"best": 2.0}), 1.0)
     again = claim(services, sweep_id, "worker")
     found = api.get(f"runs/{sweep_id}/results").json()
     assert (len(found["rows"]), found["summary"]) == (1, {"best": 1.0})
@@ -101,8 +106,9 @@ def test_a_rewind_drops_rows_and_summary_after_the_checkpoint(api, services, swe
     assert api.get(f"runs/{sweep_id}").json()["summary"] == {"best": 1.0}
 
 
-def test_rows_are_written_once_and_deleted_with_their_run(services, sweep_id, table, count):
-    attempt = claim(services, sweep_id, "worker")
+def test_rows_are_written_once_and_deleted_with_their_run(
+    services, sweep_id, attempt, table, count
+):
     for _ in range(2):  # The answer to the first commit was lost.
         attempt.record(table(1, WORM, RAY), 1.0)
     assert count(Result) == 2
@@ -112,10 +118,8 @@ def test_rows_are_written_once_and_deleted_with_their_run(services, sweep_id, ta
 
 
 def test_rows_and_run_are_written_in_one_transaction(
-    services, sweep_id, table, monkeypatch, count
+    services, sweep_id, attempt, table, monkeypatch, count
 ):
-    attempt = claim(services, sweep_id, "worker")
-
     def broken(*_):
         raise OperationalError("insert", {}, Exception("gone"))
 
@@ -127,14 +131,9 @@ def test_rows_and_run_are_written_in_one_transaction(
     assert count(Result) == 0
 
 
-def test_new_rows_are_published(services, sweep_id, table, published):
-    claim(services, sweep_id, "worker").record(table(1, WORM, summary={"best": 1.0}), 1.0)
-    (told,) = [data for kind, data in published() if kind == "results"]
-    creature = told["rows"][0].pop("creature")
-    assert len(creature) == 64
-    assert told == {
-        "run": str(sweep_id),
-        "generation": 1,
-        "summary": {"best": 1.0},
-        "rows": [WORM],
-    }
+def test_new_rows_are_published(sweep_id, attempt, table, published):
+    attempt.record(table(1, WORM, summary={"best": 1.0}), 1.0)
+    (event,) = [data for kind, data in published() if kind == "results"]
+    assert len(event["rows"][0].pop("creature")) == 64
+    written = {"generation": 1, "summary": {"best": 1.0}, "rows": [WORM]}
+    assert event == {"run": str(sweep_id), **written}

@@ -6,7 +6,6 @@ import shutil
 import pytest
 
 from server.attempts.checkpoints import CheckpointUnavailable
-from server.attempts.claim import claim
 from server.storage.artifacts import Artifacts
 from server.tables import Artifact, Creature, Elite, Generation
 
@@ -26,14 +25,31 @@ def damage_all(folder):
         file.write_bytes(b"rot")
 
 
+@pytest.fixture
+def folder(services, run_id):
+    return services.settings.data / "artifacts" / "runs" / str(run_id)
+
+
+@pytest.fixture
+def save(attempt, record):
+    """Records and saves some generations."""
+
+    def save(*generations):
+        for generation in generations:
+            record(generation, {generation: 1.0})
+            attempt.save(generation, f"state {generation}".encode())
+
+    return save
+
+
 def test_generations_after_the_checkpoint_are_repeated(
-    services, run_id, report, row, attempt, record, count
+    claim_run, report, row, attempt, record, count
 ):
     for generation in range(1, 6):
         record(generation, {generation: 1.0})
         if generation == 3:
             attempt.save(3, b"state after 3")
-    again = claim(services, run_id, "worker")
+    again = claim_run()
     assert (again.generation, again.seconds) == (3, 3.0)
     assert again.restore() == b"state after 3"
     assert (row().generation, row().evaluations, row().qd_score) == (3, 48, 30.0)
@@ -42,32 +58,25 @@ def test_generations_after_the_checkpoint_are_repeated(
     again.record(report(4, {4: 1.0}), 1.0)
 
 
-def test_a_run_without_checkpoint_restarts(services, run_id, row, attempt, record):
+def test_a_run_without_checkpoint_restarts(claim_run, row, attempt, record):
     record(1, {1: 1.0})
     with pytest.raises(ValueError, match="at most 1; got 2"):
         attempt.save(2, b"data")
-    again = claim(services, run_id, "worker")
+    again = claim_run()
     assert (again.generation, again.restore()) == (0, None)
     assert (row().generation, row().qd_score, row().seconds) == (0, None, 0)
 
 
-def test_superfluous_checkpoints_are_deleted_with_their_files(
-    services, run_id, attempt, record
-):
-    for generation in range(1, 13):
-        record(generation)
-        attempt.save(generation, f"state {generation}".encode())
-    folder = services.settings.data / "artifacts" / "runs" / str(run_id)
-    kept = sorted(int(file.name[:8]) for file in folder.iterdir())
-    assert kept == [10, 11, 12]
-    assert claim(services, run_id, "worker").restore() == b"state 12"
+def test_superfluous_checkpoints_are_deleted_with_their_files(claim_run, folder, save):
+    save(*range(1, 13))
+    assert sorted(int(file.name[:8]) for file in folder.iterdir()) == [10, 11, 12]
+    assert claim_run().restore() == b"state 12"
 
 
 def test_a_full_disk_leaves_the_previous_checkpoint_and_a_warning(
-    row, monkeypatch, attempt, record
+    row, monkeypatch, attempt, record, save
 ):
-    record(1)
-    attempt.save(1, b"state 1")
+    save(1)
     record(2)
 
     def full(*_):
@@ -85,63 +94,55 @@ def test_a_full_disk_leaves_the_previous_checkpoint_and_a_warning(
     assert attempt.restore() == b"state 2"
 
 
-def test_three_attempts_without_a_checkpoint_end_a_run(services, run_id, row):
+def test_three_attempts_without_a_checkpoint_end_a_run(claim_run, row):
     for _ in range(2):
-        claim(services, run_id, "worker").fail("Traceback: first")
+        claim_run().fail("Traceback: first")
         assert (row().status, row().finished_at) == ("queued", None)
-    claim(services, run_id, "worker").fail("Traceback: last")
+    claim_run().fail("Traceback: last")
     assert row().status == "failed"
     assert row().finished_at is not None
     assert row().error == "3 attempts without a new checkpoint; the last one: Traceback: last"
-    assert claim(services, run_id, "worker") is None
+    assert claim_run() is None
 
 
-def test_a_new_checkpoint_or_a_requeue_resets_the_attempts(services, run_id, report, row):
+def test_a_new_checkpoint_or_a_requeue_resets_the_attempts(claim_run, report, row):
     for generation in range(1, 5):
-        attempt = claim(services, run_id, "worker")
+        attempt = claim_run()
         attempt.record(report(generation), 1.0)
         attempt.save(generation, f"{generation}".encode())
         attempt.fail("error")
     for _ in range(5):
-        claim(services, run_id, "worker").requeue()
+        claim_run().requeue()
     assert row().status == "queued"
 
 
-def test_a_checkpoint_without_progress_resets_no_attempts(services, run_id, report, row):
-    attempt = claim(services, run_id, "worker")
-    attempt.record(report(1), 1.0)
-    attempt.save(1, b"state")
+def test_a_checkpoint_without_progress_resets_no_attempts(claim_run, row, save, attempt):
+    save(1)
     attempt.fail("error")
     for _ in range(3):
-        attempt = claim(services, run_id, "worker")
+        attempt = claim_run()
         attempt.save(1, b"state")
         attempt.fail("error")
     assert row().status == "failed"
 
 
 def test_an_old_file_that_cannot_be_deleted_does_not_undo_a_checkpoint(
-    services, run_id, report, row, monkeypatch
+    row, monkeypatch, attempt, save
 ):
     def refuse(*_):
         raise PermissionError(errno.EACCES, "Permission denied")
 
     monkeypatch.setattr(Artifacts, "delete", refuse)
-    attempt = claim(services, run_id, "worker")
-    for generation in range(1, 6):
-        attempt.record(report(generation), 1.0)
-        attempt.save(generation, f"state {generation}".encode())
+    save(*range(1, 6))
     assert row().checkpoint_generation == attempt.generation == 5
 
 
-def test_a_run_goes_on_from_the_newest_checkpoint_that_is_sound(
-    services, run_id, report, row, attempt, record, count
+def test_a_run_goes_on_from_the_newest_intact_checkpoint(
+    claim_run, folder, report, row, save, count
 ):
-    for generation in range(1, 4):
-        record(generation, {generation: 1.0})
-        attempt.save(generation, f"state {generation}".encode())
-    folder = services.settings.data / "artifacts" / "runs" / str(run_id)
+    save(1, 2, 3)
     next(folder.glob("00000003-*")).write_bytes(b"rot")
-    second = claim(services, run_id, "worker")
+    second = claim_run()
     assert second.restore() == b"state 2"
     assert (second.generation, second.seconds) == (2, 2.0)
     assert (row().generation, row().checkpoint_generation, row().qd_score) == (2, 2, 20.0)
@@ -151,32 +152,27 @@ def test_a_run_goes_on_from_the_newest_checkpoint_that_is_sound(
     second.record(report(3, {3: 1.0}), 1.0)
     second.save(3, b"state 3")
     assert row().warning is None
-    assert claim(services, run_id, "worker").restore() == b"state 3"
+    assert claim_run().restore() == b"state 3"
 
 
 @pytest.mark.parametrize("harm", [unmount, lose_the_newest, damage_all])
 def test_a_checkpoint_that_cannot_be_read_deletes_nothing(
-    services, run_id, row, harm, attempt, record, count
+    claim_run, folder, row, harm, save, count
 ):
-    for generation in range(1, 3):
-        record(generation, {generation: 1.0})
-        attempt.save(generation, f"state {generation}".encode())
-    harm(services.settings.data / "artifacts" / "runs" / str(run_id))
-    second = claim(services, run_id, "worker")
+    save(1, 2)
+    harm(folder)
+    second = claim_run()
     with pytest.raises(CheckpointUnavailable, match="checkpoint of generation 2"):
         second.restore()
     assert (row().generation, row().checkpoint_generation, row().qd_score) == (2, 2, 20.0)
     assert count(Generation) == count(Elite) == count(Artifact) == 2
 
 
-def test_a_run_resumes_when_its_files_are_there_again(
-    services, run_id, attempt, record, tmp_path
-):
-    record(1, {1: 1.0})
-    attempt.save(1, b"state 1")
+def test_a_run_resumes_when_its_files_are_there_again(services, claim_run, save, tmp_path):
+    save(1)
     folder = services.settings.data / "artifacts"
     folder.rename(tmp_path / "elsewhere")
     with pytest.raises(CheckpointUnavailable):
-        claim(services, run_id, "worker").restore()
+        claim_run().restore()
     (tmp_path / "elsewhere").rename(folder)
-    assert claim(services, run_id, "worker").restore() == b"state 1"
+    assert claim_run().restore() == b"state 1"

@@ -13,8 +13,6 @@ def admin(services) -> str:
 
 @pytest.fixture
 def rows(services):
-    """Reads the tokens of the database."""
-
     def read():
         with services.sessions.read() as session:
             return session.query(Token).all()

@@ -101,7 +101,7 @@ def need_of(route: str) -> str:
 
 @pytest.mark.parametrize("route", ROUTES)
 def test_every_route_declares_its_scope(route):
-    """A scope, an owner, or that it is public: one of them, since none is the default."""
+    """Each route has exactly one of: a scope, an owner, public."""
     assert len(ROUTES[route]) == 1
     assert need_of(route) in EXPECTED
     assert route in OPEN or need_of(route) != PUBLIC or f" {ROOT}/" in route
@@ -128,7 +128,6 @@ def database() -> str:
 
 @pytest.fixture
 def secrets(services) -> dict[str, str | None]:
-    """The secret of each principal."""
     made = {
         who: tokens.create(services, who, scope)
         for who, scope in {
@@ -149,7 +148,7 @@ def secrets(services) -> dict[str, str | None]:
 
 @pytest.fixture
 def parameters(services, secrets, spec, identity):
-    """Makes what paths name, each time anew for `owner`."""
+    """Fills the parameters of a path with new objects of `owner`."""
     file = creature.document(identity(3), None, None)
     with services.sessions.write.begin() as session:
         creatures.add(session, file)

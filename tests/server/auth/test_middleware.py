@@ -94,7 +94,7 @@ def test_a_cookie_does_not_work_from_other_sites(serve, spec):
 
 @contextmanager
 def listening(caplog):
-    """To the log of requests, which a server sets up when it starts: their addresses."""
+    """Collect the addresses in the server's log of requests."""
     log = logging.getLogger("uvicorn.access")
     log.addHandler(caplog.handler)
     caplog.set_level("INFO", "uvicorn.access")

@@ -25,7 +25,6 @@ def required(serve, admin):
 
 @pytest.fixture
 def client():
-    """Clients by the secrets that they send."""
     made = []
 
     def make(base: str, secret: str | None = None) -> httpx.Client:
@@ -138,7 +137,6 @@ def test_a_run_belongs_to_the_token_that_submitted_it(owners, client, required, 
 
 @pytest.fixture
 def owners(required, client, services) -> list[httpx.Client]:
-    """Two clients with write scope, alice and bob."""
     made = (tokens.create(services, name, "write") for name in ("alice", "bob"))
     return [client(required, one.secret) for one in made]
 
@@ -214,7 +212,7 @@ def test_loopback_still_checks_a_token_that_is_sent(api, services, spec):
 
 @pytest.fixture
 def settings(services, tmp_path):
-    """Those of the server, with a data folder where nothing is yet."""
+    """The server's settings, with an empty data folder."""
     return services.settings.model_copy(update={"data": tmp_path})
 
 
@@ -238,8 +236,8 @@ def with_settings(services, settings):
 
 def test_no_token_is_created_when_unneeded_or_given(rows, services, settings):
     assert bootstrap.create_first_token(services) is None
-    told = settings.model_copy(update={"host": "0.0.0.0", "token": SecretStr("secret")})
-    assert bootstrap.create_first_token(with_settings(services, told)) is None
+    given = settings.model_copy(update={"host": "0.0.0.0", "token": SecretStr("secret")})
+    assert bootstrap.create_first_token(with_settings(services, given)) is None
     assert rows() == []
 
 

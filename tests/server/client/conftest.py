@@ -22,7 +22,6 @@ def client(address: str) -> Iterator[Client]:
 
 @pytest.fixture
 def run(client: Client, run_id: Any) -> Any:
-    """The queued run, as the client has it."""
     return client.run(str(run_id))
 
 

@@ -67,8 +67,8 @@ def test_a_sweep_is_named_deleted_and_restored(command, client):
     assert "is restored" in command("restore", sweep.id[:8]).stderr
     assert (sweep.refresh().total, client.sweep(sweep.id[:8])) == (2, sweep)
     waiting = client.submit("demo", seeds=2)
-    told = command("delete", waiting.id[:8], "--yes").stderr
-    assert "2 queued; the other runs have not ended: cancel them first" in told
+    message = command("delete", waiting.id[:8], "--yes").stderr
+    assert "2 queued; the other runs have not ended: cancel them first" in message
     assert waiting.refresh().total == 2
 
 
@@ -153,7 +153,6 @@ def test_watching_ends_as_the_run_does(command, run_id, monkeypatch, attempt, re
 
 @pytest.mark.parametrize("terminal", [pytest.param(False, marks=pytest.mark.long), True])
 def test_ctrl_c_leaves_the_run_going(address, client, run, terminal):
-    """In a process of its own, as a person would."""
     # A shell's background jobs ignore SIGINT, and so would every process that they start.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     ours, theirs = os.openpty() if terminal else os.pipe()

@@ -47,16 +47,16 @@ def test_events_continue_after_the_last_id(relay, run_id, record, attempt):
     client = Client(relay.url)
     found = streaming.events(client.connection, str(run_id))
     assert next(found).kind == "beat"  # From here on.
-    heard: list[int] = []
+    generations: list[int] = []
     for generation in range(1, 7):
         record(generation, seconds=float(generation))
         if generation == 3:
             relay.cut()
-        while generation not in heard:
+        while generation not in generations:
             event = next(found)
             if event.kind == "generation":
-                heard.append(event.data["generation"])
-    assert heard == [1, 2, 3, 4, 5, 6]
+                generations.append(event.data["generation"])
+    assert generations == [1, 2, 3, 4, 5, 6]
     assert any(b"last-event-id" in ask.lower() for ask in relay.asked)
 
 
@@ -73,7 +73,7 @@ HTML = {"Content-Type": "text/html"}
 
 
 @pytest.mark.parametrize(
-    ("answer", "said"),
+    ("answer", "message"),
     [
         ((200, HTML, b"<h1>Log in</h1>"), "answers 200 OK with a web page"),
         ((404, HTML, b"<h1>nginx</h1>"), "as no Microcosmos server does"),
@@ -82,8 +82,8 @@ HTML = {"Content-Type": "text/html"}
         ((200, {"Content-Type": "application/json"}, b"{"), "as no Microcosmos server does"),
     ],
 )
-def test_a_foreign_server_is_recognised(answer, said, no_sleep):
-    with other(answer) as (url, _), pytest.raises(NotMicrocosmos, match=said):
+def test_a_foreign_server_is_recognised(answer, message, no_sleep):
+    with other(answer) as (url, _), pytest.raises(NotMicrocosmos, match=message):
         list(Client(url).runs())
 
 
@@ -121,13 +121,13 @@ def test_patience_ends_with_the_servers_own_words(no_sleep):
             list(Client(url, patience=10.0).runs())
         assert len(asked) == 3
     gateway = (502, HTML, b"Bad Gateway")
-    said = "the server behind it is down or starting"
-    with other(gateway) as (url, _), pytest.raises(NoAnswer, match=said):
+    message = "the server behind it is down or starting"
+    with other(gateway) as (url, _), pytest.raises(NoAnswer, match=message):
         list(Client(url).runs())
 
 
 @pytest.mark.parametrize(
-    ("status", "body", "kind", "said"),
+    ("status", "body", "kind", "message"),
     [
         (409, b'{"detail": "It is running."}', Conflict, "It is running."),
         (500, b"{", ServerError, "answered 500 without a reason"),
@@ -139,8 +139,8 @@ def test_patience_ends_with_the_servers_own_words(no_sleep):
         ),
     ],
 )
-def test_problems_are_sentences(status, body, kind, said):
-    with other((status, PROBLEM, body)) as (url, _), pytest.raises(kind, match=said):
+def test_problems_are_sentences(status, body, kind, message):
+    with other((status, PROBLEM, body)) as (url, _), pytest.raises(kind, match=message):
         Client(url).workers()
 
 
@@ -172,20 +172,20 @@ def archive(services, run_id, report) -> bytes:
 
 
 def test_a_download_goes_on_where_it_broke_off(relay, run_id, archive, tmp_path, no_sleep):
-    told: list[tuple[int, int]] = []
+    progress: list[tuple[int, int]] = []
     relay.allowance = [1 << 40, 1_000_000, 1_000_000]
     run = Client(relay.url).run(str(run_id))
     relay.cut()
     relay.asked.clear()
     to = tmp_path / "run.h5"
     found = files.fetch(
-        run._connection, f"runs/{run_id}/archive.h5", to, lambda *now: told.append(now)
+        run._connection, f"runs/{run_id}/archive.h5", to, lambda *now: progress.append(now)
     )
     assert found.read_bytes() == archive
     ranges = [ask for ask in relay.asked if b"range: bytes=" in ask.lower()]
     assert len(ranges) == 2
     assert all(b"if-range" in ask.lower() for ask in ranges)
-    assert {whole for _, whole in told} == {len(archive)}
+    assert {whole for _, whole in progress} == {len(archive)}
     assert [path.name for path in tmp_path.iterdir() if "part" in path.name] == []
     relay.asked.clear()
     assert run.pull(to).read_bytes() == archive
@@ -232,10 +232,10 @@ def test_a_download_without_a_length_succeeds(no_sleep, tmp_path):
     def chunked(request: httpx.Request) -> httpx.Response:
         return httpx.Response(200, headers={"etag": f'"{name}"'}, content=iter([b"wh", b"ole"]))
 
-    client, told = Client("http://box", transport=httpx.MockTransport(chunked)), []
-    files.fetch(client.connection, "x", tmp_path / "x", lambda *so_far: told.append(so_far))
+    client, progress = Client("http://box", transport=httpx.MockTransport(chunked)), []
+    files.fetch(client.connection, "x", tmp_path / "x", lambda *so_far: progress.append(so_far))
     assert (tmp_path / "x").read_bytes() == b"whole"
-    assert told == [(0, 0), (5, 5)]
+    assert progress == [(0, 0), (5, 5)]
 
 
 def test_a_full_disk_is_reported_with_the_file(no_sleep, tmp_path, monkeypatch):

@@ -38,10 +38,10 @@ def test_invalid_fields_become_a_sentence(client, spec):
     wrong = spec | {"seed": -1, "world": {"viscosity": -2}}
     with pytest.raises(Refused) as caught:
         client.submit(wrong)
-    said = str(caught.value)
-    assert "seed: needs greater than or equal to 0; got -1" in said
-    assert "world.viscosity" in said
-    assert said.endswith(".")
+    message = str(caught.value)
+    assert "seed: needs greater than or equal to 0; got -1" in message
+    assert "world.viscosity" in message
+    assert message.endswith(".")
     assert {error["field"] for error in caught.value.errors} == {"seed", "world.viscosity"}
     assert caught.value.status == 422
 
@@ -148,7 +148,7 @@ def test_the_client_sends_its_token(serve, monkeypatch):
 
 
 class Kept:
-    """A view that keeps what it was shown."""
+    """A view that keeps the states that it was shown."""
 
     def __init__(self, react=lambda state: None):
         self.shown: list[tuple[str, int, list[int]]] = []
@@ -163,7 +163,7 @@ class Kept:
 
 @pytest.fixture
 def worked(attempt, record):
-    """The run goes on by a generation whenever it is shown, until its third."""
+    """Records a generation whenever the run is shown; finishes it after the third."""
     left = [1, 2, 3, None]
 
     def go_on(state: polling.RunState) -> None:

@@ -14,7 +14,6 @@ from server.settings import Settings
 
 @pytest.fixture(autouse=True)
 def usual():
-    """The usual umask, which lets others read."""
     before = os.umask(0o022)
     yield
     os.umask(before)

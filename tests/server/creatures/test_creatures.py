@@ -160,8 +160,6 @@ def test_a_lost_order_is_given_again(api, services, known, flush):
 
 @pytest.fixture
 def family(identity) -> list[dict]:
-    """A creature, a parent of it, and a parent of that."""
-
     def one(number: int, *parents: dict) -> dict:
         origin = {"operator": "neat", "generation": number, "seed": 1, "version": "0.1.0"}
         names = [parent["sha256"] for parent in parents]
@@ -181,12 +179,12 @@ def test_an_upload_keeps_ancestors_with_credit_and_licence(api, family):
     answer = api.get(f"creatures/{young['sha256']}", params=query)
     assert answer.json() == whole, "and can be handed on as it came"
     assert "attachment" in answer.headers["content-disposition"]
-    kin = api.get(f"creatures/{young['sha256']}/ancestors").json()["items"]
-    assert [(one["creature"], one["kept"]) for one in kin] == [
+    ancestors = api.get(f"creatures/{young['sha256']}/ancestors").json()["items"]
+    assert [(one["creature"], one["kept"]) for one in ancestors] == [
         (parent["sha256"], True),
         (oldest["sha256"], True),
     ]
-    assert (kin[1]["credit"], kin[1]["licence"]) == (["Ada"], "CC0-1.0")
+    assert (ancestors[1]["credit"], ancestors[1]["licence"]) == (["Ada"], "CC0-1.0")
 
 
 def test_false_ancestors_are_refused_and_nothing_is_kept(api, family, identity):

@@ -11,7 +11,7 @@ from microcosmos.archive import creature, creature_h5
 
 @pytest.fixture
 def bring(api, identity):
-    """Brings the creature of a number with its parents, by number or name; answers its name."""
+    """Uploads a creature with parents, given by number or name, and returns its name."""
 
     def name(parent: int | str) -> str:
         return parent if isinstance(parent, str) else creature.name(identity(parent))
@@ -102,7 +102,7 @@ def test_children_are_counted_and_named_once_each(api, bring):
 
 @pytest.fixture
 def enter(api, report, attempt):
-    """Has a creature enter the archive with a fitness and a parent; answers its name."""
+    """Records a creature with a fitness and a parent, and returns its name."""
     assert attempt is not None
 
     def enter(generation: int, fitness: float, parent: str) -> str:

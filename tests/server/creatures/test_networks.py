@@ -25,8 +25,6 @@ TYPES = {
 
 @pytest.fixture
 def known(api, identity):
-    """The name of a creature that was brought."""
-
     def bring(change=None) -> str:
         found = identity(2)
         if change:

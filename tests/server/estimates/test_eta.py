@@ -14,8 +14,6 @@ DEVICE = "cpu, AMD EPYC avx2, microcosmos 0.1.0, jax 0.10.2"
 
 @pytest.fixture
 def measured(services, report):
-    """Leaves a run whose generations took so many seconds each, the first one more."""
-
     def run(document, seconds, first=10.0, device=DEVICE, generations=5):
         made, _ = submit(services, parse(document))
         attempt = claim(services, made.id, "worker")
@@ -57,8 +55,8 @@ def test_several_runs_give_a_median_and_a_range(api, spec, measured):
     found = ask(api, spec)
     generations = spec["search"]["generations"]
     assert found["speed"]["runs"] == 3
-    told = found["speed"]["low"], found["seconds"], found["speed"]["high"]
-    assert told == pytest.approx([0.5 * generations, generations, 4.0 * generations])
+    figures = found["speed"]["low"], found["seconds"], found["speed"]["high"]
+    assert figures == pytest.approx([0.5 * generations, generations, 4.0 * generations])
 
 
 def test_the_most_similar_runs_count(api, spec, measured):

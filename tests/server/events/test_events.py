@@ -9,7 +9,6 @@ from uuid import uuid4
 import httpx
 import pytest
 
-from server.attempts.claim import claim
 from server.events import fanout
 from server.runs.announce import announce
 from server.services import event_stream as events
@@ -40,18 +39,18 @@ def take(found, number):
     return [next(found) for _ in range(number)]
 
 
-def test_the_stream_carries_every_change_of_a_run(address, services, run_id, report):
+def test_the_stream_carries_every_change_of_a_run(address, run_id, claim_run, report):
     with stream(address) as found:
         identifier, kind, data = next(found)
         assert (kind, data) == (None, None)  # The place from which it goes on.
         assert identifier
-        attempt = claim(services, run_id, "worker")
+        attempt = claim_run()
         attempt.record(report(1, {3: 1.0, 9: 2.0}), 1.5)
         attempt.finish()
-        heard = take(found, 5)
-    kinds = [kind for _, kind, _ in heard]
+        received = take(found, 5)
+    kinds = [kind for _, kind, _ in received]
     assert kinds == ["run", "generation", "elites", "run", "run"]
-    data = [data for _, _, data in heard]
+    data = [data for _, _, data in received]
     assert data[0]["status"] == "running"
     assert data[1] == {
         "run": str(run_id),
@@ -70,14 +69,14 @@ def test_the_stream_carries_every_change_of_a_run(address, services, run_id, rep
     assert [("spec" in data[i]) for i in (0, 3, 4)] == [True, False, True]
 
 
-def test_claiming_a_run_again_rewinds_it(address, services, run_id, attempt, record):
+def test_claiming_a_run_again_rewinds_it(address, run_id, claim_run, attempt, record):
     for generation in (1, 2, 3):
         record(generation)
         if generation == 2:
             attempt.save(2, b"state")
     with stream(address) as found:
         next(found)
-        claim(services, run_id, "worker")
+        claim_run()
         (_, kind, data), (_, then, run) = take(found, 2)
     assert (kind, data) == ("rewind", {"run": str(run_id), "generation": 2})
     assert (then, run["generation"]) == ("run", 2)
@@ -91,31 +90,31 @@ def test_requested_actions_are_published(address, api, run_id):
         assert [data["status"] for _, _, data in take(found, 2)] == ["paused", "queued"]
 
 
-def test_the_last_event_of_a_run_is_its_current_state(services, run_id, monkeypatch):
+def test_the_last_event_of_a_run_is_its_current_state(services, run_id, claim_run, monkeypatch):
     """A slow reader publishes a stale state after a newer one."""
-    told, publish = [], services.events.publish
+    sent, publish = [], services.events.publish
 
     def be_overtaken(kind, run, data):
         monkeypatch.setattr(services.events, "publish", note)
-        claim(services, run_id, "worker")
+        claim_run()
         note(kind, run, data)
 
     def note(kind, run, data):
-        told.append(data["status"])
+        sent.append(data["status"])
         publish(kind, run, data)
 
     monkeypatch.setattr(services.events, "publish", be_overtaken)
     announce(services, run_id)
-    assert told == ["running", "queued", "running"]
+    assert sent == ["running", "queued", "running"]
 
 
 def test_an_unchanged_run_is_published_once(services, run_id, monkeypatch, record, attempt):
-    told = []
-    monkeypatch.setattr(services.events, "publish", lambda *event: told.append(event))
+    sent = []
+    monkeypatch.setattr(services.events, "publish", lambda *event: sent.append(event))
     record(1)
-    told.clear()
+    sent.clear()
     announce(services, run_id, without=["spec"])
-    assert len(told) == 1
+    assert len(sent) == 1
 
 
 def test_a_stream_of_one_run_excludes_others(address, services):
@@ -128,32 +127,26 @@ def test_a_stream_of_one_run_excludes_others(address, services):
 
 
 def test_nothing_is_lost_or_doubled_over_restarts_of_the_server(services, serve):
-    run_id, heard, last = uuid4(), [], None
-    published, total = 0, 400
-    done = threading.Event()
+    run_id, received, last, total = uuid4(), [], None, 400
 
     def publish():
-        nonlocal published
-        while published < total:
-            services.events.publish("run", run_id, {"number": published})
-            published += 1
+        for number in range(total):
+            services.events.publish("run", run_id, {"number": number})
             time.sleep(0.002)
-        done.set()
 
-    teller = threading.Thread(target=publish)
+    publisher = threading.Thread(target=publish)
     for _ in range(4):
         with serve() as address, stream(address, last) as found:
             if last is None:
                 last = next(found)[0]
-                teller.start()
+                publisher.start()
             for identifier, _, data in found:
                 last = identifier
-                heard.append(data["number"])
-                if len(heard) % 100 == 0:
+                received.append(data["number"])
+                if len(received) % 100 == 0:
                     break
-    teller.join()
-    assert done.is_set()
-    assert heard == list(range(total))
+    publisher.join()
+    assert received == list(range(total))
 
 
 def test_stopping_the_server_ends_its_streams(serve):

@@ -5,15 +5,15 @@ from uuid import UUID
 
 import pytest
 from answers import detail, fields
-from sqlalchemy import select, update
+from deletion import delete_for_good
+from sqlalchemy import select
 
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, parse
 from server.attempts.claim import claim
-from server.deletion.purge import purge
 from server.forks import forking
 from server.runs.submission import submit
-from server.tables import InitialCreature, Run
+from server.tables import InitialCreature
 
 
 @pytest.fixture
@@ -78,7 +78,7 @@ def test_null_resets_a_field_to_its_default(fork):
 
 
 def test_null_clears_an_optional_field():
-    """As the form says that lengths are not driven: their default would drive them."""
+    """The form sends null for rest lengths that are not driven; the default drives them."""
     grown = {"experiment": "quality-diversity", "control": {"encoding": "cppn-body"}}
     before = parse(grown).model_dump(mode="json")
     patch = {
@@ -147,25 +147,15 @@ def test_a_spec_with_initial_creatures_is_submitted(api, ended, spec, identity):
 def test_initial_creatures_of_a_fork_outlive_their_run(fork, api, services, ended, identity):
     kept, gone = names(identity, 2000)[0], names(identity, 3002)[0]
     forked = fork({"creatures": [kept]}).json()["id"]
-    assert api.delete(f"runs/{ended}").status_code == 200
-    for_good(api, services, ended)
+    delete_for_good(api, services, ended)
     assert api.get(f"creatures/{kept}").status_code == 200
     assert api.get(f"creatures/{gone}").status_code == 404
     assert api.get(f"runs/{forked}").json()["forked_from"] == {"run": None, "creatures": 1}
     api.post(f"runs/{forked}/cancel")
-    api.delete(f"runs/{forked}")
-    for_good(api, services, UUID(forked))
+    delete_for_good(api, services, UUID(forked))
     assert api.get(f"creatures/{kept}").status_code == 404
     with services.sessions.read() as session:
         assert session.scalars(select(InitialCreature.creature)).all() == []
-
-
-def for_good(api, services, run_id):
-    with services.sessions.write.begin() as session:
-        over = update(Run).where(Run.id == run_id)
-        session.execute(over.values(purge_at=Run.deleted_at))
-    purge(services)
-    assert api.get(f"runs/{run_id}").status_code == 404
 
 
 def test_a_run_in_the_bin_is_not_forked(fork, api, ended):
@@ -177,8 +167,7 @@ def test_a_fork_is_restored_after_its_source_is_purged(fork, api, services, ende
     forked = UUID(fork({"cells": [1]}).json()["id"])
     api.post(f"runs/{forked}/pause")
     api.delete(f"runs/{forked}")
-    assert api.delete(f"runs/{ended}").status_code == 200
-    for_good(api, services, ended)
+    delete_for_good(api, services, ended)
     api.post(f"runs/{forked}/restore")
     assert api.post(f"runs/{forked}/resume").json()["status"] == "queued"
     (file,) = claim(services, forked, "worker").initial()
@@ -195,8 +184,6 @@ def run_id(services) -> UUID:
 
 @pytest.fixture
 def end(record, request):
-    """Carries the run out up to a generation and finishes it."""
-
     def end(generations, summary=None):
         for generation in range(1, generations + 1):
             record(generation, {generation: 1.0}, summary=summary)
@@ -232,8 +219,7 @@ def test_a_finished_run_is_queued_again_and_goes_on_where_it_ended(
 def test_one_of_many_concurrent_extensions_succeeds(api, run_id, row, end):
     end(2)
     with ThreadPoolExecutor(8) as pool:
-        asked = [pool.submit(extended, api, run_id) for _ in range(8)]
-        answers = [future.result() for future in asked]
+        answers = list(pool.map(lambda _: extended(api, run_id), range(8)))
     assert sorted(answer.status_code for answer in answers) == [202] + 7 * [409]
     assert row().generations == 5
     refused = next(answer for answer in answers if answer.status_code == 409)

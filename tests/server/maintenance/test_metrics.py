@@ -19,8 +19,6 @@ def address(serve):
 
 @pytest.fixture
 def scrape(address):
-    """A function that reads all samples: by name and labels, their values."""
-
     def read():
         answer = httpx.get(f"{address}/metrics", verify=False)
         assert answer.headers["content-type"].startswith("text/plain; version=0.0.4")
@@ -82,7 +80,7 @@ def test_unknown_methods_are_counted_as_one(scrape, address):
 
 def test_metrics_without_redis_show_the_rest(run_id, serve):
     with serve(redis_url="redis://127.0.0.1:1/0") as address:
-        told = httpx.get(f"{address}/metrics", verify=False, timeout=30).text.splitlines()
-    assert "microcosmos_redis_up 0.0" in told
-    assert 'microcosmos_runs{status="queued"} 1.0' in told
-    assert not any(line.startswith("microcosmos_queue_length{") for line in told)
+        lines = httpx.get(f"{address}/metrics", verify=False, timeout=30).text.splitlines()
+    assert "microcosmos_redis_up 0.0" in lines
+    assert 'microcosmos_runs{status="queued"} 1.0' in lines
+    assert not any(line.startswith("microcosmos_queue_length{") for line in lines)

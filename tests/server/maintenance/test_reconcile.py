@@ -1,30 +1,18 @@
 """Runs survive the death of workers, of jobs and of Redis."""
 
+import httpx
 import pytest
 from redis import ConnectionError
 from rq.registry import StartedJobRegistry
-from sqlalchemy import update
 
 from server.attempts.attempt import ClaimLost
-from server.attempts.claim import claim
 from server.attempts.leases import job_ended
-from server.core.database import ago
+from server.maintenance import reconcile as reconciler
 from server.maintenance.reconcile import reconcile
 from server.tables import Run, Worker
+from server.workers import registry
 
 pytestmark = pytest.mark.postgresql
-
-
-def put(services, table, **values):
-    with services.sessions.write.begin() as session:
-        session.execute(update(table).values(**values))
-
-
-def silence(services):
-    """Every worker's last heartbeat is a lease ago, and a little more."""
-    with services.sessions.read() as session:
-        then = ago(session, services.settings.lease + 0.1)
-    put(services, Run, heartbeat_at=then)
 
 
 def enqueued(services):
@@ -58,21 +46,23 @@ def test_the_reconciler_leaves_a_started_run(services, run_id):
     assert enqueued(services) == []
 
 
-def test_a_silent_workers_run_is_queued_again(services, run_id, attempt, flush, row, record):
+def test_a_silent_workers_run_is_queued_again(
+    services, run_id, attempt, flush, row, record, silence
+):
     flush()
     reconcile(services)
     assert (row().status, enqueued(services)) == ("running", [])
-    silence(services)
+    silence()
     reconcile(services)
     assert (row().status, enqueued(services)) == ("queued", [str(run_id)])
     with pytest.raises(ClaimLost):
         record(1)
 
 
-def test_three_silent_workers_end_a_run(services, run_id, row):
+def test_three_silent_workers_end_a_run(services, claim_run, row, silence):
     for _ in range(3):
-        claim(services, run_id, "worker")
-        silence(services)
+        claim_run()
+        silence()
         reconcile(services)
     assert row().status == "failed"
     assert "worker worker has not reported for 20 s" in row().error
@@ -80,31 +70,29 @@ def test_three_silent_workers_end_a_run(services, run_id, row):
 
 @pytest.mark.parametrize(("action", "status"), [("pause", "paused"), ("cancel", "cancelled")])
 def test_a_requested_state_is_applied_for_a_dead_worker(
-    services, api, run_id, row, action, status
+    services, api, run_id, attempt, row, action, status, silence
 ):
-    claim(services, run_id, "worker")
     api.post(f"runs/{run_id}/{action}")
-    silence(services)
+    silence()
     reconcile(services)
     assert (row().status, row().requested_state) == (status, None)
     assert (row().finished_at is None) == (status == "paused")
 
 
 def test_a_worker_that_ignores_a_cancellation_loses_the_run(
-    services, api, run_id, row, attempt
+    services, api, run_id, row, attempt, update_rows
 ):
     api.post(f"runs/{run_id}/cancel")
     reconcile(services)
     assert row().status == "running"
-    put(services, Run, requested_at=row().created_at.replace(year=2000))
+    update_rows(Run, requested_at=row().created_at.replace(year=2000))
     reconcile(services)
     assert row().status == "cancelled"
     with pytest.raises(ClaimLost):
         attempt.check()
 
 
-def test_a_dead_jobs_run_is_enqueued_at_once(services, run_id, row, flush):
-    claim(services, run_id, "worker")
+def test_a_dead_jobs_run_is_enqueued_at_once(services, run_id, attempt, row, flush):
     flush()
     job_ended(services, run_id, "another", "killed")
     assert row().status == "running"
@@ -113,9 +101,9 @@ def test_a_dead_jobs_run_is_enqueued_at_once(services, run_id, row, flush):
     assert enqueued(services) == [str(run_id)]
 
 
-def test_a_job_killed_by_a_stopping_worker_costs_no_attempt(services, run_id, row, flush):
+def test_a_job_killed_by_a_stopping_worker_costs_no_attempt(services, run_id, row, claim_run):
     for _ in range(4):
-        attempt = claim(services, run_id, "worker")
+        attempt = claim_run()
         job_ended(services, run_id, "another")
         assert row().status == "running"
         job_ended(services, run_id, "worker")
@@ -126,13 +114,10 @@ def test_a_job_killed_by_a_stopping_worker_costs_no_attempt(services, run_id, ro
 
 
 def test_a_run_can_be_submitted_while_redis_is_away(api, services, spec, serve, row, flush):
-    import httpx
-
     with serve(redis_url="redis://127.0.0.1:1/0") as address:
-        client = httpx.Client(base_url=f"{address}/api/v1", timeout=30)
-        answer = client.post("/runs", json={**spec, "seed": 7})
-        assert client.get(f"{address}/readyz").status_code == 503
-        client.close()
+        body = {**spec, "seed": 7}
+        answer = httpx.post(f"{address}/api/v1/runs", json=body, timeout=30)
+        assert httpx.get(f"{address}/readyz", timeout=30).status_code == 503
     assert answer.status_code == 202
     run_id = answer.json()["id"]
     assert run_id not in enqueued(services)
@@ -141,8 +126,6 @@ def test_a_run_can_be_submitted_while_redis_is_away(api, services, spec, serve, 
 
 
 def test_an_outage_of_redis_does_not_end_the_reconciler(serve, monkeypatch, eventually):
-    from server.maintenance import reconcile as module
-
     calls = []
 
     def sometimes(given):
@@ -150,19 +133,17 @@ def test_an_outage_of_redis_does_not_end_the_reconciler(serve, monkeypatch, even
         if len(calls) < 3:
             raise ConnectionError("Connection refused")
 
-    monkeypatch.setattr(module, "reconcile", sometimes)
+    monkeypatch.setattr(reconciler, "reconcile", sometimes)
     with serve(reconcile_interval=0.01):
         eventually(lambda: len(calls) >= 5)
 
 
-def test_workers_silent_for_long_are_removed(services, api):
-    from server.workers import registry
-
+def test_workers_silent_for_long_are_removed(services, api, update_rows):
     registry.report(services.sessions, "worker", "cpu", 1, "idle")
     assert [worker["name"] for worker in api.get("workers").json()] == ["worker"]
     with services.sessions.read() as session:
         then = session.get_one(Worker, "worker").heartbeat_at.replace(year=2000)
-    put(services, Worker, heartbeat_at=then)
+    update_rows(Worker, heartbeat_at=then)
     assert api.get("workers").json() == []
     reconcile(services)
     with services.sessions.read() as session:

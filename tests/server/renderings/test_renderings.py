@@ -23,8 +23,8 @@ def test_a_refused_replay_answers_with_the_engines_reason(api, services, known):
     services.jobs.give_up(job, f"Traceback\n{type(error).__module__}.CreatureError: {error}\n")
     answer = api.get(f"creatures/{known}/replay")
     assert answer.status_code == 500
-    said = "The replay failed: `task.steps` needs at most 1 cell step"
-    assert answer.json()["detail"].startswith(said)
+    expected = "The replay failed: `task.steps` needs at most 1 cell step"
+    assert answer.json()["detail"].startswith(expected)
     assert services.jobs.renderings.count == 0
 
 

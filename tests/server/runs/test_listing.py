@@ -14,13 +14,13 @@ pytestmark = pytest.mark.postgresql
 
 @pytest.fixture
 def add(api, services, spec):
-    """Submits a run, says things of it and sets figures that only a worker would."""
+    """Submits a run, edits it and sets figures that only a worker sets."""
     count = iter(range(1000))
 
-    def add(said=None, **figures):
+    def add(edits=None, **figures):
         run = api.post("runs", json={**spec, "seed": next(count)}).json()["id"]
-        if said:
-            assert api.patch(f"runs/{run}", json=said).status_code == 200
+        if edits:
+            assert api.patch(f"runs/{run}", json=edits).status_code == 200
         if figures:
             with services.sessions.write.begin() as session:
                 session.execute(update(Run).where(Run.id == UUID(run)).values(**figures))
@@ -42,8 +42,8 @@ def found(api):
 def test_runs_take_a_name_tags_and_a_note(api, run_id):
     before = api.get(f"runs/{run_id}").json()
     assert (before["name"], before["tags"], before["note"]) == (None, [], None)
-    said = {"name": "  Wide bodies ", "tags": [" wide", "naïve é"], "note": "Line 1\nLine 2"}
-    changed = api.patch(f"runs/{run_id}", json=said).json()
+    edits = {"name": "  Wide bodies ", "tags": [" wide", "naïve é"], "note": "Line 1\nLine 2"}
+    changed = api.patch(f"runs/{run_id}", json=edits).json()
     after = {"name": "Wide bodies", "tags": ["wide", "naïve é"], "note": "Line 1\nLine 2"}
     assert changed == {**before, **after}
     assert api.patch(f"runs/{run_id}", json={"note": ""}).json()["note"] is None
@@ -139,12 +139,12 @@ def test_all_tags_are_listed_with_the_number_of_their_runs(api, add):
 
 def walked(api, **query):
     """The ids of all pages, two runs each."""
-    cursor, seen = {}, []
+    cursor, ids = {}, []
     while True:
         page = api.get("runs", params={**query, **cursor, "limit": 2}).json()
-        seen += [run["id"] for run in page["items"]]
+        ids += [run["id"] for run in page["items"]]
         if page["next"] is None:
-            return seen
+            return ids
         cursor = {"cursor": page["next"]}
 
 
@@ -176,10 +176,17 @@ def test_pages_have_every_run_once_in_any_order(api, several):
     for key, ranks in ORDERS.items():
         for sign in ("", "-"):
             runs = walked(api, sort=sign + key)
-            seen = [ranks[several[run]] for run in runs]
+            order = [ranks[several[run]] for run in runs]
             there = sorted((rank for rank in ranks if rank is not None), reverse=bool(sign))
-            assert seen == there + [None] * ranks.count(None), sign + key
+            assert order == there + [None] * ranks.count(None), sign + key
             assert sorted(runs) == sorted(several), sign + key
+
+
+def test_runs_are_listed_newest_first_in_pages(api, add, found):
+    ids = [add() for _ in range(5)]
+    assert walked(api) == ids[::-1]
+    api.post(f"runs/{ids[2]}/cancel")
+    assert found(status="cancelled") == [ids[2]]
 
 
 def test_pages_go_on_where_they_were_though_runs_are_added(api, add, found):
@@ -208,23 +215,14 @@ def test_invalid_filters_and_orders_are_refused_by_field(api, add):
 
 
 def crafted(sort, value, last=None):
-    """A cursor that never came from the server; the value as JSON has it."""
+    """A cursor that the server never sent; `value` is JSON."""
     text = f'["{sort}", {value}, "{last or uuid4()}"]'
     return urlsafe_b64encode(text.encode()).decode()
 
 
 def test_a_forged_cursor_is_refused(api):
     wrong = {
-        "evaluations": [
-            "1" + 30 * "0",
-            str(1 << 63),
-            "-1",
-            "1.5",
-            "1e300",
-            "NaN",
-            '"1"',
-            "true",
-        ],
+        "evaluations": [str(10**30), str(1 << 63), "-1", "1.5", "1e300", "NaN", '"1"', "true"],
         "status": ["6", "-1", str(1 << 40), "0.5", "Infinity"],
         "best": ["NaN", "-Infinity", "1e999", "1" + 400 * "0", '"1"'],
         "progress": ["NaN", "[]"],

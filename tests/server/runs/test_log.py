@@ -6,9 +6,7 @@ import pytest
 from answers import fields
 
 from server.attempts import leases
-from server.attempts.claim import claim
 from server.runs import lifecycle
-from server.tables import Run
 
 
 @pytest.fixture
@@ -28,13 +26,8 @@ def texts(log):
     return lambda **params: [text for _, _, text in log(**params)]
 
 
-def ask(services, run_id, wish):
-    with services.sessions.write.begin() as session:
-        wish(session, session.get_one(Run, run_id))
-
-
-def test_the_log_of_a_finished_run_is_complete(services, run_id, report, log):
-    attempt = claim(services, run_id, "worker 1")
+def test_the_log_of_a_finished_run_is_complete(claim_run, report, log):
+    attempt = claim_run("worker 1")
     attempt.record_device("cpu: a processor")
     attempt.record(report(1), 1.0)
     attempt.save(1, b"the archive")
@@ -61,14 +54,14 @@ def test_the_log_keeps_the_first_and_last_checkpoint(texts, attempt, record):
 
 
 def test_a_failed_attempt_logs_its_traceback_and_the_next_its_start(
-    services, run_id, log, attempt, record
+    claim_run, log, attempt, record
 ):
     for generation in (1, 2, 3):
         record(generation)
         if generation == 1:
             attempt.save(1, b"the archive")
     attempt.fail("Traceback:\nZeroDivisionError: twice nothing")
-    claim(services, run_id, "another")
+    claim_run("another")
     assert log()[-4:] == [
         ("error", 1, "Attempt 1 failed: Traceback:\nZeroDivisionError: twice nothing"),
         ("info", 1, "Queued for another attempt."),
@@ -77,15 +70,16 @@ def test_a_failed_attempt_logs_its_traceback_and_the_next_its_start(
     ]
 
 
-def test_the_log_names_stopped_workers_dead_jobs_and_the_last_attempt(services, run_id, log):
-    claim(services, run_id, "worker").requeue()
-    texts = [text for _, _, text in log()]
-    assert texts[-2:] == ["Worker stopped after generation 0.", "Queued for another attempt."]
-    claim(services, run_id, "worker")
+def test_the_log_names_stopped_workers_dead_jobs_and_the_last_attempt(
+    services, run_id, claim_run, log, texts
+):
+    claim_run().requeue()
+    assert texts()[-2:] == ["Worker stopped after generation 0.", "Queued for another attempt."]
+    claim_run()
     leases.job_ended(services, run_id, "worker", "killed by signal 9")
     assert ("error", 2, "Attempt 2 failed: killed by signal 9") in log()
     for _ in range(lifecycle.MAX_ATTEMPTS - 1):
-        claim(services, run_id, "worker").fail("no luck")
+        claim_run().fail("no luck")
     assert log()[-1] == ("error", 4, "Failed: 3 attempts without a new checkpoint.")
 
 
@@ -111,10 +105,10 @@ def test_a_refused_action_leaves_no_entry(run_id, api, texts):
     assert texts() == before
 
 
-def test_the_log_gives_the_newest_entries_or_those_after_an_id(api, services, run_id):
+def test_the_log_gives_the_newest_entries_or_those_after_an_id(api, run_id):
     for _ in range(3):
-        ask(services, run_id, lifecycle.pause)
-        ask(services, run_id, lifecycle.resume)
+        api.post(f"runs/{run_id}/pause")
+        api.post(f"runs/{run_id}/resume")
     whole = api.get(f"runs/{run_id}/log").json()["entries"]
     ids = [entry["id"] for entry in whole]
     assert len(ids) == 7

@@ -8,33 +8,33 @@ import pytest
 from answers import detail
 
 from microcosmos.spec import EXPERIMENTS, targets
-from server.attempts.claim import claim
 from server.runs.submission import submit
 
 
-def test_a_waiting_run_is_paused_resumed_and_cancelled_at_once(api, services, run_id, flush):
+def test_a_waiting_run_is_paused_resumed_and_cancelled_at_once(
+    api, services, run_id, claim_run, flush
+):
     assert api.post(f"runs/{run_id}/pause").json()["status"] == "paused"
-    assert claim(services, run_id, "worker") is None
+    assert claim_run() is None
     flush()
     assert api.post(f"runs/{run_id}/resume").json()["status"] == "queued"
     assert services.jobs.runs.get_job_ids() == [str(run_id)]
     cancelled = api.post(f"runs/{run_id}/cancel").json()
     assert cancelled["status"] == "cancelled"
     assert cancelled["finished_at"]
-    assert claim(services, run_id, "worker") is None
+    assert claim_run() is None
 
 
-def test_a_worker_carries_out_a_requested_state(api, services, run_id, report):
-    attempt = claim(services, run_id, "worker")
+def test_a_worker_carries_out_a_requested_state(api, run_id, claim_run, attempt, record):
     paused = api.post(f"runs/{run_id}/pause").json()
     assert (paused["status"], paused["requested_state"]) == ("running", "paused")
-    attempt.record(report(1), 1.0)
+    record(1)
     assert attempt.requested_state == "paused"
     attempt.pause()
     run = api.get(f"runs/{run_id}").json()
     assert (run["status"], run["requested_state"]) == ("paused", None)
     api.post(f"runs/{run_id}/resume")
-    attempt = claim(services, run_id, "worker")
+    attempt = claim_run()
     api.post(f"runs/{run_id}/cancel")
     attempt.check()
     assert attempt.requested_state == "cancelled"
@@ -42,17 +42,16 @@ def test_a_worker_carries_out_a_requested_state(api, services, run_id, report):
     assert api.get(f"runs/{run_id}").json()["status"] == "cancelled"
 
 
-def test_a_cancellation_overrules_a_pause_and_not_the_reverse(api, services, run_id):
-    claim(services, run_id, "worker")
+def test_a_cancellation_overrules_a_pause_and_not_the_reverse(api, run_id, attempt):
     api.post(f"runs/{run_id}/pause")
     assert api.post(f"runs/{run_id}/cancel").json()["requested_state"] == "cancelled"
     assert api.post(f"runs/{run_id}/pause").status_code == 409
 
 
-def test_forbidden_actions_are_conflicts_with_a_reason(api, services, run_id):
+def test_forbidden_actions_are_conflicts_with_a_reason(api, run_id, claim_run):
     refused = detail(api.post(f"runs/{run_id}/resume"), 409)
     assert refused == "to resume a run it must be paused; it is queued"
-    claim(services, run_id, "worker").finish()
+    claim_run().finish()
     for action in ("pause", "resume", "cancel"):
         assert "it is finished" in detail(api.post(f"runs/{run_id}/{action}"), 409)
         assert api.post(f"runs/{uuid4()}/{action}").status_code == 404
@@ -124,9 +123,10 @@ def test_curves_and_events_contain_the_numbers_of_summaries(api, run_id, summari
     assert [event["summary"].get("corrected") for event in events[3:6]] == [None, 2.5, None]
 
 
-def test_curves_without_summaries_have_no_other_columns(api, run_id, record):
+def test_curves_without_summaries_have_no_other_columns_and_no_species(api, run_id, record):
     record(1)
     assert api.get(f"runs/{run_id}/generations").json()["summary"] == {}
+    assert api.get(f"runs/{run_id}/species").json()["generation"] == []
 
 
 def test_a_run_that_ended_early_is_done(api, run_id, attempt, record):
@@ -149,11 +149,6 @@ def test_species_are_listed_by_generation(api, run_id, record):
         }
 
 
-def test_a_run_without_species_has_none(api, run_id, record):
-    record(1)
-    assert api.get(f"runs/{run_id}/species").json()["generation"] == []
-
-
 def test_thinned_curves_sum_reasons_of_divergence(api, run_id, record):
     for generation in range(1, 11):
         summary = {"diverged: non-finite": 2, "inserted": generation}
@@ -166,8 +161,8 @@ def test_thinned_curves_sum_reasons_of_divergence(api, run_id, record):
 
 
 def test_targets_are_scaled_as_the_filaments_see_them(api, services, run_id):
-    presets = {preset.name: preset.spec for preset in EXPERIMENTS["folding"].presets}
-    fold_id = submit(services, presets["demo"])[0].id
+    (demo,) = (one.spec for one in EXPERIMENTS["folding"].presets if one.name == "demo")
+    fold_id = submit(services, demo)[0].id
     first, second = api.get(f"runs/{fold_id}/targets").json()
     assert (first["name"], second["name"]) == ("3", "7")
     assert (first["width"], first["height"], first["size"]) == (32, 32, 32)

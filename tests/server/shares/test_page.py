@@ -1,4 +1,4 @@
-"""The page of a share: what other sites are told of it, and that names are only text there."""
+"""The page of a share: previews for other sites, and escaped names."""
 
 import re
 

@@ -10,7 +10,7 @@ from server.tables import PREVIEW, REPLAY
 
 @pytest.fixture
 def attempt(services, run_id, report):
-    """A run that has come to its second generation, with a file of it."""
+    """An attempt that has recorded two generations and saved a file."""
     held = claim(services, run_id, "worker")
     held.record(report(1, {3: 1.0}), 1.0)
     held.record(report(2, {3: 2.0, 7: 1.5}), 1.0)
@@ -45,9 +45,9 @@ def test_an_archive_is_shared_as_it_was(through, archive, attempt, report, run_i
 
 def test_a_shared_run_hides_its_owners_notes(api, through, archive, run_id):
     api.patch(f"runs/{run_id}", json={"name": "mine", "tags": ["a"], "note": "secret"})
-    told = through(archive["slug"], f"runs/{run_id}")
-    assert "secret" not in told.text
-    run = told.json()
+    answer = through(archive["slug"], f"runs/{run_id}")
+    assert "secret" not in answer.text
+    run = answer.json()
     assert (run["name"], run["tags"], run["note"]) == ("Swimmers", [], None)
     assert (run["status"], run["generation"], run["best"]) == ("finished", 2, 2.0)
     other = "00000000-0000-4000-8000-000000000000"

@@ -12,8 +12,6 @@ VISCOSITIES = {"world.viscosity": [0.05, 0.1]}
 
 @pytest.fixture
 def post(api, spec):
-    """Submits a sweep of the small search."""
-
     def send(**asked):
         return api.post("sweeps", json={"spec": spec, **asked})
 
@@ -28,8 +26,6 @@ def six(post):
 
 @pytest.fixture
 def claimed(services):
-    """Claims a run of a sweep for a worker."""
-
     def claimed(run: str | UUID, worker: str = "worker") -> Attempt:
         found = claim(services, UUID(str(run)), worker)
         assert found
@@ -40,8 +36,6 @@ def claimed(services):
 
 @pytest.fixture
 def runs_of(api):
-    """The ids of the runs of a sweep, in their order."""
-
     def runs_of(sweep):
         query = {"sweep": sweep["id"], "sort": "created"}
         return [run["id"] for run in api.get("runs", params=query).json()["items"]]

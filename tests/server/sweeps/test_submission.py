@@ -20,8 +20,8 @@ def test_a_sweep_runs_each_case_with_each_seed_in_order(api, services, six):
         {"world.viscosity": 0.1},
     ]
     found = api.get("runs", params={"sweep": six["id"], "sort": "created"}).json()["items"]
-    told = [(run["spec"]["world"]["viscosity"], run["spec"]["seed"]) for run in found]
-    assert told == [(nu, seed) for seed in (0, 1, 2) for nu in (0.05, 0.1)]
+    inputs = [(run["spec"]["world"]["viscosity"], run["spec"]["seed"]) for run in found]
+    assert inputs == [(nu, seed) for seed in (0, 1, 2) for nu in (0.05, 0.1)]
     assert found[3]["name"] == "thick and thin · world.viscosity=0.1 · seed 1"
     assert {run["sweep"] for run in found} == {six["id"]}
     ids = [run["id"] for run in found]
@@ -166,7 +166,6 @@ def test_sweeps_take_integers_beyond_canonical_json(api, spec):
 
 @pytest.fixture
 def elite(claimed, run_id, report, identity):
-    """The name of a creature that lives in a finished run."""
     attempt = claimed(run_id)
     attempt.record(report(1, {0: 1.0}), 1.0)
     attempt.finish()

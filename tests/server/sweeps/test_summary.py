@@ -5,7 +5,7 @@ from uuid import UUID
 
 import numpy as np
 import pytest
-from sqlalchemy import event, insert, update
+from sqlalchemy import event, update
 
 from server.sweeps.summary import common_generation, summary
 from server.tables import Generation, Run, Sweep
@@ -17,10 +17,10 @@ def test_bands_are_quartiles_of_the_runs_that_reached_a_generation(api, services
     sweep = post(seeds=4, grid=VISCOSITIES).json()
     rng = np.random.default_rng(0)
     lengths = [5, 3, 4, 0]
-    told = {}
+    scores = {}
     for run, length in zip(sweep["cases"][1]["runs"], lengths, strict=True):
-        told[run] = rng.random((length, 3))
-        record(services, run, told[run])
+        scores[run] = rng.random((length, 3))
+        record(services, run, scores[run])
     found = api.get(f"sweeps/{sweep['id']}/summary").json()
     empty, case = found["cases"]
     assert (empty["generation"], empty["qd_score"]["median"]) == ([], [])
@@ -29,23 +29,17 @@ def test_bands_are_quartiles_of_the_runs_that_reached_a_generation(api, services
     assert case["runs"] == [3, 3, 3, 2, 1]
     for at, name in enumerate(("qd_score", "coverage", "best")):
         for generation in case["generation"]:
-            known = [
-                rows[generation - 1, at] for rows in told.values() if len(rows) >= generation
-            ]
-            for word, share in (
-                ("low", 25),
-                ("median", 50),
-                ("high", 75),
-                ("min", 0),
-                ("max", 100),
-            ):
+            long = [rows for rows in scores.values() if len(rows) >= generation]
+            known = [rows[generation - 1, at] for rows in long]
+            shares = {"low": 25, "median": 50, "high": 75, "min": 0, "max": 100}
+            for word, share in shares.items():
                 value = case[name][word][generation - 1]
                 assert value == pytest.approx(np.percentile(known, share))
     assert [member["seed"] for member in case["members"]] == [0, 1, 2, 3]
     assert [member["generation"] for member in case["members"]] == lengths
     final = case["finals"]["qd_score"]
     assert found["generation"] == 3, "the shortest of the runs that have begun"
-    common = [told[run][2, 0] for run in told if len(told[run])]
+    common = [scores[run][2, 0] for run in scores if len(scores[run])]
     assert final["values"] == [*common, None]
     assert final["median"] == pytest.approx(np.median(common))
     thin = api.get(f"sweeps/{sweep['id']}/summary", params={"points": 3}).json()["cases"][1]
@@ -54,7 +48,7 @@ def test_bands_are_quartiles_of_the_runs_that_reached_a_generation(api, services
     lines = api.get(f"sweeps/{sweep['id']}/curves").json()
     assert lines["generation"] == [1, 2, 3, 4, 5]
     (line,) = [one for one in lines["runs"] if one["run"] == sweep["cases"][1]["runs"][1]]
-    assert line["coverage"] == [*told[line["run"]][:, 1], None, None]
+    assert line["coverage"] == [*scores[line["run"]][:, 1], None, None]
 
 
 def test_a_run_restored_during_a_summary_is_not_mixed_up(api, services, post):
@@ -97,26 +91,19 @@ def record(services, run, rows):
         row.generation = len(rows)
         for generation, values in enumerate(rows.tolist(), 1):
             known = dict(zip(columns, values, strict=True))
-            at = {"run_id": row.id, "generation": generation}
-            session.execute(insert(Generation), [{**at, **known, **others}])
+            session.add(Generation(run_id=row.id, generation=generation, **known, **others))
             row.qd_score, row.coverage, row.best = values
 
 
-def test_a_summary_asks_the_database_as_often_for_many_runs_as_for_few(services, post):
+def test_a_summary_asks_the_database_as_often_for_many_runs_as_for_few(
+    services, post, statements
+):
     sizes = []
     for seeds in (1, 20):
         sweep_id = UUID(post(seeds=seeds, grid=VISCOSITIES).json()["id"])
-        asked = []
-
-        def note(_connection, _cursor, statement, *_, asked=asked):
-            asked.append(statement)
-
         with services.sessions.read() as session:
             sweep = session.get_one(Sweep, sweep_id)
-            event.listen(services.sessions.engine, "before_cursor_execute", note)
-            summary(session, sweep, None)
-            event.remove(services.sessions.engine, "before_cursor_execute", note)
-        sizes.append(len(asked))
+            sizes.append(statements(lambda: summary(session, sweep, None)))  # noqa: B023
     assert sizes == [2, 2]
 
 
@@ -127,11 +114,11 @@ def test_finals_of_a_table_come_from_its_summary(claimed, api, sweep, table):
     attempt.record(table(1, {"number": 1}, summary={"points": 4, "note": "words"}), 1.0)
     name = api.get(f"runs/{found['cases'][0]['runs'][0]}").json()["name"]
     assert name == "period=40"
-    told = api.get(f"sweeps/{found['id']}/summary").json()["cases"]
-    assert told[0]["finals"]["points"]["values"] == [4.0]
-    assert set(told[0]["finals"]) == {"evaluations", "points"}
-    assert told[0]["qd_score"]["median"] == [None]
-    assert "points" not in told[1]["finals"]
+    cases = api.get(f"sweeps/{found['id']}/summary").json()["cases"]
+    assert cases[0]["finals"]["points"]["values"] == [4.0]
+    assert set(cases[0]["finals"]) == {"evaluations", "points"}
+    assert cases[0]["qd_score"]["median"] == [None]
+    assert "points" not in cases[1]["finals"]
     refused = api.post("sweeps", json={"spec": sweep, "seeds": 2}).json()
     assert "`gaits` has no seed" in refused["detail"]
 

@@ -9,12 +9,18 @@ from server.workers import registry
 def have(services):
     """A worker that reports its plug-ins."""
 
-    def have(name="worker", plugins=(), **said):
+    def have(name="worker", plugins=(), **more):
         found = [dict(one) for one in plugins]
-        told = (services.sessions, name, "some device", 1 << 40, "idle")
-        registry.report(*told, plugins=found, **said)
+        worker = (services.sessions, name, "some device", 1 << 40, "idle")
+        registry.report(*worker, plugins=found, **more)
 
     return have
+
+
+@pytest.fixture
+def waiting(api):
+    """Reads why a run waits."""
+    return lambda run: api.get(f"runs/{run}").json()["waiting_reason"]
 
 
 @pytest.fixture

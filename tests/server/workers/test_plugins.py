@@ -25,10 +25,8 @@ def test_plug_ins_of_workers_appear_in_the_schemas(api, services, have):
     axis = search["$defs"]["Descriptor"]["properties"]
     assert axis["name"]["enum"][-1] == "mine.sway"
     assert axis["low"]["units"]["mine.sway"] == "cells"
-    builders = [
-        one["properties"]["builder"] for one in search["properties"]["body"]["oneOf"][-2:]
-    ]
-    assert [one["const"] for one in builders] == ["mine.cross", "mine.wiggler"]
+    bodies = [one["properties"] for one in search["properties"]["body"]["oneOf"][-2:]]
+    assert [one["builder"]["const"] for one in bodies] == ["mine.cross", "mine.wiggler"]
     pulse = search["properties"]["control"]["oneOf"][-1]["properties"]
     assert pulse["encoding"]["const"] == "mine.pulse"
     assert "period" in pulse
@@ -49,8 +47,8 @@ def test_a_run_pins_plug_in_versions_and_settings(api, have, mine):
     axis = spec["archive"]["descriptors"][0]
     assert (axis["low"], axis["high"], axis["scale"]) == (0.001, 1.0, "log10")
     run = answer.json()["id"]
-    told = {one["name"]: one for one in api.get(f"runs/{run}/archive").json()["recorded"]}
-    assert (told["mine.sway"]["title"], told["mine.sway"]["unit"]) == ("Sway", "cells")
+    measures = {one["name"]: one for one in api.get(f"runs/{run}/archive").json()["recorded"]}
+    assert (measures["mine.sway"]["title"], measures["mine.sway"]["unit"]) == ("Sway", "cells")
     again = api.post("runs", json=spec)
     assert again.json()["spec"] == spec, "what a run has is taken as it is"
     usual = {**spec, "task": {**spec["task"], "fitness": "displacement"}}
@@ -134,13 +132,8 @@ def test_an_unknown_name_imports_nothing(api, have, spec, name, monkeypatch):
 def test_workers_list_plug_ins_and_failed_modules(api, have):
     have(plugins=declared(), unloaded=[{"module": "bad.py", "reason": "SyntaxError: x"}])
     (worker,) = api.get("workers").json()
-    assert worker["plugins"][0] == {
-        "kind": "fitness",
-        "name": "mine.straight",
-        "title": "Straight way",
-        "unit": "cells",
-        "source": A,
-    }
+    straight = {"kind": "fitness", "name": "mine.straight", "title": "Straight way"}
+    assert worker["plugins"][0] == {**straight, "unit": "cells", "source": A}
     assert worker["unloaded"] == [{"module": "bad.py", "reason": "SyntaxError: x"}]
 
 
@@ -174,44 +167,37 @@ def test_the_job_is_queued_for_its_plug_in_version(api, services, have, mine, sp
     assert services.jobs.runs_with_job() == {first, second}
     jobs = [queue.get_job_ids() for queue in runnable_queues(services, {A})]
     assert jobs == [[first], [second], []], "who came first is taken first, sweeps last"
-    for plugin_versions in (set(), {B}):
-        assert [
-            queue.get_job_ids() for queue in runnable_queues(services, plugin_versions)
-        ] == [[second], []]
+    for versions in (set(), {B}):
+        jobs = [queue.get_job_ids() for queue in runnable_queues(services, versions)]
+        assert jobs == [[second], []]
 
 
-def test_a_run_names_the_plug_in_it_waits_for(api, services, have, mine):
+def test_a_run_names_the_plug_in_it_waits_for(api, services, have, mine, waiting):
     have("with", plugins=declared())
     run = api.post("runs", json=mine).json()["id"]
-    assert (
-        api.get(f"runs/{run}").json()["waiting_reason"] == "A worker is free; this run is next."
-    )
+    assert waiting(run) == "A worker is free; this run is next."
     registry.retire(services.sessions, "with")
     have("without")
-    waiting = api.get(f"runs/{run}").json()["waiting_reason"]
-    assert waiting.startswith(f"Waits for a worker that has mine.cross (version {A[:12]}), ")
+    missing = f"Waits for a worker that has mine.cross (version {A[:12]}), "
+    assert waiting(run).startswith(missing)
     have("other", plugins=declared(B))
-    assert "; other has another version" in api.get(f"runs/{run}").json()["waiting_reason"]
+    assert "; other has another version" in waiting(run)
     late = api.post("runs", json={**mine, "body": {"builder": "mine.cross"}}).json()
     assert late["spec"]["body"]["plugin"]["source"] == B, "the version that a live worker has"
     have("again", plugins=declared())
-    assert "free" in api.get(f"runs/{run}").json()["waiting_reason"]
+    assert "free" in waiting(run)
 
 
-def test_a_run_refused_by_its_worker_fails_at_once_with_the_reason(api, services, run_id):
-    claim(services, run_id, "worker").refuse("mine.straight must give one number")
-    told = api.get(f"runs/{run_id}").json()
-    assert (told["status"], told["attempt"]) == ("failed", 1)
-    assert told["error"] == "mine.straight must give one number"
+def test_a_run_refused_by_its_worker_fails_at_once_with_the_reason(attempt, row):
+    attempt.refuse("mine.straight must give one number")
+    assert (row().status, row().attempt) == ("failed", 1)
+    assert row().error == "mine.straight must give one number"
 
 
-def test_a_run_set_aside_continues_when_resumed(api, services, run_id):
-    claim(services, run_id, "worker").pause_until_resumed("mine.py is not what it was.")
-    told = api.get(f"runs/{run_id}").json()
-    assert (told["status"], told["warning"]) == (
-        "paused",
-        "mine.py is not what it was. Then resume the run.",
-    )
+def test_a_run_set_aside_continues_when_resumed(api, run_id, attempt, row):
+    attempt.pause_until_resumed("mine.py is not what it was.")
+    assert row().status == "paused"
+    assert row().warning == "mine.py is not what it was. Then resume the run."
     assert api.post(f"runs/{run_id}/resume").json()["status"] == "queued"
 
 
@@ -225,7 +211,7 @@ def test_plug_ins_that_no_worker_has_together_are_named(services, have):
     assert "none has them together" in plugins.missing(alive, {"task": task, "body": body})
 
 
-def test_plugin_gaits_encodings_and_folded_bodies_are_queued(api, have, mine, sweep):
+def test_plugin_gaits_encodings_and_folded_bodies_are_queued(api, have, mine, sweep, waiting):
     have(plugins=declared())
     swim = {**sweep, "swimmers": ["worm", "mine.wiggler"]}
     code = {
@@ -247,11 +233,7 @@ def test_plugin_gaits_encodings_and_folded_bodies_are_queued(api, have, mine, sw
         found = answer.json()["spec"][part]
         version = found["mine.wiggler"] if part == "plugins" else found["plugin"]
         assert version["source"] == A
-        assert (
-            api.get(f"runs/{answer.json()['id']}")
-            .json()["waiting_reason"]
-            .startswith("A worker is")
-        )
+        assert waiting(answer.json()["id"]).startswith("A worker is")
     assert "plugins" not in api.post("runs", json=sweep).json()["spec"]
 
 

@@ -3,7 +3,6 @@
 from uuid import UUID
 
 import pytest
-from sqlalchemy import event
 
 from server.attempts.claim import claim
 from server.queue.order import in_order
@@ -14,8 +13,6 @@ from server.workers import registry
 
 @pytest.fixture
 def alive(services):
-    """A worker that reports."""
-
     def alive(name="worker", status="idle", run=None, memory=1 << 40, **usage):
         registry.report(services.sessions, name, "some device", memory, status, run, **usage)
 
@@ -23,8 +20,14 @@ def alive(services):
 
 
 @pytest.fixture
-def waiting(api):
-    return lambda run: api.get(f"runs/{run}").json()["waiting_reason"]
+def submit(api, spec):
+    """Submits runs that differ by their seed, and returns their ids."""
+
+    def submit(count):
+        runs = [{**spec, "seed": seed} for seed in range(count)]
+        return [api.post("runs", json=run).json()["id"] for run in runs]
+
+    return submit
 
 
 def test_a_worker_reports_its_device_load_and_run(api, spec, run_id, alive, record):
@@ -59,8 +62,8 @@ def test_since_changes_with_the_workers_status(api, run_id, alive):
     assert read()["since"] > second
 
 
-def test_the_queue_lists_waiting_runs_in_order(api, services, spec, alive):
-    ids = [api.post("runs", json={**spec, "seed": i}).json()["id"] for i in range(4)]
+def test_the_queue_lists_waiting_runs_in_order(api, services, spec, submit, waiting):
+    ids = submit(4)
     api.post(f"runs/{ids[0]}/pause")
     claim(services, UUID(ids[1]), "worker")
     api.post(f"runs/{ids[0]}/resume")
@@ -71,36 +74,33 @@ def test_the_queue_lists_waiting_runs_in_order(api, services, spec, alive):
     assert {run["memory_bytes"] for run in queue["items"]} == {needed}
     first = api.get("queue", params={"limit": 1}).json()
     assert (first["total"], [run["id"] for run in first["items"]]) == (3, [ids[2]])
-    assert (
-        first["items"][0]["waiting_reason"]
-        == api.get(f"runs/{ids[2]}").json()["waiting_reason"]
-    )
+    assert first["items"][0]["waiting_reason"] == waiting(ids[2])
 
 
-def test_a_run_has_the_time_since_when_it_is_queued(api, services, run_id):
+def test_a_run_has_the_time_since_when_it_is_queued(api, run_id, claim_run):
     first = api.get(f"runs/{run_id}").json()
     assert first["queued_at"] >= first["created_at"]
     assert first["queued_at"] == api.get("queue").json()["items"][0]["queued_at"]
-    attempt = claim(services, run_id, "worker")
+    attempt = claim_run()
     assert api.get(f"runs/{run_id}").json()["queued_at"] == first["queued_at"]
     attempt.pause()
     assert api.post(f"runs/{run_id}/resume").json()["queued_at"] > first["queued_at"]
 
 
-def test_only_runs_that_are_queued_wait(api, services, run_id, waiting, report):
+def test_only_runs_that_are_queued_wait(api, run_id, waiting, claim_run, report):
     assert "`make run` or `python -m worker.supervisor`" in waiting(run_id)
     api.post(f"runs/{run_id}/pause")
     assert waiting(run_id) is None
     api.post(f"runs/{run_id}/resume")
-    attempt = claim(services, run_id, "worker")
+    attempt = claim_run()
     assert waiting(run_id) is None
     attempt.record(report(1), 1.0)
     attempt.finish()
     assert waiting(run_id) is None
 
 
-def test_a_queued_run_names_busy_workers_and_its_position(api, services, spec, alive, waiting):
-    ids = [api.post("runs", json={**spec, "seed": i}).json()["id"] for i in range(4)]
+def test_a_queued_run_names_busy_workers_and_its_position(services, submit, alive, waiting):
+    ids = submit(4)
     claim(services, UUID(ids[0]), "worker")
     alive("worker", "busy", UUID(ids[0]))
     busy = f"Waits for a worker: the only one is busy with run {ids[0][:8]}; "
@@ -115,8 +115,8 @@ def test_a_queued_run_names_busy_workers_and_its_position(api, services, spec, a
     assert waiting(ids[3]) == "A worker is free; 1 run is before it."
 
 
-def test_a_run_that_a_worker_has_taken_is_about_to_begin(api, spec, alive, waiting):
-    ids = [api.post("runs", json={**spec, "seed": i}).json()["id"] for i in range(2)]
+def test_a_run_that_a_worker_has_taken_is_about_to_begin(api, spec, submit, alive, waiting):
+    ids = submit(2)
     alive("worker", "busy")
     assert waiting(ids[0]) == "A worker is about to start it."
     assert waiting(ids[1]) == "Waits for a worker: the only one is busy; this run is next."
@@ -125,8 +125,8 @@ def test_a_run_that_a_worker_has_taken_is_about_to_begin(api, spec, alive, waiti
     third = api.post("runs", json={**spec, "seed": 2}).json()["id"]
     busy = "Waits for a worker: the only one is busy; "
     assert waiting(third) == busy + "1 run is before it."
-    told = {run["id"]: run["waiting_reason"] for run in api.get("queue").json()["items"]}
-    assert told == {run: waiting(run) for run in (*ids, third)}
+    reasons = {run["id"]: run["waiting_reason"] for run in api.get("queue").json()["items"]}
+    assert reasons == {run: waiting(run) for run in (*ids, third)}
 
 
 def test_starting_workers_leave_no_run_ahead(api, spec, alive):
@@ -146,22 +146,13 @@ def test_a_run_that_no_worker_can_hold_says_how_much_it_needs(api, spec, alive, 
     assert waiting(run) == "A worker is free; this run is next."
 
 
-def test_a_list_asks_the_queue_once_however_many_runs_wait(api, services, spec, alive):
+def test_a_list_asks_the_queue_once_however_many_runs_wait(services, submit, alive, statements):
     alive()
-    for seed in range(3):
-        api.post("runs", json={**spec, "seed": seed})
-    asked = []
-
-    def note(_connection, _cursor, statement, *_):
-        asked.append(statement)
+    submit(3)
 
     def count(limit):
         with services.sessions.read() as session:
             runs = [session.get(Run, run_id) for run_id, *_ in in_order(session)[:limit]]
-            asked.clear()
-            event.listen(services.sessions.engine, "before_cursor_execute", note)
-            read_runs(services, session, runs)
-            event.remove(services.sessions.engine, "before_cursor_execute", note)
-        return len(asked)
+            return statements(read_runs, services, session, runs)
 
     assert count(1) == count(3) > 0

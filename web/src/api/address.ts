@@ -2,7 +2,6 @@
 
 const path = globalThis.location?.pathname ?? "";
 
-/** True if an address is public. */
 export const isPublicPage = (path: string) => /^\/(s\/.|commons\/?$)/.test(path);
 
 /** The share that this page shows; null for a page of the installation. */

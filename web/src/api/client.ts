@@ -105,10 +105,8 @@ export const readTargets = (id: string) => success(client.GET(`${ROOT}/runs/{run
 export const readSweeps = (limit: number) =>
   typed<SweepPage>(client.GET(`${ROOT}/sweeps`, { params: { query: { limit } } }));
 export const readSweep = (id: string) => typed<Sweep>(client.GET(`${ROOT}/sweeps/{sweep_id}`, sweep(id)));
-/** Statistics of the runs of each case. */
 export const readSweepSummary = (id: string, points: number) =>
   typed<SweepSummary>(client.GET(`${ROOT}/sweeps/{sweep_id}/summary`, sweep(id, { points })));
-/** The curves of each run. */
 export const readSweepCurves = (id: string, points: number) =>
   success(client.GET(`${ROOT}/sweeps/{sweep_id}/curves`, sweep(id, { points })));
 export const estimateSweep = (request: SweepRequest) =>
@@ -153,7 +151,6 @@ export const readMotion = (sha: string, headers = {}) =>
   whenReady<ArrayBuffer>(
     client.GET(`${ROOT}/creatures/{sha}/motion`, { ...creature(sha), headers, parseAs: "arrayBuffer" }),
   );
-/** The motion of the creature on the cover of a share. */
 export const readCover = ({ slug, cover }: Share) => readMotion(cover, { [SHARE_HEADER]: slug });
 export const readAudit = (sha: string) =>
   whenReady<Audit>(client.GET(`${ROOT}/creatures/{sha}/audit`, creature(sha)));

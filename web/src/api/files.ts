@@ -1,8 +1,8 @@
-/** Check and download files. */
+/** Addresses of files; checking and downloading them. */
 
 import { shareHeaders, sharedSlug } from "./address";
 import { problemOf } from "./problem";
-import { noteStatus } from "./signedOut";
+import { noteStatus, ROOT } from "./http";
 
 /** True if a rendering exists, null while it is rendered; its content is not read. */
 export async function renderingReady(url: string): Promise<true | null> {
@@ -39,3 +39,12 @@ export async function save(url: string): Promise<void> {
   link.click();
   if (sharedSlug) setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
+
+export const archiveUrl = (id: string, kind: "h5" | "csv") => `${ROOT}/runs/${id}/archive.${kind}`;
+export const resultsUrl = (id: string) => `${ROOT}/runs/${id}/results.csv`;
+export type PictureFormat = "strip.png" | "film.gif" | "film.mp4";
+export const pictureUrl = (sha: string, kind: PictureFormat) => `${ROOT}/creatures/${sha}/${kind}`;
+export type NetworkFormat = "svg" | "dot" | "py" | "npz";
+export const networkUrl = (sha: string, form: NetworkFormat) => `${ROOT}/creatures/${sha}/network.${form}`;
+export const creatureFileUrl = (sha: string) => `${ROOT}/creatures/${sha}?download=1&ancestors=1`;
+export const creatureH5Url = (sha: string) => `${ROOT}/creatures/${sha}/creature.h5`;

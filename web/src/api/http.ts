@@ -1,10 +1,9 @@
-/** The HTTP client: it sends the share of the page and throws problems. */
+/** The HTTP client: it sends the share of the page, throws problems, and notes that nobody is signed in. */
 
 import createClient from "openapi-fetch";
 import { shareHeaders } from "./address";
 import { problemOf } from "./problem";
 import type { paths } from "./schema";
-import { noteStatus } from "./signedOut";
 
 export const ROOT = "/api/v1";
 
@@ -27,4 +26,16 @@ export async function success<T>(request: Promise<Answer<T>>): Promise<T> {
 export async function whenReady<T>(request: Promise<Answer<unknown>>): Promise<T | null> {
   const value = await success(request);
   return (await request).response.status === 202 ? null : (value as T);
+}
+
+export const SIGNED_OUT = "microcosmos:signed-out";
+
+let signedOut = false;
+
+export const isSignedOut = () => signedOut;
+
+export function noteStatus(status: number): void {
+  if (status !== 401 || signedOut) return;
+  signedOut = true;
+  globalThis.dispatchEvent?.(new Event(SIGNED_OUT));
 }

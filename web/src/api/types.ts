@@ -14,7 +14,6 @@ export type Run = With<Wire["RunRead"], { spec: Spec; summary: Values | null }>;
 /** The state of a run; the spec may be missing if it was sent before. */
 export type RunEvent = Omit<Run, "spec"> & { spec?: Spec };
 export type RunPage = With<Wire["RunPage"], { items: Run[] }>;
-/** Fields of a run that users edit. */
 export type RunChange = Partial<Pick<Run, "name" | "tags" | "note">>;
 export type RunQuery = NonNullable<operations["list_runs_api_v1_runs_get"]["parameters"]["query"]>;
 export type Sweep = With<Wire["SweepRead"], { spec: Spec; grid: Grid; cases: SweepCase[] }> & Owned;
@@ -77,7 +76,6 @@ export type Target = Wire["Target"];
 
 export type Value = null | boolean | number | string;
 export type Values = { [name: string]: Value };
-/** A row of a results table. */
 export type ResultRow = Values & { creature: string | null };
 export type Results = With<Wire["ResultsRead"], { rows: ResultRow[]; summary: Values | null }>;
 
@@ -170,7 +168,6 @@ export interface Creature {
     version: string;
   } | null;
   licence: string;
-  /** Names of the authors. */
   credit?: string[];
 }
 

@@ -1,29 +1,33 @@
 /** The frame around every page: navigation, connection, notes. */
 
+import type { FunctionComponent } from "preact";
 import { useEffect } from "preact/hooks";
 import { readHealth } from "../api/client";
 import { lazy } from "../ui/lazy";
 import { loadPrincipal, useRefusal, useSignedOut } from "../store/principal";
 import { useFetched } from "../store/fetch";
 import { useStore } from "../store/store";
-import { type Toast, dismissToast, undoLatest, useToasts } from "../store/toasts";
+import { useListener } from "../store/polling";
+import { type Toast, dismissToast, undoLatest } from "../store/toasts";
 import { DropTarget, OpenButton } from "../ui/DropTarget";
-import { NotFound } from "../ui/NotFound";
-import { useTitle } from "../ui/Page";
+import { NotFound, useTitle } from "../ui/Page";
 import { RunsPage } from "../runs/RunsPage";
 import { type PageLocation, useLocation } from "../store/router";
 import { text } from "./text";
 import "./app.css";
 
-const ComparePage = lazy(async () => (await import("../compare/ComparePage")).ComparePage);
-const CreaturePage = lazy(async () => (await import("../creature/CreaturePage")).CreaturePage);
-const NewRunPage = lazy(async () => (await import("../new-run/NewRunPage")).NewRunPage);
-const RunPage = lazy(async () => (await import("../run/RunPage")).RunPage);
-const SharesPage = lazy(async () => (await import("../shares/SharesPage")).SharesPage);
-const SettingsPage = lazy(async () => (await import("../settings/SettingsPage")).SettingsPage);
-const SignInPage = lazy(async () => (await import("../settings/SignInPage")).SignInPage);
-const SweepPage = lazy(async () => (await import("../sweeps/SweepPage")).SweepPage);
-const WorkersPage = lazy(async () => (await import("../workers/WorkersPage")).WorkersPage);
+const PAGES: Record<string, FunctionComponent<{ id: string; query: URLSearchParams }>> = {
+  runs: RunsPage,
+  new: lazy(async () => (await import("../new-run/NewRunPage")).NewRunPage),
+  compare: lazy(async () => (await import("../compare/ComparePage")).ComparePage),
+  workers: lazy(async () => (await import("../workers/WorkersPage")).WorkersPage),
+  shares: lazy(async () => (await import("../shares/SharesPage")).SharesPage),
+  settings: lazy(async () => (await import("../settings/SettingsPage")).SettingsPage),
+  run: lazy(async () => (await import("../run/RunPage")).RunPage),
+  sweep: lazy(async () => (await import("../sweeps/SweepPage")).SweepPage),
+  creature: lazy(async () => (await import("../creature/CreaturePage")).CreaturePage),
+};
+const SignInPage = lazy(async () => (await import("../settings/SettingsPage")).SignInPage);
 
 export function App() {
   const location = useLocation();
@@ -92,35 +96,16 @@ function Navigation({ page }: { page: string }) {
   );
 }
 
-function RoutedPage({ route, query }: PageLocation) {
-  switch (route.page) {
-    case "runs":
-      return <RunsPage query={query} />;
-    case "new":
-      return <NewRunPage query={query} />;
-    case "compare":
-      return <ComparePage query={query} />;
-    case "workers":
-      return <WorkersPage />;
-    case "settings":
-      return <SettingsPage />;
-    case "run":
-      return <RunPage key={route.id} id={route.id} query={query} />;
-    case "sweep":
-      return <SweepPage key={route.id} id={route.id} query={query} />;
-    case "creature":
-      return <CreaturePage key={route.sha} sha={route.sha} query={query} />;
-    case "shares":
-      return <SharesPage />;
-    default:
-      return (
-        <main>
-          <NotFound what={text.noSuchPage} reason={text.noSuchPageAbout}>
-            <a href="/">{text.allRuns}</a>
-          </NotFound>
-        </main>
-      );
-  }
+function RoutedPage({ route: { page, id = "" }, query }: PageLocation) {
+  const Shown = PAGES[page];
+  if (Shown) return <Shown key={`${page} ${id}`} {...{ id, query }} />;
+  return (
+    <main>
+      <NotFound what={text.noSuchPage} reason={text.noSuchPageAbout}>
+        <a href="/">{text.allRuns}</a>
+      </NotFound>
+    </main>
+  );
 }
 
 function Connection() {
@@ -135,11 +120,8 @@ function Connection() {
 }
 
 export function Toasts() {
-  const toasts = useToasts();
-  useEffect(() => {
-    document.addEventListener("keydown", undoLatest);
-    return () => document.removeEventListener("keydown", undoLatest);
-  }, []);
+  const toasts = useStore((state) => state.toasts);
+  useListener("keydown", undoLatest);
   return (
     <div class="toasts" role="status" aria-live="polite">
       {toasts.map((toast) => (

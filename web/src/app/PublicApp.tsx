@@ -2,10 +2,9 @@
 
 import { Brand, Toasts } from "./App";
 import { sharedSlug } from "../api/address";
-import { CommonsPage } from "../shares/CommonsPage";
-import { SharedPage } from "../shares/SharedPage";
+import { CommonsPage, SharedPage } from "../shares/SharedPage";
 import { useLocation } from "../store/router";
-import { NotFound } from "../ui/NotFound";
+import { NotFound } from "../ui/Page";
 import { text } from "./text";
 
 export function PublicApp() {
@@ -21,7 +20,7 @@ export function PublicApp() {
         </nav>
         <span class="spring" />
       </header>
-      {route.page === "share" && <SharedPage slug={route.slug} sha={route.sha} query={query} />}
+      {route.page === "share" && <SharedPage slug={route.slug!} sha={route.sha ?? null} query={query} />}
       {route.page === "commons" && <CommonsPage />}
       {route.page === "unknown" && (
         <main>

@@ -6,21 +6,20 @@ import type { Archive, Run } from "../api/types";
 import { type Elite, type Elites, fittest } from "../store/elites";
 import { navigate, setQuery } from "../store/router";
 import { ArchiveMap } from "./ArchiveMap";
-import { MapOptions } from "./MapOptions";
-import { Slices } from "./Slices";
+import { MapOptions, Slices } from "./MapOptions";
 import { TimeSlider } from "./TimeSlider";
 import { count } from "../ui/format";
 import { Segments } from "../ui/Select";
 import { Tour } from "../ui/Tour";
-import { ForkLink } from "../ui/ForkLink";
+import { ForkLink } from "../ui/links";
 import { SelectToggle, SelectionBar, useSelection } from "./SelectionBar";
 import { stepsOf, useTour } from "./tour";
 import { ElitePreview } from "./ElitePreview";
-import { type ArchiveView, setSlice, useArchiveView } from "./archiveView";
+import { type ArchiveView, useArchiveView } from "./archiveView";
 import type { ArchiveViewProps } from "./binFocus";
 import type { Projection } from "./projection";
 import type { Selection } from "./selection";
-import { ArchiveGallery } from "./ArchiveGallery";
+import { Gallery } from "./Gallery";
 import { text } from "./text";
 import "./map.css";
 import "./archive.css";
@@ -46,9 +45,9 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
     <div data-tour={about}>
       <Head count={view.elites.size} gallery={gallery} onTour={tour.begin} />
       <MapOptions archive={archive} view={view} />
-      <Slices slices={view.slices} onChange={setSlice} />
+      <Slices slices={view.slices} />
       {gallery ? (
-        <ArchiveGallery key={names} {...props} query={query} />
+        <Gallery key={names} {...props} query={query} />
       ) : (
         <ArchiveMap
           key={names}

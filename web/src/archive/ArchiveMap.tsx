@@ -3,15 +3,13 @@
 import type { ComponentChildren } from "preact";
 import { useLayoutEffect, useMemo, useRef } from "preact/hooks";
 import type { Elite, Elites } from "../store/elites";
-import { AxisLabels } from "./AxisLabels";
-import { type ArchiveViewProps, useBinFocus } from "./binFocus";
+import { type ArchiveViewProps, tileUnder, useBinFocus } from "./binFocus";
 import { useBoxSelect } from "./boxSelect";
-import { ColourLegend } from "./ColourLegend";
 import { EliteMeasures } from "./EliteMeasures";
-import type { Layout } from "./layout";
+import { AxisLabels, ColourLegend } from "./labels";
+import type { Layout, Spot } from "./layout";
 import { useMapCanvas } from "./mapCanvas";
-import type { Tiles } from "./projection";
-import { type Box, binsOf, binsWithin, cellsIn, isAdditive, keyHelp, toggle, union } from "./selection";
+import { type Box, binsOf, binsWithin, cellsIn, isAdditive, toggle, union } from "./selection";
 import { text } from "./text";
 
 interface Props extends ArchiveViewProps {
@@ -24,7 +22,7 @@ interface Props extends ArchiveViewProps {
 
 /** Cells belong to the archive, bins to the map; a bin shows its best elite. */
 export function ArchiveMap(props: Props) {
-  const { axes, colouring, onOpen, onSelect, onFocus } = props;
+  const { axes, onFocus } = props;
   const focus = useBinFocus(props);
   const { tile } = focus;
   useLayoutEffect(() => onFocus(tile?.elite ?? null), [tile?.elite]);
@@ -33,13 +31,8 @@ export function ArchiveMap(props: Props) {
       <AxisLabels axis={axes[1]} side="y" />
       <MapPlot {...props} focus={focus} />
       <AxisLabels axis={axes[0]} side="x" />
-      <ColourLegend colouring={colouring} />
-      <EliteMeasures
-        {...{ tile, axes, onOpen }}
-        colour={colouring.measure}
-        hint={text.mapHint(onSelect !== null)}
-        actions={props.actions}
-      />
+      <ColourLegend colouring={props.colouring} />
+      <EliteMeasures {...props} tile={tile} hint={text.mapHint(props.onSelect !== null)} />
     </div>
   );
 }
@@ -60,7 +53,7 @@ function MapPlot({ focus, ...props }: Props & { focus: ReturnType<typeof useBinF
   );
   const canvas = useMapCanvas(plot, { layout, tiles, colouring, selected }, elites);
   const click = (event: MouseEvent) => {
-    const bin = tileUnder(event, layout, tiles);
+    const bin = tileUnder(event, plot.current!, projection);
     if (bin === null || drag.wasDrag()) return;
     if (onSelect && isAdditive(event)) return onSelect(toggle(props.selected, cellsIn([bin], projection)));
     const { cell } = tiles.get(bin)!;
@@ -74,73 +67,49 @@ function MapPlot({ focus, ...props }: Props & { focus: ReturnType<typeof useBinF
       class={`map-plot ${hovered === null ? "" : "over"}`}
       tabIndex={0}
       role="application"
-      aria-label={text.mapLabel(keyHelp(props))}
+      aria-label={text.mapLabel(onSelect !== null)}
       aria-describedby="elite-measures"
       {...drag.handlers}
       onPointerMove={(event) => {
         if (drag.onMove(event)) setHovered(null);
-        else if (event.pointerType !== "touch") setHovered(tileUnder(event, layout, tiles));
+        else if (event.pointerType !== "touch") setHovered(tileUnder(event, plot.current!, projection));
       }}
       onPointerLeave={() => setHovered(null)}
       onClick={click}
       onKeyDown={(event) => !drag.box && focus.press(event)}
     >
       <canvas ref={canvas} />
-      {focused !== null && focus.tile && <BinOutline layout={layout} bin={focused} />}
-      {drag.box && <SelectionBox {...drag.box} />}
-      {focused !== null && focus.tile && !drag.box && (
-        <PlacedBeside layout={layout} bin={focused} children={props.inset} />
-      )}
+      <svg class="map-mark" viewBox="0 0 1 1" preserveAspectRatio="none" aria-hidden="true">
+        {focus.tile && <BinOutline layout={layout} bin={focused!} />}
+        {drag.box && <SelectionBox {...drag.box} />}
+      </svg>
+      {focus.tile && !drag.box && <PlacedBeside spot={layout.centre(focused!)} children={props.inset} />}
     </div>
   );
 }
 
-/** The bin under the pointer, if it has an elite. */
-function tileUnder(event: MouseEvent, layout: Layout, tiles: Tiles): number | null {
-  const box = (event.currentTarget as Element).getBoundingClientRect();
-  const [x, y] = [event.clientX - box.left, event.clientY - box.top];
-  const bin = layout.at(x / box.width, y / box.height);
-  return bin !== null && tiles.has(bin) ? bin : null;
-}
-
-/** The outline of the focused bin. */
+/** The polygon around a bin, twice: a wide line in the colour of the card, a narrow one above it. */
 function BinOutline({ layout, bin }: { layout: Layout; bin: number }) {
-  const points = layout
-    .outline(bin)
-    .map((spot) => spot.join())
-    .join(" ");
+  const points = layout.outline(bin).join(" ");
   return (
-    <svg class="map-mark" viewBox="0 0 1 1" preserveAspectRatio="none" aria-hidden="true">
+    <>
       <polygon class="around" points={points} />
       <polygon points={points} />
-    </svg>
+    </>
   );
 }
 
 function SelectionBox({ from, to }: Box) {
   const [x, y] = [Math.min(from[0], to[0]), Math.min(from[1], to[1])];
   const [width, height] = [Math.abs(from[0] - to[0]), Math.abs(from[1] - to[1])];
-  return (
-    <svg class="map-mark" viewBox="0 0 1 1" preserveAspectRatio="none" aria-hidden="true">
-      <rect {...{ x, y, width, height }} />
-    </svg>
-  );
+  return <rect {...{ x, y, width, height }} />;
 }
 
 /** Content beside a bin, placed so that it hides neither the bin nor much of the map. */
-function PlacedBeside({
-  layout,
-  bin,
-  children,
-}: {
-  layout: Layout;
-  bin: number;
-  children: ComponentChildren;
-}) {
-  const [x, y] = layout.centre(bin);
-  const side = x < 0.5 ? "right" : "left";
+function PlacedBeside({ spot: [x, y], children }: { spot: Spot; children: ComponentChildren }) {
+  const place = { "--x": `${100 * x}%`, "--y": `${100 * y}%` };
   return (
-    <div class={`map-beside ${side}`} style={{ "--x": `${100 * x}%`, "--y": `${100 * y}%` }}>
+    <div class={`map-beside ${x < 0.5 ? "right" : "left"}`} style={place}>
       {children}
     </div>
   );

@@ -1,47 +1,32 @@
 /** Measures of the focused elite. */
 
-import type { ComponentChildren } from "preact";
-import type { Elite } from "../store/elites";
 import { count, number, shortId } from "../ui/format";
-import { FITNESS, type MapAxis, type Measure } from "./axes";
+import { FITNESS } from "./axes";
+import type { ArchiveViewProps } from "./binFocus";
 import { AGE } from "./colouring";
 import type { Tile } from "./projection";
 import { text } from "./text";
 
-interface Props {
+interface Props extends ArchiveViewProps {
   tile: Tile | undefined;
-  axes: readonly MapAxis[];
-  colour: Measure;
   /** Shown without a focused elite. */
   hint: string;
-  onOpen: (cell: number) => void;
-  /** Further links and buttons for an elite. */
-  actions: (elite: Elite, cell: number) => ComponentChildren;
 }
 
-export function EliteMeasures({ tile, axes, colour, hint, onOpen, actions }: Props) {
+export function EliteMeasures({ tile, hint, ...props }: Props) {
   return (
     <p id="elite-measures" class="elite-measures" aria-live="polite">
-      {tile ? (
-        <Figures {...{ tile, onOpen, actions }} measures={[...axes, colour]} />
-      ) : (
-        <span class="quiet">{hint}</span>
-      )}
+      {tile ? <Figures {...props} {...tile} /> : <span class="quiet">{hint}</span>}
     </p>
   );
 }
 
-interface FiguresProps extends Pick<Props, "onOpen" | "actions"> {
-  tile: Tile;
-  measures: readonly Measure[];
-}
-
-function Figures({ tile: { elite, cell, hidden }, measures, onOpen, actions }: FiguresProps) {
-  const shown = new Map(measures.map((measure) => [measure.name, measure]));
-  for (const name of [FITNESS, AGE]) shown.delete(name);
+function Figures({ elite, cell, hidden, axes, colouring, onOpen, actions }: ArchiveViewProps & Tile) {
+  const measures = new Map([...axes, colouring.measure].map((measure) => [measure.name, measure]));
+  for (const name of [FITNESS, AGE]) measures.delete(name);
   const figures = [
     [text.fitness, number(elite.fitness)],
-    ...[...shown.values()].map(({ title, valueOf }) => [title, number(valueOf(elite))]),
+    ...[...measures.values()].map(({ title, valueOf }) => [title, number(valueOf(elite))]),
     [text.generation, elite.generation],
   ];
   return (

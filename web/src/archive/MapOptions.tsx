@@ -1,24 +1,25 @@
-/** The choice of the axes of the map, of its coloured measure and of the palette. */
+/** Choices of the map: its axes, coloured measure and palette, and ranges of the other descriptors. */
 
 import type { Archive } from "../api/types";
+import { valueAt } from "../charts/plot/scale";
 import { setQuery } from "../store/router";
 import { PALETTES } from "../ui/colours";
-import { count, words } from "../ui/format";
+import { count, number, words } from "../ui/format";
 import { Select } from "../ui/Select";
-import type { ArchiveView } from "./archiveView";
-import { choicesOf } from "./axes";
+import { type ArchiveView, setSlice } from "./archiveView";
+import { type MapAxis, choicesOf, scaleOf } from "./axes";
 import { coloursOf } from "./colouring";
+import type { Slice } from "./projection";
 import { text } from "./text";
 
 const PALETTE_CHOICES = PALETTES.map((name) => [name, words(name)] as const);
 
-export function MapOptions({
-  archive,
-  view: { axes, colour, palette },
-}: {
+interface Props {
   archive: Archive;
   view: ArchiveView;
-}) {
+}
+
+export function MapOptions({ archive, view: { axes, colour, palette } }: Props) {
   const choices = choicesOf(archive);
   const [x, y] = [axes[0].name, axes[1].name];
   const choose = (axis: "x" | "y") => (name: string) => {
@@ -56,3 +57,42 @@ function kindOf({ kind, cells, axes }: Archive): string {
   if (kind === "cvt") return text.voronoi(count(cells), axes.length);
   return axes.length === 2 ? "" : text.grid(count(cells), axes.length);
 }
+
+/** Ranges of the descriptors that are not axes of the map. */
+export function Slices({ slices }: { slices: Slice[] }) {
+  if (slices.length === 0) return null;
+  return (
+    <div class="row slices">
+      {slices.map((slice) => (
+        <SliceControl key={slice.axis.name} {...slice} />
+      ))}
+    </div>
+  );
+}
+
+function SliceControl({ axis, from, to }: Slice) {
+  const all = from === 0 && to === axis.bins - 1;
+  const [low, high] = [number(edgeOf(axis, from)), number(edgeOf(axis, to + 1))];
+  const ends = [
+    [text.sliceFrom, low, from, (value: number) => setSlice(axis, value, Math.max(value, to))],
+    [text.sliceTo, high, to, (value: number) => setSlice(axis, Math.min(from, value), value)],
+  ] as const;
+  return (
+    <fieldset class="slice">
+      <legend class="quiet small">{axis.title}</legend>
+      {ends.map(([label, raw, value, move], i) => (
+        <input
+          key={i}
+          {...{ type: "range", min: 0, max: axis.bins - 1, value }}
+          aria-label={label(axis.title)}
+          aria-valuetext={raw}
+          onInput={(event) => move(event.currentTarget.valueAsNumber)}
+        />
+      ))}
+      <output class="quiet small">{all ? text.wholeRange : text.range(low, high, axis.unit)}</output>
+    </fieldset>
+  );
+}
+
+/** The raw value at the start of a bin. */
+const edgeOf = (axis: MapAxis, bin: number) => valueAt(scaleOf(axis), bin / axis.bins);

@@ -4,13 +4,13 @@ import { useMemo } from "preact/hooks";
 import { sharedSlug } from "../api/address";
 import type { Run } from "../api/types";
 import { useRefusal } from "../store/principal";
-import { parseCells, formatCells } from "../store/cellRanges";
+import { parseCells, formatCells } from "../store/draft";
 import type { Elites } from "../store/elites";
 import { setQuery } from "../store/router";
 import { type Selection, type CellSet, cellsIn, toggle } from "./selection";
 import type { Projection } from "./projection";
 import { count } from "../ui/format";
-import { ForkLink } from "../ui/ForkLink";
+import { ForkLink } from "../ui/links";
 import { text } from "./text";
 
 const setSelection = (selected: CellSet) =>

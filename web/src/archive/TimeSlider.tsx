@@ -35,9 +35,8 @@ export function TimeSlider({ last, at, ready, onMove }: Props) {
     } else if (generation !== at) onMove(generation);
   }, [position, playing, ready]);
   const play = () => {
-    const begin = at === null ? 0 : at;
-    setPosition(begin);
-    onMove(begin);
+    setPosition(at ?? 0);
+    onMove(at ?? 0);
     setPlaying(true);
   };
   const scrub = (generation: number) => {
@@ -61,7 +60,9 @@ export function TimeSlider({ last, at, ready, onMove }: Props) {
         disabled={last === 0}
         onScrub={scrub}
       />
-      <output class="moment">{at !== null && !ready ? text.loading : text.moment(count(shown))}</output>
+      <output class="moment quiet small">
+        {at !== null && !ready ? text.loading : text.moment(count(shown))}
+      </output>
       <button class="small-button" disabled={at === null} onClick={() => scrub(last)}>
         {text.newest}
       </button>

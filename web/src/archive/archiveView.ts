@@ -5,29 +5,13 @@ import type { Archive, Run } from "../api/types";
 import { type Elites, walkThrough } from "../store/elites";
 import { useCentroids, useMeasures, useHistory } from "../store/fetch";
 import { setQuery } from "../store/router";
-import { type Measures, type MapAxis, FITNESS, axisOf, missingOf, namesOf } from "./axes";
-import { type Colouring, AGE, colourMeasure, colouringOf, coloursOf } from "./colouring";
+import { type MapAxis, FITNESS, axisOf, missingOf, namesOf } from "./axes";
+import { AGE, colourMeasure, colouringOf, coloursOf } from "./colouring";
 import { type Layout, voronoiLayout } from "./layout";
-import { type Projection, type Slice, project } from "./projection";
-import { type Palette, PALETTES } from "../ui/colours";
+import { type Slice, project } from "./projection";
+import { PALETTES } from "../ui/colours";
 
-export interface ArchiveView {
-  axes: readonly [MapAxis, MapAxis];
-  /** Ranges of the archive's axes that are not shown. */
-  slices: Slice[];
-  colour: string;
-  palette: Palette;
-  elites: Elites;
-  generation: number;
-  /** False while the history is loaded. */
-  ready: boolean;
-  /** The error if the history could not be loaded. */
-  error: string | null;
-  map: Projection;
-  /** The projection onto even bins, also if the map shows Voronoi cells. */
-  grid: Projection;
-  colouring: Colouring;
-}
+export type ArchiveView = ReturnType<typeof useArchiveView>;
 
 /** `at` is a generation of the past; null for the newest. */
 export function useArchiveView(
@@ -36,9 +20,9 @@ export function useArchiveView(
   live: Elites,
   query: URLSearchParams,
   at: number | null,
-): ArchiveView {
+) {
   const [x, y] = namesOf(archive, query.get("x"), query.get("y"));
-  const colour = colourOf(archive, query.get("colour"));
+  const colour = coloursOf(archive).find(([name]) => name === query.get("colour"))?.[0] ?? FITNESS;
   const palette = PALETTES.find((name) => name === query.get("palette")) ?? PALETTES[0]!;
   const names = missingOf(archive, [x, y, colour]).filter((name) => name !== AGE);
   const now = useMeasures(run.id, names, live);
@@ -47,16 +31,17 @@ export function useArchiveView(
   const walk = useMemo(() => past && walkThrough(past.history), [past]);
   const elites = useMemo(() => (at !== null && walk ? walk(at) : live), [at, walk, live]);
   // Axes follow the newest elites, so that they stay while the history is played.
-  const axes = useMemo(() => axesOf([x, y], archive, live, measures), [x, y, archive, live, measures]);
-  const requested = hiddenAxes(archive, x, y)
-    .map(({ name }) => query.get(`only.${name}`))
-    .join();
+  const axis = (name: string) => axisOf(name, archive, live, measures);
+  const axes = useMemo(() => [axis(x), axis(y)] as const, [x, y, archive, live, measures]);
+  const hidden = archive.axes.map(({ name }) => name).filter((name) => name !== x && name !== y);
+  const requested = hidden.map((name) => query.get(`only.${name}`)).join();
   const slices = useMemo(
-    () => hiddenAxes(archive, x, y).map(({ name }) => sliceOf(axisOf(name, archive, live, measures), query)),
+    () => hidden.map((name) => sliceOf(axis(name), query)),
     [x, y, archive, live, measures, requested],
   );
   const cells = useCells(run.id, archive, [x, y]);
   const map = useMemo(() => project(elites, axes, slices, cells), [elites, axes, slices, cells]);
+  // The projection onto even bins, also if the map shows Voronoi cells.
   const grid = useMemo(() => (cells ? project(elites, axes, slices) : map), [map, cells]);
   const generation = at ?? run.generation;
   const colouring = useMemo(() => {
@@ -68,18 +53,6 @@ export function useArchiveView(
   return { axes, slices, colour, palette, elites, generation, ready, error, map, grid, colouring };
 }
 
-function colourOf(archive: Archive, requested: string | null): string {
-  return coloursOf(archive).some(([name]) => name === requested) ? requested! : FITNESS;
-}
-
-function axesOf([x, y]: [string, string], archive: Archive, elites: Elites, measures: Measures) {
-  const axis = (name: string) => axisOf(name, archive, elites, measures);
-  return [axis(x), axis(y)] as const;
-}
-
-const hiddenAxes = ({ axes }: Archive, x: string, y: string) =>
-  axes.filter(({ name }) => name !== x && name !== y);
-
 /** The bins in the address, `3-7`; by default all. */
 function sliceOf(axis: MapAxis, query: URLSearchParams): Slice {
   const [, from, to] = /^(\d+)-(\d+)$/.exec(query.get(`only.${axis.name}`) ?? "") ?? [];
@@ -89,7 +62,7 @@ function sliceOf(axis: MapAxis, query: URLSearchParams): Slice {
   return { axis, from: low, to: Math.max(low, Math.min(last, Number(to))) };
 }
 
-export function setSlice({ axis }: Slice, from: number, to: number): void {
+export function setSlice(axis: MapAxis, from: number, to: number): void {
   const all = from === 0 && to === axis.bins - 1;
   setQuery({ [`only.${axis.name}`]: all ? null : `${from}-${to}` });
 }

@@ -6,7 +6,7 @@ import { type Elite, fittest } from "../store/elites";
 import type { MapAxis } from "./axes";
 import type { Colouring } from "./colouring";
 import { type Direction, type Layout, isDirection, nextBin } from "./layout";
-import type { Projection, Tile, Tiles } from "./projection";
+import type { Projection, Tiles } from "./projection";
 import { type Selection, selectByKey } from "./selection";
 
 /** Props of both map and gallery. */
@@ -22,25 +22,16 @@ export interface ArchiveViewProps extends Selection {
   actions: (elite: Elite, cell: number) => ComponentChildren;
 }
 
-interface BinFocus {
-  hovered: number | null;
-  setHovered: (bin: number | null) => void;
-  /** The bin of the marked cell. */
-  from: number | null;
-  /** The bin under the pointer, or the marked one, and its tile. */
-  focused: number | null;
-  tile: Tile | undefined;
-  press: (event: KeyboardEvent) => void;
-}
-
 /** `onMove` gets the bin after an arrow key. */
 export function useBinFocus(
   { projection, marked, selected, onSelect, onMark, onOpen }: ArchiveViewProps,
   onMove?: (bin: number) => void,
-): BinFocus {
+) {
   const { layout, tiles, bins } = projection;
   const [hovered, setHovered] = useState<number | null>(null);
+  /** The bin of the marked cell. */
   const from = marked === null ? null : (bins.get(marked) ?? null);
+  /** The bin under the pointer, or the marked one. */
   const focused = hovered !== null && tiles.has(hovered) ? hovered : from;
   const tile = focused === null ? undefined : tiles.get(focused);
   const press = (event: KeyboardEvent) => {
@@ -62,4 +53,11 @@ export function useBinFocus(
 function binByKey(key: Direction, from: number | null, tiles: Tiles, layout: Layout) {
   if (from !== null) return nextBin(from, key, tiles.keys(), layout);
   return fittest([...tiles].map(([bin, { elite }]) => [bin, elite] as const))?.[0] ?? null;
+}
+
+/** The bin at the pointer, if it has an elite; the element has the size of the map. */
+export function tileUnder(event: MouseEvent, element: Element, { layout, tiles }: Projection) {
+  const { left, top, width, height } = element.getBoundingClientRect();
+  const bin = layout.at((event.clientX - left) / width, (event.clientY - top) / height);
+  return bin !== null && tiles.has(bin) ? bin : null;
 }

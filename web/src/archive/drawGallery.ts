@@ -1,14 +1,13 @@
 /** Draw the visible part of a gallery at one moment. */
 
-import type { Motion } from "../decode/motion";
-import { type Size, prepare } from "../ui/canvas";
+import type { Motion } from "../decode/replay";
+import { type Size, type Theme, prepare } from "../ui/canvas";
 import { css, sequential } from "../ui/colours";
-import type { Theme } from "../ui/theme";
 import { type Colouring, colourPosition } from "./colouring";
-import { FADED } from "./drawMap";
-import { type Shape, cornerOf } from "./geometry";
+import { type Shape, cornerOf } from "./layout";
+import { FADED } from "./mapCanvas";
 import type { Tiles } from "./projection";
-import { traceBody } from "../replay/bodyPath";
+import { BODY_INK, traceBody } from "../replay/bodyPath";
 
 export interface GalleryPicture {
   shape: Shape;
@@ -25,8 +24,8 @@ export interface GalleryPicture {
 }
 
 const INKS = {
-  light: { body: "#12222c", quiet: "rgb(18 34 44 / 0.3)", tint: 0.3 },
-  dark: { body: "#fdf8ec", quiet: "rgb(240 244 246 / 0.3)", tint: 0.38 },
+  light: { body: BODY_INK.light, quiet: "rgb(18 34 44 / 0.3)", tint: 0.3 },
+  dark: { body: BODY_INK.dark, quiet: "rgb(240 244 246 / 0.3)", tint: 0.38 },
 };
 
 /** `share` is the elapsed share of the replays; the window starts at `left` and `top` of the gallery. */

@@ -4,8 +4,7 @@ import type { Axis } from "../api/types";
 import type { Elite, Elites } from "../store/elites";
 import { positionOf } from "../charts/plot/scale";
 import { type MapAxis, scaleOf } from "./axes";
-import { type Shape, cellOf } from "./geometry";
-import { type Layout, gridLayout } from "./layout";
+import { type Layout, type Shape, cellOf, gridLayout } from "./layout";
 
 export interface Tile {
   cell: number;
@@ -42,7 +41,8 @@ export function project(
   const bins = new Map<number, number>();
   for (const [cell, elite] of elites) {
     if (!slices.every((slice) => passes(slice, cell, elite))) continue;
-    const bin = cells ? cell : binOfBoth(x, y, cell, elite, shape);
+    const [i, j] = [binOn(x, cell, elite), binOn(y, cell, elite)];
+    const bin = cells ? cell : i === null || j === null ? null : cellOf({ i, j }, shape);
     if (bin === null) continue;
     bins.set(cell, bin);
     const shown = tiles.get(bin);
@@ -57,11 +57,6 @@ export function project(
 function passes({ axis, from, to }: Slice, cell: number, elite: Elite): boolean {
   const bin = binOn(axis, cell, elite);
   return bin !== null && bin >= from && bin <= to;
-}
-
-function binOfBoth(x: MapAxis, y: MapAxis, cell: number, elite: Elite, shape: Shape) {
-  const [i, j] = [binOn(x, cell, elite), binOn(y, cell, elite)];
-  return i === null || j === null ? null : cellOf({ i, j }, shape);
 }
 
 function binOn(axis: MapAxis, cell: number, elite: Elite): number | null {

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { Principal } from "../api/types";
 import { refusalOf } from "../store/principal";
-import { parseCells, formatCells } from "../store/cellRanges";
+import { parseCells, formatCells } from "../store/draft";
 import { binsOf, binsWithin, cellsIn, selectByKey, toggle } from "./selection";
 import { gridLayout } from "./layout";
 import type { Projection } from "./projection";

@@ -2,7 +2,6 @@
 
 import type { Projection, Tiles } from "./projection";
 import type { Layout, Spot } from "./layout";
-import { text } from "./text";
 
 /** Cells of the archive. */
 export type CellSet = ReadonlySet<number>;
@@ -34,9 +33,6 @@ export function toggle(selected: CellSet, cells: CellSet): CellSet {
   const all = [...cells].every((cell) => selected.has(cell));
   return all ? new Set([...selected].filter((cell) => !cells.has(cell))) : union(selected, cells);
 }
-
-/** A description of the keys for screen readers. */
-export const keyHelp = ({ onSelect }: Pick<Selection, "onSelect">): string => text.keyHelp(onSelect !== null);
 
 /** The selection after a key; null if the key does not change it. */
 export function selectByKey(

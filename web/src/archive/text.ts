@@ -1,5 +1,8 @@
 /** Texts of the archive: map, gallery, slider and tour. */
 
+const keyHelp = (select: boolean) =>
+  `Enter opens one${select ? ", Space selects it, Shift with arrows selects several, Escape clears the selection." : "."}`;
+
 export const text = {
   forkCreature: "Start a new run from this creature",
   archive: "Archive",
@@ -8,7 +11,7 @@ export const text = {
   map: "Map",
   gallery: "Gallery",
   view: "View of the archive",
-  mapLabel: (keys: string) => `Archive map. Arrow keys move between elites, ${keys}`,
+  mapLabel: (select: boolean) => `Archive map. Arrow keys move between elites, ${keyHelp(select)}`,
   across: "Horizontal axis",
   up: "Vertical axis",
   voronoi: (cells: string, axes: number) => `${cells} Voronoi cells over ${axes} descriptors`,
@@ -25,7 +28,7 @@ export const text = {
   bestOf: "best of",
   here: "in this cell",
   tileSize: "Tile size",
-  galleryLabel: (keys: string) => `Gallery. Arrow keys move between creatures, ${keys}`,
+  galleryLabel: (select: boolean) => `Gallery. Arrow keys move between creatures, ${keyHelp(select)}`,
   galleryHint: "Point at a creature to read its measures. Click it to open it.",
   select: "Select",
   creatures: (count: string, generation: string | null) =>
@@ -68,8 +71,6 @@ export const text = {
   tourOpen: "Open a creature",
   tourOpenAbout:
     "Click a cell to open its creature: replay, network and parents. The gallery shows all creatures moving at once.",
-  keyHelp: (select: boolean) =>
-    `Enter opens one${select ? ", Space selects it, Shift with arrows selects several, Escape clears the selection." : "."}`,
   mapHint: (select: boolean) =>
     `Point at a cell to see its creature swim. Click it to open it.${select ? " Drag over several cells to select them." : ""}`,
 };

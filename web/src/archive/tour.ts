@@ -8,7 +8,7 @@ import type { Step } from "../ui/Tour";
 import type { ArchiveView } from "./archiveView";
 import { text } from "./text";
 
-const STORAGE_KEY = "microcosmos:guided";
+const STORAGE_KEY = "microcosmos:tour-taken";
 
 /** True if this browser has shown the tour; false if it forbids storage. */
 export function hasTakenTour(): boolean {
@@ -16,14 +16,6 @@ export function hasTakenTour(): boolean {
     return localStorage.getItem(STORAGE_KEY) !== null;
   } catch {
     return false;
-  }
-}
-
-function rememberTour(): void {
-  try {
-    localStorage.setItem(STORAGE_KEY, "1");
-  } catch {
-    // The tour is offered again.
   }
 }
 
@@ -39,8 +31,12 @@ export function useTour(run: Run) {
     setOpen(true);
   };
   const end = () => {
-    rememberTour();
     setOpen(false);
+    try {
+      localStorage.setItem(STORAGE_KEY, "1");
+    } catch {
+      // The tour is offered again.
+    }
   };
   return { open, requested, begin, end };
 }
@@ -49,38 +45,16 @@ export function stepsOf(run: Run, archive: Archive, { axes, elites, colouring }:
   const best = fittest(elites)?.[1];
   const [x, y] = axes.map(({ title }) => title.toLowerCase());
   const running = run.status === "running" || run.status === "queued";
-  return [
-    {
-      title: text.tourBest,
-      text: text.tourBestAbout(count(elites.size), count(archive.cells)),
-      about: "map",
-      selector: ".map-plot, .gallery-port",
-    },
-    {
-      title: text.tourKind,
-      text: text.tourKindAbout(x!, y!),
-      about: "axes",
-      selector: ".axis-x",
-    },
-    {
-      title: text.tourColour,
-      text: best
-        ? text.tourColourAbout(colouring.measure.title.toLowerCase(), best.generation, number(best.fitness))
-        : text.tourNoColour,
-      about: "legend",
-      selector: ".legend",
-    },
-    {
-      title: running ? text.tourLive : text.tourHistory,
-      text: running ? text.tourLiveAbout : text.tourHistoryAbout(count(run.generation)),
-      about: "time",
-      selector: ".time-slider",
-    },
-    {
-      title: text.tourOpen,
-      text: text.tourOpenAbout,
-      about: "views",
-      selector: ".archive-head",
-    },
-  ];
+  const colour = colouring.measure.title.toLowerCase();
+  const aboutColour = best && text.tourColourAbout(colour, best.generation, number(best.fitness));
+  const aboutTime = running ? text.tourLiveAbout : text.tourHistoryAbout(count(run.generation));
+  const cells = text.tourBestAbout(count(elites.size), count(archive.cells));
+  const steps = [
+    ["map", ".map-plot, .gallery-port", text.tourBest, cells],
+    ["axes", ".axis-x", text.tourKind, text.tourKindAbout(x!, y!)],
+    ["legend", ".legend", text.tourColour, aboutColour ?? text.tourNoColour],
+    ["time", ".time-slider", running ? text.tourLive : text.tourHistory, aboutTime],
+    ["views", ".archive-head", text.tourOpen, text.tourOpenAbout],
+  ] as const;
+  return steps.map(([about, selector, title, text]) => ({ about, selector, title, text }));
 }

@@ -1,7 +1,7 @@
 /** The physics audit of a creature: start it, wait for it, show its result. */
 
 import * as api from "../api/client";
-import type { Audit, AuditRow } from "../api/types";
+import type { AuditRow } from "../api/types";
 import { usePolled } from "../store/polling";
 import { setQuery } from "../store/router";
 import { number } from "../ui/format";
@@ -9,18 +9,10 @@ import { type Column, Table } from "../ui/Table";
 import { CheckCard } from "./CheckCard";
 import { text } from "./text";
 
-interface Props {
-  sha: string;
-  query: URLSearchParams;
-}
-
-export function AuditCard({ sha, query }: Props) {
+export function AuditCard({ sha, query }: { sha: string; query: URLSearchParams }) {
   const requested = query.has("audit");
-  const {
-    value: audit,
-    note,
-    error,
-  } = usePolled(requested ? () => api.readAudit(sha) : null, [sha, requested]);
+  const polled = usePolled(requested ? () => api.readAudit(sha) : null, [sha, requested]);
+  const { value: audit, note, error } = polled;
   return (
     <CheckCard
       {...{ note, error }}
@@ -32,18 +24,14 @@ export function AuditCard({ sha, query }: Props) {
       running={requested && !audit ? text.auditing : null}
     >
       {!requested && <p class="quiet small">{text.auditAbout}</p>}
-      {audit && <p class="reasons">{textOf(audit)}</p>}
       {audit && (
-        <Table label={text.auditFigures} columns={COLUMNS} rows={audit.rows} keyOf={({ name }) => name} />
+        <>
+          <p class="reasons">{text.auditVerdict(audit.verdict.survives, audit.verdict.reasons.join("; "))}</p>
+          <Table label={text.auditFigures} columns={COLUMNS} rows={audit.rows} keyOf={({ name }) => name} />
+        </>
       )}
     </CheckCard>
   );
-}
-
-function textOf({ verdict: { survives, reasons } }: Audit): string {
-  const start = survives ? text.auditPassed : text.auditFailed;
-  if (reasons.length === 0) return `${start}.`;
-  return text.auditReasons(start, survives, reasons.join("; "));
 }
 
 const SIGNS = { true: ["✓", text.passed], false: ["✕", text.failed], null: ["", ""] } as const;

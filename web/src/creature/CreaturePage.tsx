@@ -6,19 +6,15 @@ import { sharedSlug } from "../api/address";
 import type { Creature, Spec } from "../api/types";
 import type { Replay } from "../decode/replay";
 import { useFetched } from "../store/fetch";
-import { setQuery } from "../store/router";
 import { number, shortId, words } from "../ui/format";
-import { isForceFree } from "../ui/coupling";
-import { Page, useTitle } from "../ui/Page";
-import { reasonOf } from "../ui/NotFound";
-import { NotForceFree } from "../ui/NotForceFree";
+import { NotForceFree, isForceFree } from "../ui/coupling";
+import { Page, reasonOf, useTitle } from "../ui/Page";
 import { ReplayPlayer } from "../replay/ReplayPlayer";
-import { replayViewOf, queryOf } from "../replay/replayView";
 import { newMoment } from "../replay/moment";
 import { AuditCard } from "./AuditCard";
 import { FactsCard } from "./FactsCard";
 import { FamilyCard } from "./FamilyCard";
-import { ForkLink } from "../ui/ForkLink";
+import { ForkLink } from "../ui/links";
 import { GenomeCard } from "./GenomeCard";
 import { Downloads } from "./Downloads";
 import { RemeasureCard } from "./RemeasureCard";
@@ -31,11 +27,11 @@ import "./creature.css";
 import "./details.css";
 
 interface Props {
-  sha: string;
+  id: string;
   query: URLSearchParams;
 }
 
-export function CreaturePage({ sha, query }: Props) {
+export function CreaturePage({ id: sha, query }: Props) {
   const { value: creature, error } = useFetched(() => api.readCreature(sha), [sha]);
   useTitle(text.title(shortId(sha)));
   const run = query.get("run");
@@ -74,13 +70,7 @@ export function CreatureView({ creature, query }: { creature: Creature; query: U
         <div class="motion stack">
           <section class="card" aria-label={text.replay}>
             <ReplayStatus {...rendering} what={text.recording} />
-            {replay && (
-              <ReplayPlayer
-                {...{ films, moment }}
-                view={replayViewOf(query)}
-                onLook={(change) => setQuery(queryOf(change))}
-              />
-            )}
+            {replay && <ReplayPlayer {...{ films, moment, query }} />}
             {replay && swims(creature) && <ReplayFitness replay={replay} task={identity.task} />}
             <Downloads sha={sha} />
           </section>

@@ -1,13 +1,19 @@
 /** Downloads of a creature; films are rendered on request. */
 
 import { useEffect, useState } from "preact/hooks";
-import { renderingReady, save } from "../api/files";
-import { type PictureFormat, creatureFileUrl, creatureH5Url, pictureUrl } from "../api/urls";
+import {
+  type PictureFormat,
+  renderingReady,
+  save,
+  creatureFileUrl,
+  creatureH5Url,
+  pictureUrl,
+} from "../api/files";
 import { sharedSlug } from "../api/address";
 import { poll } from "../store/polling";
 import { showFailure, showToast } from "../store/toasts";
 import { copyText } from "../ui/clipboard";
-import { FileLink } from "../ui/FileLink";
+import { FileLink } from "../ui/links";
 import { text } from "./text";
 
 const KINDS: [PictureFormat, string][] = [

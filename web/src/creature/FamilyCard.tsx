@@ -30,7 +30,7 @@ export function FamilyCard({ creature, query }: Props) {
   const hrefOf = (name: string) =>
     sharedSlug && !run ? null : pageUrl(`/creatures/${name}${run ? `?run=${run}` : ""}`);
   const credited = value ? creditOf(value[0].items, creature) : [];
-  const lost = value?.[0].items.some(({ kept }) => !kept);
+  const unstored = value?.[0].items.some(({ kept }) => !kept);
   const more = value?.[0].more && back < MAX_DEPTH && (
     <button onClick={() => setQuery({ back: String(back + DEPTH_STEP) })}>{text.moreAncestors}</button>
   );
@@ -47,9 +47,9 @@ export function FamilyCard({ creature, query }: Props) {
       )}
       {tree && tree.relatives.length > 1 && <FamilyTree {...{ tree, hrefOf }} self={sha} />}
       {credited.length > 0 && <p class="quiet small">{text.creditAncestors(credited.join(", "))}</p>}
-      {tree && (lost || tree.hidden > 0) && (
+      {tree && (unstored || tree.hidden > 0) && (
         <p class="quiet small">
-          {lost && text.dashed}
+          {unstored && text.dashed}
           {tree.hidden > 0 && text.hiddenChildren(count(tree.hidden))}
         </p>
       )}

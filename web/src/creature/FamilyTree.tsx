@@ -2,8 +2,8 @@
 
 import type { Relative } from "../api/types";
 import { number, shortId } from "../ui/format";
-import { px } from "../ui/px";
-import { ROW_HEIGHT, type PlacedRelative, type FamilyLayout, COLUMN_WIDTH } from "./relatives";
+import { px } from "../ui/canvas";
+import { type PlacedRelative, type FamilyLayout, ROW_HEIGHT, COLUMN_WIDTH } from "./relatives";
 import { text } from "./text";
 
 interface Props {
@@ -80,7 +80,7 @@ function Name({ relative, most, own, href }: NameProps) {
   const { creature, kept, fitness } = relative;
   const title = aboutOf(relative);
   const common = {
-    class: `family-name ${own ? "own" : kept ? "" : "lost"}`,
+    class: `family-name ${own ? "own" : kept ? "" : "unstored"}`,
     title,
     children: (
       <>

@@ -1,13 +1,16 @@
 /** Numeric genes from −1 to 1 as bars. */
 
 import { useMemo } from "preact/hooks";
+import type { Vector } from "../api/types";
+import { decodeFloats } from "../decode/floats";
 import { count, number, percent } from "../ui/format";
 import { text } from "./text";
 
 /** With more genes, each bar shows the largest of several. */
 const MAX_BARS = 400;
 
-export function GeneStrip({ values }: { values: Float32Array }) {
+export function GeneStrip({ genes }: { genes: Vector }) {
+  const values = useMemo(() => decodeFloats(genes.values), [genes]);
   const bars = useMemo(() => barsOf(values), [values]);
   const size = values.reduce((sum, value) => sum + Math.abs(value), 0) / (values.length || 1);
   const bound = values.filter((value) => Math.abs(value) >= 1).length / (values.length || 1);

@@ -1,9 +1,8 @@
 /** The genome of a creature: a network, or a row of numbers. */
 
 import { useMemo, useState } from "preact/hooks";
-import { type NetworkFormat, networkUrl } from "../api/urls";
+import { type NetworkFormat, networkUrl } from "../api/files";
 import type { Creature, Spec, Vector } from "../api/types";
-import { decodeFloats } from "../decode/floats";
 import { layeredOf } from "../decode/layers";
 import { type Network as Graph, networkOf } from "../decode/network";
 import { GeneStrip } from "./GeneStrip";
@@ -11,10 +10,10 @@ import { NetworkGraph } from "./NetworkGraph";
 import { NetworkOutputs } from "./NetworkOutputs";
 import type { Moment } from "../replay/moment";
 import { Card } from "../ui/Page";
-import { FileLink } from "../ui/FileLink";
+import { FileLink } from "../ui/links";
 import { text } from "./text";
 
-const FORMS: [NetworkFormat, string][] = [
+const FORMATS: [NetworkFormat, string][] = [
   ["svg", "SVG"],
   ["dot", "DOT"],
   ["py", "Python"],
@@ -35,7 +34,13 @@ export function GenomeCard({ creature, ...shown }: Props) {
     return "values" in genome ? layeredOf(genome) : null;
   }, [genome]);
   if (genome.encoding === "gait" || genome.encoding === "fold") return null;
-  if (!network) return <Numbers genes={genome as Vector} />;
+  if (!network) {
+    return (
+      <Card id="genes" title={text.genes}>
+        <GeneStrip genes={genome as Vector} />
+      </Card>
+    );
+  }
   const files = "nodes" in genome ? creature.sha256 : null;
   return <Network {...shown} {...{ network, files }} control={genome.control} steps={Number(task.steps)} />;
 }
@@ -49,28 +54,19 @@ interface NetworkProps extends Omit<Props, "creature"> {
 }
 
 function Network({ network, files, ...rest }: NetworkProps) {
-  const [selected, choose] = useState<number | null>(null);
+  const [selected, setSelected] = useState<number | null>(null);
   return (
     <Card id="network" title={text.network}>
-      <NetworkGraph network={network} selected={selected} onSelect={choose} />
+      <NetworkGraph network={network} selected={selected} onSelect={setSelected} />
       <NetworkOutputs {...rest} {...{ network, selected }} />
       {files && (
         <p class="links network-files">
           <span class="quiet small">{text.download}</span>
-          {FORMS.map(([form, title]) => (
-            <FileLink key={form} url={networkUrl(files, form)} name={title} />
+          {FORMATS.map(([format, title]) => (
+            <FileLink key={format} url={networkUrl(files, format)} name={title} />
           ))}
         </p>
       )}
-    </Card>
-  );
-}
-
-function Numbers({ genes }: { genes: Vector }) {
-  const values = useMemo(() => decodeFloats(genes.values), [genes]);
-  return (
-    <Card id="genes" title={text.genes}>
-      <GeneStrip values={values} />
     </Card>
   );
 }

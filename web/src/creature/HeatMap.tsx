@@ -4,7 +4,7 @@ import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { ColourBar } from "../ui/ColourBar";
 import { css, diverging, table } from "../ui/colours";
 import type { Moment } from "../replay/moment";
-import { useTheme } from "../ui/theme";
+import { useTheme } from "../ui/canvas";
 import { text } from "./text";
 
 export interface Cells {

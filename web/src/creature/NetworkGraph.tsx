@@ -21,7 +21,7 @@ interface Props {
 
 export function NetworkGraph({ network, selected = null, onSelect }: Props) {
   const { width, height, spots } = useMemo(() => layoutOf(network), [network]);
-  const strongest = Math.max(1e-9, ...network.links.map(({ weight }) => Math.abs(weight)));
+  const largest = Math.max(1e-9, ...network.links.map(({ weight }) => Math.abs(weight)));
   const enabled = network.links.filter((link) => link.enabled).length;
   const summary = text.networkSummary(network.neurons.length, enabled);
   return (
@@ -31,19 +31,14 @@ export function NetworkGraph({ network, selected = null, onSelect }: Props) {
           viewBox={`0 0 ${width} ${height}`}
           style={{ maxWidth: `${MAX_SCALE * width}px`, minWidth: `${MIN_SCALE * width}px` }}
           role={onSelect ? "group" : "img"}
-          class={selected === null ? "" : "choosing"}
+          class={selected === null ? "" : "has-selection"}
           aria-label={text.networkLabel(summary)}
         >
           {network.links.map((link, i) => (
-            <Wire key={i} link={link} spots={spots} strongest={strongest} into={link.target === selected} />
+            <Wire key={i} {...{ link, spots, largest }} into={link.target === selected} />
           ))}
           {[...spots.values()].map((spot) => (
-            <Node
-              key={spot.neuron.id}
-              spot={spot}
-              selected={spot.neuron.id === selected}
-              onSelect={onSelect}
-            />
+            <Node key={spot.neuron.id} {...{ ...spot, onSelect }} selected={spot.neuron.id === selected} />
           ))}
         </svg>
       </div>
@@ -53,7 +48,7 @@ export function NetworkGraph({ network, selected = null, onSelect }: Props) {
         <span class="key off">{text.disabled}</span>
         <span class="quiet">
           {summary}
-          {text.widthMeans(number(strongest, 2))}
+          {text.widthMeans(number(largest, 2))}
         </span>
       </figcaption>
     </figure>
@@ -63,18 +58,18 @@ export function NetworkGraph({ network, selected = null, onSelect }: Props) {
 interface WireProps {
   link: Link;
   spots: Map<number, Spot>;
-  strongest: number;
+  largest: number;
   into: boolean;
 }
 
-function Wire({ link, spots, strongest, into }: WireProps) {
+function Wire({ link, spots, largest, into }: WireProps) {
   const [from, to] = [spots.get(link.source), spots.get(link.target)];
   if (!from || !to) return null;
   return (
     <path
       class={`wire ${link.weight < 0 ? "negative" : ""} ${link.enabled ? "" : "off"} ${into ? "into" : ""}`}
       d={pathOf(from, to)}
-      stroke-width={0.75 + (4.5 * Math.abs(link.weight)) / strongest}
+      stroke-width={0.75 + (4.5 * Math.abs(link.weight)) / largest}
     >
       <title>{text.weight(number(link.weight), link.enabled)}</title>
     </path>
@@ -92,24 +87,21 @@ function pathOf(from: Spot, to: Spot): string {
   return `M${from.x},${from.y} C${a},${from.y} ${b},${to.y} ${to.x},${to.y}`;
 }
 
-interface NodeProps {
-  spot: Spot;
+interface NodeProps extends Spot, Pick<Props, "onSelect"> {
   selected: boolean;
-  onSelect?: (id: number) => void;
 }
 
-function Node({ spot, selected, onSelect }: NodeProps) {
-  const { neuron, x, y } = spot;
-  const choose = () => onSelect?.(neuron.id);
-  const named = `${neuron.label || text.node(neuron.id)} ${neuron.activation}`;
+function Node({ neuron, x, y, selected, onSelect }: NodeProps) {
+  const select = () => onSelect?.(neuron.id);
+  const name = neuron.label || text.node(neuron.id);
   const widget = onSelect && {
     tabIndex: 0,
     role: "button" as const,
     "aria-pressed": selected,
-    "aria-label": text.showOutput(named),
-    onFocus: choose,
-    onClick: choose,
-    onPointerEnter: choose,
+    "aria-label": text.showOutput(`${name} ${neuron.activation}`),
+    onFocus: select,
+    onClick: select,
+    onPointerEnter: select,
   };
   const beside = neuron.role === "input" ? -1 : 1;
   return (
@@ -118,9 +110,7 @@ function Node({ spot, selected, onSelect }: NodeProps) {
       transform={`translate(${x},${y})`}
       {...widget}
     >
-      <title>
-        {text.nodeAbout(neuron.label || text.node(neuron.id), neuron.activation, number(neuron.bias))}
-      </title>
+      <title>{text.nodeAbout(name, neuron.activation, number(neuron.bias))}</title>
       <circle r={RADIUS} />
       {neuron.role !== "input" && <Curve activation={neuron.activation} />}
       {neuron.role !== "hidden" && (

@@ -7,7 +7,7 @@ import { applyResponse } from "../store/store";
 import { showFailure } from "../store/toasts";
 import { navigate } from "../store/router";
 import { ConfirmButton } from "../ui/ConfirmButton";
-import { newIdempotencyKey } from "../ui/idempotencyKey";
+import { newIdempotencyKey } from "../ui/forms";
 import { text } from "./text";
 
 interface Props {

@@ -13,9 +13,9 @@ import { CheckCard } from "./CheckCard";
 import { text } from "./text";
 
 export function RemeasureCard({ sha }: { sha: string }) {
-  const { found, idle, running, note, error, start } = useMeasurement(sha);
+  const { measurement, idle, running, note, error, start } = useMeasurement(sha);
   const refusal = useRefusal();
-  const result = found === "never" ? null : found;
+  const result = measurement === "never" ? null : measurement;
   if (sharedSlug && !result) return null; // Visitors of a share cannot start a measurement.
   const mayStart = !sharedSlug && !refusal && (idle || error !== null);
   return (
@@ -28,7 +28,7 @@ export function RemeasureCard({ sha }: { sha: string }) {
       onStart={() => void start()}
       running={running ? text.measuring : null}
     >
-      {found === "never" && <p class="quiet small">{text.measureAbout}</p>}
+      {measurement === "never" && <p class="quiet small">{text.measureAbout}</p>}
       {result && <MeasurementResult {...result} />}
     </CheckCard>
   );
@@ -36,24 +36,24 @@ export function RemeasureCard({ sha }: { sha: string }) {
 
 /** The measurement of a creature on this server, and a function that starts one. */
 function useMeasurement(sha: string) {
-  const [turn, setTurn] = useState(0);
+  const [requests, setRequests] = useState(0);
   const [starting, setStarting] = useState(false);
   const [failed, setFailed] = useState<string | null>(null);
-  const { value, answered, note, error } = usePolled(() => api.readMeasurement(sha), [sha, turn]);
+  const { value, answered, note, error } = usePolled(() => api.readMeasurement(sha), [sha, requests]);
   const start = async () => {
     setFailed(null);
     setStarting(true);
     try {
       await api.startMeasurement(sha);
-      setTurn((count) => count + 1);
+      setRequests((count) => count + 1);
     } catch (reason) {
       setFailed(messageOf(reason));
     }
     setStarting(false);
   };
   const running = starting || (answered && value === null);
-  const found = starting ? null : value;
-  return { found, idle: found !== null, running, note, error: failed ?? error, start };
+  const measurement = starting ? null : value;
+  return { measurement, idle: measurement !== null, running, note, error: failed ?? error, start };
 }
 
 const COLUMNS: Column<Measurement["figures"][number]>[] = [
@@ -74,7 +74,7 @@ function MeasurementResult({ exact, device, recorded_device, fitness, figures }:
       </p>
       {figures.length > 0 && (
         <details>
-          <summary>{figures.length === 1 ? text.oneDiffers : text.someDiffer(figures.length)}</summary>
+          <summary>{text.someDiffer(figures.length)}</summary>
           <Table label={text.differences} columns={COLUMNS} rows={figures} keyOf={({ name }) => name} />
         </details>
       )}

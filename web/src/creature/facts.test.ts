@@ -9,7 +9,7 @@ describe("a creature file", () => {
     body: { nodes: 8 },
     world: { width: 64, height: 32, viscosity: 0.05 },
   };
-  const told = (creature: Creature) =>
+  const factsOf = (creature: Creature) =>
     Object.fromEntries([...groupsOf(creature).flatMap(({ rows }) => rows), ...originOf(creature)]);
   const bare = {
     identity,
@@ -20,7 +20,7 @@ describe("a creature file", () => {
   } as unknown as Creature;
 
   it("without measures and origin says so", () => {
-    expect(told(bare)).toEqual({
+    expect(factsOf(bare)).toEqual({
       Fitness: "not measured",
       Generation: "unknown",
       Operator: "unknown",
@@ -37,7 +37,7 @@ describe("a creature file", () => {
   it("with measures shows each of them, also zeros", () => {
     const measured = { fitness: 0, descriptors: { speed: 0.5 }, measures: {}, block: 1, device: "cpu" };
     const provenance = { parents: [], operator: "random", generation: 0, seed: 0, version: "1" };
-    const facts = told({ ...bare, measured, provenance });
+    const facts = factsOf({ ...bare, measured, provenance });
     expect(facts).toMatchObject({ Fitness: "0", Speed: "0.5", Generation: "0", "Random seed": "0" });
   });
 
@@ -51,7 +51,7 @@ describe("a creature file", () => {
       device: "cpu",
     };
     const worm = { ...bare, identity: { ...identity, genome }, measured } as unknown as Creature;
-    const facts = told(worm);
+    const facts = factsOf(worm);
     expect(facts).toMatchObject({
       Swimmer: "Worm",
       Period: "600 steps",

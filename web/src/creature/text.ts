@@ -10,10 +10,8 @@ export const text = {
   auditing: "Simulating at higher resolution; this takes minutes …",
   survives: "survives",
   fails: "does not survive",
-  auditPassed: "The swimming survives refinement",
-  auditFailed: "The swimming does not survive refinement",
-  auditReasons: (verdict: string, survives: boolean, reasons: string) =>
-    `${verdict}${survives ? ", with reservations: " : ": "}${reasons}.`,
+  auditVerdict: (survives: boolean, reasons: string) =>
+    `The swimming ${survives ? "survives" : "does not survive"} refinement${survives && reasons ? ", with reservations" : ""}${reasons && `: ${reasons}`}.`,
   figure: "Figure",
   value: "Value",
   limit: "Limit",
@@ -100,8 +98,7 @@ export const text = {
   otherDevice: (device: string, recorded: string) =>
     `Device here: ${device}; recorded on ${recorded}, where rounding may differ.`,
   differences: "Numbers that differ",
-  oneDiffers: "1 number differs",
-  someDiffer: (count: number) => `${count} numbers differ`,
+  someDiffer: (count: number) => `${count} ${count === 1 ? "number differs" : "numbers differ"}`,
   number: "Number",
   recorded: "Recorded",
   here: "Here",

@@ -1,7 +1,7 @@
 /** The values of every node of a controller's network, along the body and over time. */
 
 import type { Spec } from "../api/types";
-import { type Values, advance, evaluate } from "./evaluate";
+import { type Values, advance, evaluate, incomingLinks } from "./evaluate";
 import type { Network } from "./network";
 
 /** Places along the body, and times, of a picture. */
@@ -74,11 +74,12 @@ function recurrentValues(network: Network, inputs: Inputs, steps: number, energy
   const sensed = inputs.senses ? [new Float64Array(ROWS).fill(energy)] : [];
   const values: Values = new Map(network.neurons.map(({ id }) => [id, new Float64Array(COLUMNS * ROWS)]));
   const stepOf = (column: number) => from + Math.floor(((to - from) * column) / COLUMNS);
+  const incoming = incomingLinks(network);
   let now: Values = new Map();
   let column = 0;
   for (let step = 0; step < to; step++) {
     const clock = clockAt(inputs, step, steps).map((value) => new Float64Array(ROWS).fill(value));
-    now = advance(network, now, [places, ...clock, ...sensed]);
+    now = advance(network, incoming, now, [places, ...clock, ...sensed]);
     for (; column < COLUMNS && stepOf(column) === step; column++) {
       for (const [id, row] of now) values.get(id)!.set(row, column * ROWS);
     }

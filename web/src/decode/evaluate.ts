@@ -34,8 +34,12 @@ export function evaluate(network: Network, inputs: Float64Array[]): Values {
 }
 
 /** All nodes of a recurrent network one step later; each reads the values of the step before. */
-export function advance(network: Network, before: Values, inputs: Float64Array[]): Values {
-  const incoming = incomingLinks(network);
+export function advance(
+  network: Network,
+  incoming: Incoming,
+  before: Values,
+  inputs: Float64Array[],
+): Values {
   const points = inputs[0]!.length;
   const known: Values = new Map(
     network.neurons.map(({ id, role }, i) => [
@@ -61,20 +65,17 @@ function activate({ activation, bias }: Neuron, links: Link[], values: Values, p
   return sums.map((z) => Math.min(BOUND, Math.max(-BOUND, apply(z))));
 }
 
-const cache = new WeakMap<Network, Map<number, Link[]>>();
+type Incoming = Map<number, Link[]>;
 
 /** The enabled links into each node. */
-function incomingLinks(network: Network): Map<number, Link[]> {
-  let incoming = cache.get(network);
-  if (incoming) return incoming;
-  incoming = new Map<number, Link[]>(network.neurons.map(({ id }) => [id, []]));
+export function incomingLinks(network: Network): Incoming {
+  const incoming: Incoming = new Map(network.neurons.map(({ id }) => [id, []]));
   for (const link of network.links) if (link.enabled) incoming.get(link.target)?.push(link);
-  cache.set(network, incoming);
   return incoming;
 }
 
 /** The neurons, sources before targets. */
-function topologicalOrder({ neurons }: Network, incoming: Map<number, Link[]>): Set<Neuron> {
+function topologicalOrder({ neurons }: Network, incoming: Incoming): Set<Neuron> {
   const byId = new Map(neurons.map((neuron) => [neuron.id, neuron]));
   const order = new Set<Neuron>();
   const stack = [...neurons].reverse();

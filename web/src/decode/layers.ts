@@ -2,7 +2,7 @@
 
 import type { Spec, Vector } from "../api/types";
 import { decodeFloats } from "./floats";
-import type { Link, Network, Neuron } from "./network";
+import { type Link, type Network, type Neuron, labelOf } from "./network";
 
 /** More links cannot be distinguished. */
 const MAX_LINKS = 600;
@@ -18,7 +18,9 @@ export function layeredOf({ encoding, control, values, inputs, outputs }: Vector
 function graph(sizes: number[], genes: Float32Array, control: Spec, inputs: string[], outputs: string[]) {
   const ids = numbersOf(sizes);
   const last = sizes.length - 1;
-  const neurons: Neuron[] = ids[0]!.map((id) => neuronOf(id, "input", inputs[id]!, "identity", 0, 0));
+  const neurons = ids[0]!.map((id): Neuron => {
+    return { id, role: "input", label: labelOf(inputs[id]!), activation: "identity", bias: 0, depth: 0 };
+  });
   const links: Link[] = [];
   let used = 0;
   for (let layer = 1; layer <= last; layer++) {
@@ -28,8 +30,8 @@ function graph(sizes: number[], genes: Float32Array, control: Spec, inputs: stri
       const row = [...genes.subarray(used, (used += sizes[layer - 1]! + 1))].map(
         (gene) => gene * Number(control.scale),
       );
-      const label = role === "output" ? outputs[place]! : "";
-      neurons.push(neuronOf(id, role, label, activation, row[0]!, layer));
+      const label = role === "output" ? labelOf(outputs[place]!) : "";
+      neurons.push({ id, role, label, activation, bias: row[0]!, depth: layer });
       ids[layer - 1]!.forEach((source, i) =>
         links.push({ source, target: id, weight: row[i + 1]!, enabled: true }),
       );
@@ -46,15 +48,4 @@ function numbersOf(sizes: number[]): number[][] {
     const first = layer === 0 ? 0 : layer === last ? sizes[0]! : (next += size) - size;
     return Array.from({ length: size }, (_, i) => first + i);
   });
-}
-
-function neuronOf(
-  id: number,
-  role: Neuron["role"],
-  name: string,
-  activation: string,
-  bias: number,
-  depth: number,
-): Neuron {
-  return { id, role, label: name.replaceAll("_", " "), activation, bias, depth };
 }

@@ -40,13 +40,15 @@ export function networkOf(genome: Genes): Network {
   const neurons = nodes.id.map((id, i) => ({
     id,
     role: roleOf(id, inputs.length, outputs.length),
-    label: names[id]?.replaceAll("_", " ") ?? "",
+    label: labelOf(names[id] ?? ""),
     activation: nodes.activation[i]!,
     bias: biases[i]!,
     depth: depths.get(id)!,
   }));
   return { neurons, links, depth: Math.max(...depths.values()) };
 }
+
+export const labelOf = (name: string) => name.replaceAll("_", " ");
 
 function roleOf(id: number, inputs: number, outputs: number): Neuron["role"] {
   if (id < inputs) return "input";

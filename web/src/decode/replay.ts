@@ -1,4 +1,4 @@
-/** Replays: the recorded motion of one creature, its drive, and the fluid around it. */
+/** Replays: the recorded motion of one creature, its drive and the fluid around it; motions: positions only. */
 
 import { floatsAt } from "./floats";
 
@@ -51,23 +51,28 @@ export function decodeReplay(buffer: ArrayBuffer): Replay {
   const [positions, angles, lengths] = floatCounts.map((count) => floatsAt(buffer, after(4 * count), count));
   const [vorticity, velocity] = byteCounts.map((count) => new Int8Array(buffer, after(count), count));
   const packets = new Uint8Array(buffer, at - byteCounts[2]!, byteCounts[2]);
-  return {
-    header,
-    positions: positions!,
-    angles: angles!,
-    lengths: lengths!,
-    vorticity: vorticity!,
-    velocity: velocity!,
-    energy: packets,
-  };
+  const floats = { positions: positions!, angles: angles!, lengths: lengths! };
+  return { header, ...floats, vorticity: vorticity!, velocity: velocity!, energy: packets };
 }
 
-function sum(values: number[]): number {
-  return values.reduce((total, value) => total + value, 0);
+const sum = (values: number[]) => values.reduce((total, value) => total + value, 0);
+
+/** The recorded positions of one creature. */
+export interface Motion extends Pick<Replay, "positions"> {
+  header: Pick<Header, "frames" | "every" | "steps" | "nodes" | "edges" | "size">;
+}
+
+export function decodeMotion(buffer: ArrayBuffer): Motion {
+  const { header, start } = readHeader<Motion["header"]>(buffer, "microcosmos-motion/1");
+  const count = header.frames * header.nodes * 2;
+  if (start + 4 * count !== buffer.byteLength) {
+    throw new Error(`motion: needs ${start + 4 * count} bytes, got ${buffer.byteLength}`);
+  }
+  return { header, positions: floatsAt(buffer, start, count) };
 }
 
 /** The JSON that follows its own length, and the offset after it. */
-export function readHeader<T>(buffer: ArrayBuffer, format: string): { header: T; start: number } {
+function readHeader<T>(buffer: ArrayBuffer, format: string): { header: T; start: number } {
   const length = new DataView(buffer).getUint32(0, true);
   if (4 + length > buffer.byteLength) {
     throw new Error(`replay: a header of ${length} bytes does not fit in ${buffer.byteLength}`);

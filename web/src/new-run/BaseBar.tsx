@@ -1,8 +1,7 @@
 /** The base of the spec, the number of changes, and undo. */
 
 import type { Experiment } from "../api/types";
-import { formatCells } from "../store/cellRanges";
-import type { Base, ForkSource, Draft } from "../store/draft";
+import { type Base, type ForkSource, type Draft, formatCells } from "../store/draft";
 import { equalPreset } from "./form/document";
 import { openCreature } from "../ui/DropTarget";
 import { count, shortId } from "../ui/format";
@@ -56,7 +55,6 @@ export function BaseBar({ draft, current, experiments, file }: Props) {
   );
 }
 
-/** The creatures that the run starts from, with links. */
 function ForkSourceText({ fork: { run, creature, cells, at, creatures } }: { fork: ForkSource }) {
   const then = new URLSearchParams({
     ...(cells && { cells: formatCells(cells) }),

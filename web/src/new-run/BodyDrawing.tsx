@@ -128,25 +128,23 @@ function distance([ax, ay]: number[], [bx, by]: number[]): number {
 
 /** Shifts by whole worlds that show a part of the body, because the world is periodic. */
 export function tilesOf({ positions }: DrawnBody, width: number, height: number): [number, number][] {
-  const [left, right] = reach(
-    positions.map(([x]) => x!),
-    width,
+  const [columns, rows] = [width, height].map((side, axis) =>
+    shiftsOf(
+      positions.map((at) => at[axis]!),
+      side,
+    ),
   );
-  const [low, high] = reach(
-    positions.map(([, y]) => y!),
-    height,
-  );
-  const tiles: [number, number][] = [];
-  for (let i = left; i <= right; i++) {
-    for (let j = low; j <= high; j++) tiles.push([i * width, j * height]);
-  }
-  return tiles;
+  return columns!.flatMap((x) => rows!.map((y): [number, number] => [x, y]));
 }
 
 /** The largest shift, which bounds the number of copies of a body far outside the world. */
 const MAX_SHIFT = 2;
 
-function reach(places: number[], side: number): [number, number] {
+function shiftsOf(places: number[], side: number): number[] {
   const [least, most] = [places.reduce((a, b) => Math.min(a, b)), places.reduce((a, b) => Math.max(a, b))];
-  return [Math.max(-MAX_SHIFT, -Math.floor(most / side)), Math.min(MAX_SHIFT, -Math.floor(least / side))];
+  const [first, last] = [
+    Math.max(-MAX_SHIFT, -Math.floor(most / side)),
+    Math.min(MAX_SHIFT, -Math.floor(least / side)),
+  ];
+  return Array.from({ length: Math.max(0, last - first + 1) }, (_, i) => (first + i) * side);
 }

@@ -1,8 +1,9 @@
 /** The editor of a spec, as a form or as JSON, with a drawing and the estimated cost. */
 
-import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useMemo, useRef, useState } from "preact/hooks";
 import type { Experiment, Json } from "../api/types";
 import { useRefusal } from "../store/principal";
+import { useListener } from "../store/polling";
 import type { Draft } from "../store/draft";
 import { Segments } from "../ui/Select";
 import { BodyDrawing } from "./BodyDrawing";
@@ -11,8 +12,7 @@ import type { DraftState } from "./draftState";
 import { type EditorState, useEditor } from "./editorState";
 import { ForkCard } from "./ForkCard";
 import { JsonView } from "./form/JsonView";
-import { Outline } from "./form/Outline";
-import { SpecForm, partsOf } from "./form/SpecForm";
+import { Outline, SpecForm, partsOf } from "./form/SpecForm";
 import { isSweep } from "./sweep";
 import { SweepCard, goToSweep } from "./SweepCard";
 import { text } from "./text";
@@ -144,13 +144,9 @@ const startLabel = (runs: number) => (runs <= 1 ? text.start : text.startRuns(ru
 
 /** Submit on Control or Command with Enter, wherever the focus is. */
 function useSubmitKey(form: { current: HTMLFormElement | null }): void {
-  useEffect(() => {
-    const press = (event: KeyboardEvent) => {
-      if (event.key !== "Enter" || !(event.ctrlKey || event.metaKey)) return;
-      event.preventDefault();
-      form.current?.requestSubmit();
-    };
-    document.addEventListener("keydown", press);
-    return () => document.removeEventListener("keydown", press);
-  }, []);
+  useListener("keydown", (event: KeyboardEvent) => {
+    if (event.key !== "Enter" || !(event.ctrlKey || event.metaKey)) return;
+    event.preventDefault();
+    form.current?.requestSubmit();
+  });
 }

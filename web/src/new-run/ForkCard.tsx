@@ -6,7 +6,7 @@ import type { Draft, ForkSource } from "../store/draft";
 import { Card } from "../ui/Page";
 import { Messages } from "./form/Entry";
 import { mergePatch, withInitial } from "./initialCreatures";
-import type { Alternative } from "./submission";
+import type { Alternative } from "./editorState";
 import { text } from "./text";
 
 export interface Fork {

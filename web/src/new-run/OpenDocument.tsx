@@ -1,14 +1,14 @@
 /** Documents that are pasted, dropped or opened. */
 
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useState } from "preact/hooks";
 import { messageOf } from "../api/problem";
 import type { Experiment } from "../api/types";
+import { useListener } from "../store/polling";
 import { showToast } from "../store/toasts";
 import { FileButton, useFileDrop } from "../ui/DropTarget";
 import type { CreatureFile } from "./BaseBar";
 import type { DraftState } from "./draftState";
-import { readText } from "./readDocument";
-import { completeSpec, baseOfDocument } from "./sources";
+import { readText, completeSpec, baseOfDocument } from "./sources";
 import { text } from "./text";
 
 /** Take a document; return what is wrong with it, or null. */
@@ -44,22 +44,14 @@ export function useDocument(
 
 /** Handle text pasted outside fields, and dropped files. */
 function useDocumentDrop(take: Take): void {
-  const latest = useRef(take);
-  latest.current = take;
-  useFileDrop(text.dropDocument, (file) => {
-    void readFile(latest.current, file);
+  useFileDrop(text.dropDocument, (file) => void readFile(take, file));
+  useListener("paste", (event: ClipboardEvent) => {
+    if ((event.target as Element).closest?.("input, textarea, select")) return;
+    const pasted = event.clipboardData?.getData("text") ?? "";
+    if (!pasted.trim()) return;
+    event.preventDefault();
+    showProblem(take(pasted, ""), text.pasted);
   });
-  useEffect(() => {
-    const paste = (event: ClipboardEvent) => {
-      if ((event.target as Element).closest?.("input, textarea, select")) return;
-      const pasted = event.clipboardData?.getData("text") ?? "";
-      if (!pasted.trim()) return;
-      event.preventDefault();
-      showProblem(latest.current(pasted, ""), text.pasted);
-    };
-    document.addEventListener("paste", paste);
-    return () => document.removeEventListener("paste", paste);
-  }, []);
 }
 
 async function readFile(take: Take, file: File): Promise<void> {

@@ -8,7 +8,7 @@ import { Card } from "../ui/Page";
 import { Options } from "../ui/Select";
 import { NameEntry } from "./ForkCard";
 import { Messages } from "./form/Entry";
-import { type Axis, nameOf, type SweepForm, isSweep, errorsAt } from "./sweep";
+import { type Axis, type SweepForm, nameOf, isSweep, errorsAt } from "./sweep";
 import { text } from "./text";
 
 interface Props {

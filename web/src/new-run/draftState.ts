@@ -20,7 +20,7 @@ import { withInitial } from "./initialCreatures";
 import { sourceAddress, load, baseOfPreset } from "./sources";
 import { text } from "./text";
 
-const SOURCE_PARAMETERS = ["preset", "from", "fork", "begin", ...FORK_PARAMETERS];
+const SOURCE_PARAMETERS = ["preset", "from", "fork", "initial", ...FORK_PARAMETERS];
 const NO_SOURCE = Object.fromEntries(SOURCE_PARAMETERS.map((word) => [word, null]));
 
 const NONE: ReadonlySet<string> = new Set();

@@ -2,18 +2,20 @@
 
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import * as api from "../api/client";
-import type { Drawing, Experiment, FieldError, Json, Spec } from "../api/types";
-import type { Draft } from "../store/draft";
+import type { Drawing, Experiment, FieldError, Json, Spec, ForkRequest, SweepRequest } from "../api/types";
+import { type Draft, discardDraft } from "../store/draft";
 import type { DraftState } from "./draftState";
-import { useEstimate } from "./estimate";
+import { useEstimate, serverErrors } from "./Costs";
 import { isForkField, useFork } from "./ForkCard";
 import { schemaErrors, messagesByPath, withValue } from "./form/document";
 import type { FormState } from "./form/Entry";
 import { type Section, formOf } from "./form/fields";
 import { withoutInitial } from "./initialCreatures";
-import { useSubmission } from "./submission";
 import { type SweepForm, isSweep, useSweepForm } from "./sweep";
 import { text } from "./text";
+import { applyResponse } from "../store/store";
+import { navigate } from "../store/router";
+import { newIdempotencyKey } from "../ui/forms";
 
 export function useEditor(draft: DraftState, current: Draft, experiment: Experiment) {
   const { spec, base } = current;
@@ -84,4 +86,42 @@ function useClosed(form: Section): [ReadonlySet<string>, FormState["close"]] {
   const close = (path: string, isClosed: boolean) =>
     setClosed((now) => new Set(isClosed ? [...now, path] : [...now].filter((each) => each !== path)));
   return [closed, close];
+}
+
+export type Alternative = { sweep: SweepRequest } | { fork: ForkRequest };
+
+type Refusal = ReturnType<typeof serverErrors> & { requested: Spec | Alternative };
+
+/** Send the spec, or another request; the same request sent again after a lost answer has the same key. */
+export function useSubmission(spec: Spec, instead: Alternative | null) {
+  const requested = instead ?? spec;
+  const [busy, setBusy] = useState(false);
+  const [refusal, setRefusal] = useState<Refusal | null>(null);
+  const sent = useRef<{ requested: Spec | Alternative; key: string } | null>(null);
+  const start = async () => {
+    if (busy) return;
+    if (sent.current?.requested !== requested) sent.current = { requested, key: newIdempotencyKey() };
+    setBusy(true);
+    try {
+      const page = await submit(spec, instead, sent.current.key);
+      discardDraft();
+      navigate(page);
+    } catch (error) {
+      setRefusal({ requested, ...serverErrors(error) });
+      setBusy(false);
+      requestAnimationFrame(showFirstError);
+    }
+  };
+  return { start, busy, refusal: refusal?.requested === requested ? refusal : null };
+}
+
+async function submit(spec: Spec, instead: Alternative | null, key: string): Promise<string> {
+  if (instead && "sweep" in instead) return `/sweeps/${(await api.createSweep(instead.sweep, key)).id}`;
+  const made = instead ? api.forkRun(instead.fork, key) : api.createRun(spec, key);
+  return `/runs/${(await applyResponse("change", made)).id}`;
+}
+
+function showFirstError(): void {
+  document.querySelector<HTMLElement>("[aria-invalid=true]")?.focus();
+  document.querySelector(".spec-form .wrong-text")?.scrollIntoView({ block: "center" });
 }

@@ -5,7 +5,7 @@ import type { Json, Spec } from "../api/types";
 import { addressOf } from "../store/draft";
 import { forkOf, isForkField } from "./ForkCard";
 import { MAX_CREATURES, sourceAddress, load } from "./sources";
-import { EXPERIMENTS, experiment } from "./form/presets.fixture";
+import { EXPERIMENTS, experiment } from "./form/form.fixture";
 import { type Section, formOf } from "./form/fields";
 import { messagePaths } from "./form/document";
 import { mergePatch, withInitial, withoutInitial } from "./initialCreatures";
@@ -123,7 +123,7 @@ describe("a fork", () => {
     [`fork=${RUN}&creature=${SHA}`, ONE],
     [`fork=${RUN}&cells=2-3,9`, { ...ALL, cells: [9, 2, 3] }],
     [`fork=${RUN}&at=0`, { ...ALL, at: 0 }],
-    [`begin=${SHA}`, { ...ONE, run: null }],
+    [`initial=${SHA}`, { ...ONE, run: null }],
   ])("is named by the address %s", (text, fork) => {
     const query = new URLSearchParams(text);
     expect(sourceAddress(query)).toEqual([...query]);

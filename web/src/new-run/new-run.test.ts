@@ -1,7 +1,7 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import type { DrawnBody, Estimate } from "../api/types";
 import { type Draft, addressOf, discardDraft, loadDraft, saveDraft } from "../store/draft";
-import { EXPERIMENTS, experiment } from "./form/presets.fixture";
+import { EXPERIMENTS, experiment } from "./form/form.fixture";
 import { load, baseOfPreset, titleOfBase } from "./sources";
 import { branchesOf, dotsOf, linesOf, tilesOf } from "./BodyDrawing";
 import { timeText, estimateBasis, roughDuration, waitText } from "./Costs";

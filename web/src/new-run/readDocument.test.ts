@@ -1,11 +1,10 @@
 import { describe, expect, it } from "vitest";
 import type { Creature, Json, Spec } from "../api/types";
-import { baseOfDocument, completeSpec } from "./sources";
-import { EXPERIMENTS, PRESETS, experiment } from "./form/presets.fixture";
-import { completed } from "./form/defaults";
+import { baseOfDocument, completeSpec, readDocument, readText } from "./sources";
+import { EXPERIMENTS, PRESETS, experiment } from "./form/form.fixture";
+import { completed } from "./form/schema";
 import { schemaErrors } from "./form/document";
 import { formOf } from "./form/fields";
-import { readDocument, readText } from "./readDocument";
 
 const creature = (genome: Spec, extra: Spec = {}) =>
   ({

@@ -1,21 +1,27 @@
-/** Sources of a new run, as the address names them. */
+/** Sources of a new run: presets, runs and creatures that the address names, and documents. */
 
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
-import type { Experiment, Preset, Spec } from "../api/types";
-import { parseCells } from "../store/cellRanges";
-import { type Address, type Base, type ForkSource, FORK_PARAMETERS, forkAddress } from "../store/draft";
-import { completed } from "./form/defaults";
+import type { Experiment, Preset, Spec, Creature, Json, Gait } from "../api/types";
+import {
+  type Address,
+  type Base,
+  type ForkSource,
+  parseCells,
+  FORK_PARAMETERS,
+  forkAddress,
+} from "../store/draft";
+import { completed } from "./form/schema";
 import { isSearch, withInitial } from "./initialCreatures";
-import { type ReadDocument, specOf } from "./readDocument";
 import { count, shortId } from "../ui/format";
 import { text } from "./text";
+import { isObject } from "../run/spec/difference";
 
 /** The largest number of initial creatures, as in the schema of `search.initial`. */
 export const MAX_CREATURES = 4096;
 
 export function sourceAddress(query: URLSearchParams): Address | null {
-  const word = ["fork", "begin", "from", "creature", "preset"].find((name) => query.get(name));
+  const word = ["fork", "initial", "from", "creature", "preset"].find((name) => query.get(name));
   if (!word) return null;
   const name = query.get(word)!;
   if (word !== "fork") return [[word, name]];
@@ -31,7 +37,7 @@ export async function load(address: Address, experiments: Experiment[]): Promise
   const [word, name] = address[0]!;
   if (word === "preset") return presetBase(name, experiments);
   try {
-    if (word === "begin") return await searchFromCreature(name, experiments);
+    if (word === "initial") return await searchFromCreature(name, experiments);
     if (word === "fork") return await forkOf(name, Object.fromEntries(address), experiments);
     if (word === "creature") {
       const spec = specOf(await api.readCreature(name));
@@ -69,7 +75,6 @@ async function forkOf(
   return { kind: "run", name: id, spec, fork };
 }
 
-/** The elites of some or all cells, now or after a generation. */
 async function elitesOf(run: string, cells: string | null, at: number | null): Promise<ForkSource> {
   const { cell, creature, generation } = await api.readArchive(run, [], { generation: at ?? undefined });
   const selected = cells === null ? () => true : parseCells(cells);
@@ -116,4 +121,99 @@ export function titleOfBase({ kind, name }: Base): string {
   if (kind === "run") return text.runOf(shortId(name));
   if (kind === "creature") return text.creature(shortId(name));
   return name || text.pastedSpec;
+}
+
+export type ReadDocument =
+  | { kind: "spec"; spec: Spec }
+  | { kind: "run"; spec: Spec; id: string }
+  | { kind: "creature"; spec: Spec; creature: Creature };
+
+/** Read a text; throw an `Error` that names the accepted documents. */
+export function readText(document: string, refine = false): ReadDocument {
+  if (/^[\u0089\ufffd]HDF/.test(document)) throw new Error(text.noHdf5);
+  return readDocument(parsed(document), refine);
+}
+
+function parsed(document: string): Json {
+  try {
+    return JSON.parse(document);
+  } catch (error) {
+    throw new Error(text.noJson((error as Error).message));
+  }
+}
+
+export function readDocument(document: Json, refine = false): ReadDocument {
+  if (!isObject(document)) throw new Error(text.notADocument(describe(document)));
+  const { identity, spec, id } = document;
+  if (isObject(identity)) {
+    const creature = document as unknown as Creature;
+    const made = refine ? { experiment: "refinement", creature: document } : specOf(creature);
+    return { kind: "creature", creature, spec: made };
+  }
+  if (isObject(spec))
+    return { kind: "run", spec: checkedSpec(spec, "spec.experiment"), id: String(id ?? "") };
+  return { kind: "spec", spec: checkedSpec(document, "experiment") };
+}
+
+function checkedSpec(spec: Spec, field: string): Spec {
+  if (typeof spec.experiment === "string") return spec;
+  throw new Error(text.noExperiment(field, describe(spec.experiment)));
+}
+
+function describe(value: Json | undefined): string {
+  if (value === undefined) return text.nothing;
+  if (Array.isArray(value)) return text.list;
+  return value === null ? "null" : `${typeof value} ${JSON.stringify(value).slice(0, 40)}`;
+}
+
+/** Encodings with numeric genes, which NEAT's mutations do not vary. */
+const NUMERIC_ENCODINGS = ["direct", "weights"];
+
+/** A run in a creature's world, with its body, coupling, controller and task. */
+export function specOf(creature: Creature): Spec {
+  const { genome, body, task } = creature.identity;
+  const { coupling, ...world } = creature.identity.world as Spec & { coupling: Json };
+  if (genome.encoding === "gait") return gaitSpec(genome, world);
+  const scene = { world, body, coupling };
+  const control = { ...genome.control, encoding: genome.encoding };
+  if (genome.encoding === "fold") return foldSpec({ ...scene, control }, world, task);
+  const room = roomOf(creature);
+  return {
+    experiment: "quality-diversity",
+    ...scene,
+    control,
+    ...(room && { genome: room }),
+    task,
+    ...((NUMERIC_ENCODINGS.includes(genome.encoding) || isPlugin(genome.encoding)) && {
+      search: { emitters: [{ operator: "iso+line" }] },
+    }),
+  };
+}
+
+const isPlugin = (name: string) => name.includes(".");
+
+/** The room for nodes and connections with which the creature was evaluated. */
+function roomOf({ measured }: Creature): Spec | null {
+  const room = (measured as { room?: [number, number] | null } | null)?.room;
+  return room ? { max_nodes: room[0], max_connections: room[1] } : null;
+}
+
+function gaitSpec(stroke: Gait, world: Spec): Spec {
+  return {
+    experiment: "gaits",
+    swimmers: [stroke.swimmer],
+    ...(stroke.plugin && { plugins: { [stroke.swimmer]: stroke.plugin } }),
+    viscosities: [world.viscosity ?? null],
+    width: world.width ?? null,
+    height: world.height ?? null,
+    period: stroke.period,
+    ramp: stroke.ramp,
+    steric: world.steric ?? null,
+  };
+}
+
+/** Pictures take up about two thirds of the world's shorter side, as in the presets. */
+function foldSpec(scene: Spec, world: Spec, task: Spec): Spec {
+  const size = Math.floor((2 / 3) * Math.min(Number(world.width), Number(world.height)));
+  return { experiment: "folding", ...scene, steps: task.steps ?? null, size };
 }

@@ -53,13 +53,11 @@ export function errorsAt(errors: readonly FieldError[], path: string): string[] 
   return mine.map(({ message }) => message);
 }
 
-/** One field of a grid, with the typed values. */
 export interface Axis {
   path: string;
   text: string;
 }
 
-/** Fields that a grid can run over; seeds have an entry of their own. */
 export function sweepable(form: Section, spec: Spec): Leaf[] {
   const leaves = leavesOf(form, spec) as Leaf[];
   return leaves.filter(({ kind, path }) => (kind as string) !== "constant" && path !== "seed");
@@ -73,7 +71,6 @@ export function nameOf({ path, title }: Leaf): string {
 
 export interface ParsedValues {
   values: Json[];
-  /** The error; null for valid values. */
   problem: string | null;
 }
 
@@ -136,7 +133,6 @@ function valueError(field: Leaf, value: Json): string | null {
 
 const same = (one: Json, other: Json) => JSON.stringify(one) === JSON.stringify(other);
 
-/** The typed number of seeds, or an error. */
 export function readSeeds(input: string): { seeds: number; problem: string | null } {
   const seeds = typed(input);
   const whole = typeof seeds === "number" && Number.isInteger(seeds);
@@ -147,5 +143,4 @@ export function readSeeds(input: string): { seeds: number; problem: string | nul
 /** The largest number of runs in one request. */
 const MAX_RUNS = 1000;
 
-/** True if an experiment depends on a random seed. */
 const hasSeed = ({ schema }: Experiment) => "seed" in ((schema.properties ?? {}) as Record<string, Json>);

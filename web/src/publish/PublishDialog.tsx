@@ -5,7 +5,7 @@ import * as api from "../api/client";
 import type { Creature, Share, ShareRequest } from "../api/types";
 import { inDays } from "../ui/format";
 import { Options } from "../ui/Select";
-import { useSubmit } from "../ui/submit";
+import { useSubmit } from "../ui/forms";
 import { copyText } from "../ui/clipboard";
 import { text } from "./text";
 import "./publish.css";

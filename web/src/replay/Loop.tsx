@@ -2,8 +2,7 @@
 
 import { useMemo, useRef, useState } from "preact/hooks";
 import type { Replay } from "../decode/replay";
-import type { Size } from "../ui/canvas";
-import { prefersReducedMotion, useTheme } from "../ui/theme";
+import { type Size, prefersReducedMotion, useTheme } from "../ui/canvas";
 import { CanvasStage } from "./CanvasStage";
 import { useClock } from "./clock";
 import { fieldOf } from "./fields";

@@ -1,16 +1,16 @@
 /** Player of one replay or several side by side: play, pause, step, scrub, speed. */
 
 import type { ComponentChildren, RefObject } from "preact";
-import { useMemo, useRef, useState } from "preact/hooks";
+import { useMemo, useRef } from "preact/hooks";
 import type { Replay } from "../decode/replay";
-import { type Theme, useTheme } from "../ui/theme";
+import { Select } from "../ui/Select";
+import { type Theme, useTheme } from "../ui/canvas";
 import { CanvasStage } from "./CanvasStage";
 import { useClock, useKeys } from "./clock";
-import { FieldLegend, LookChoice, Speed } from "./Controls";
 import { type Field, fieldOf, fieldsOf } from "./fields";
 import { FluidPainter } from "./fluid";
-import { type ReplayView, DEFAULT_VIEW } from "./replayView";
-import { type Moment, newMoment, useMoment } from "./moment";
+import { FieldLegend, SPEEDS, ViewOptions, changeView, replayViewOf } from "./replayView";
+import { type Moment, useMoment } from "./moment";
 import { drawScene, sceneOf } from "./scene";
 import { Tracers } from "./tracers";
 import { IconButton, StepRange } from "./Transport";
@@ -20,6 +20,8 @@ import "./replay.css";
 /** Simulated steps per second at speed 1. */
 const STEPS_PER_SECOND = 40;
 
+const SPEED_CHOICES = SPEEDS.map((speed) => [String(speed), `${speed} ×`] as const);
+
 /** A replay, with a name if there are several. */
 interface Film {
   replay: Replay;
@@ -28,24 +30,21 @@ interface Film {
 
 interface Props {
   films: Film[];
-  /** By default, the player keeps its own moment and view. */
-  moment?: Moment;
-  view?: ReplayView;
-  onLook?: (change: Partial<ReplayView>) => void;
+  moment: Moment;
+  /** Of the address, which holds the view. */
+  query: URLSearchParams;
 }
 
 /** The films have the same length, and share a clock and a colour scale. */
-export function ReplayPlayer({ films, ...given }: Props) {
+export function ReplayPlayer({ films, moment, query }: Props) {
   const theme = useTheme();
-  const [own, setOwn] = useState(DEFAULT_VIEW);
-  const view = given.view ?? own;
-  const change = given.onLook ?? ((part) => setOwn((old) => ({ ...old, ...part })));
+  const view = replayViewOf(query);
   const replays = useMemo(() => films.map(({ replay }) => replay), [films]);
   const names = useMemo(() => fieldsOf(replays), [replays]);
   const name = names.includes(view.field!) ? view.field! : names[0]!;
   const field = useMemo(() => fieldOf(name, replays, theme), [replays, name, theme]);
   const player = useRef<HTMLDivElement>(null);
-  const playback = usePlayback(replays[0]!, view.speed, given.moment, player);
+  const playback = usePlayback(replays[0]!, view.speed, moment, player);
   return (
     <div ref={player} class="player" role="group" aria-label={text.player} tabIndex={-1}>
       <div class="stages">
@@ -55,7 +54,7 @@ export function ReplayPlayer({ films, ...given }: Props) {
               {...{ replay, theme, field }}
               tracing={view.tracers}
               follow={view.follow}
-              time={playback.moment.time}
+              time={moment.time}
               onClick={playback.toggle}
             />
             {name && <figcaption>{name}</figcaption>}
@@ -64,9 +63,14 @@ export function ReplayPlayer({ films, ...given }: Props) {
       </div>
       <div class="row">
         <Transport {...playback} header={replays[0]!.header} />
-        <Speed value={view.speed} onChange={(speed) => change({ speed })} />
+        <Select
+          title={text.speed}
+          choices={SPEED_CHOICES}
+          value={String(view.speed)}
+          onChange={(speed) => changeView({ speed: Number(speed) })}
+        />
       </div>
-      <LookChoice {...{ names, name, view, change }} />
+      <ViewOptions {...{ names, name, view }} />
       {field && <FieldLegend field={field} />}
     </div>
   );
@@ -78,15 +82,15 @@ interface Playback {
   step: (by: 1 | -1) => void;
 }
 
-/** The moment shown, moved by the clock and by keys. */
+/** Move the moment by the clock and by keys. */
 function usePlayback(
   { header: { frames, every } }: Replay,
   speed: number,
-  given: Moment | undefined,
+  moment: Moment,
   player: RefObject<HTMLElement | null>,
 ): Playback {
   const last = frames - 1;
-  const moment = useMoment(useMemo(() => given ?? newMoment(), [given]));
+  useMoment(moment);
   useClock(moment.playing, (seconds) => {
     moment.move((moment.time + (seconds * speed * STEPS_PER_SECOND) / every) % Math.max(1, last));
   });

@@ -83,7 +83,7 @@ export function StepRange({ time, every, steps, ...rest }: StepProps) {
   return (
     <>
       <TimeRange label={text.moment} step="any" value={time} {...{ valueText }} {...rest} />
-      <output class="moment">
+      <output class="moment quiet small">
         {step} / {steps}
       </output>
     </>

@@ -1,12 +1,15 @@
 /** Trace a small moving body. */
 
-import type { Motion } from "../decode/motion";
+import type { Motion } from "../decode/replay";
 import { chainsOf, meanOf, positionsAt } from "./motion";
+
+/** The colour of a body on a background of each theme. */
+export const BODY_INK = { light: "#12222c", dark: "#fdf8ec" };
 
 interface Prepared {
   chains: number[][];
   /** The largest distance of a node from the mean position, in cells. */
-  reach: number;
+  radius: number;
 }
 
 const cache = new WeakMap<Motion, Prepared>();
@@ -15,13 +18,13 @@ function prepared(motion: Motion): Prepared {
   const known = cache.get(motion);
   if (known) return known;
   const { frames, edges } = motion.header;
-  let reach = 0;
+  let radius = 0;
   for (let frame = 0; frame < frames; frame++) {
     const points = positionsAt(motion, frame);
     const [x, y] = meanOf(points);
-    for (const point of points) reach = Math.max(reach, Math.hypot(point[0] - x, point[1] - y));
+    for (const point of points) radius = Math.max(radius, Math.hypot(point[0] - x, point[1] - y));
   }
-  const made = { chains: chainsOf(edges), reach: reach || 1 };
+  const made = { chains: chainsOf(edges), radius: radius || 1 };
   cache.set(motion, made);
   return made;
 }
@@ -33,10 +36,10 @@ export function traceBody(
   share: number,
   [left, top, side]: readonly [number, number, number],
 ): void {
-  const { chains, reach } = prepared(motion);
+  const { chains, radius } = prepared(motion);
   const points = positionsAt(motion, share * (motion.header.frames - 1));
   const [x, y] = meanOf(points);
-  const scale = (0.42 * side) / reach;
+  const scale = (0.42 * side) / radius;
   context.beginPath();
   for (const chain of chains) {
     chain.forEach((node, i) => {

@@ -2,6 +2,7 @@
 
 import type { RefObject } from "preact";
 import { useEffect, useRef } from "preact/hooks";
+import { prefersReducedMotion } from "../ui/canvas";
 
 /** While running, call `tick` in every frame with the seconds since the last one. */
 export function useClock(running: boolean, tick: (seconds: number) => void): void {
@@ -19,6 +20,19 @@ export function useClock(running: boolean, tick: (seconds: number) => void): voi
     });
     return () => cancelAnimationFrame(frame);
   }, [running]);
+}
+
+/** Duration of a loop. */
+const LOOP_SECONDS = 5;
+
+/** Draw after each render, and in every frame while running; `share` is the elapsed share of a loop. */
+export function useLoop(running: boolean, draw: (share: number) => void): void {
+  const share = useRef(0);
+  useClock(running && !prefersReducedMotion(), (seconds) => {
+    share.current = (share.current + seconds / LOOP_SECONDS) % 1;
+    draw(share.current);
+  });
+  useEffect(() => draw(share.current));
 }
 
 /** Elements that use these keys, or text, themselves. */

@@ -2,7 +2,7 @@
 
 import type { Replay } from "../decode/replay";
 import { type Rgb, diverging, table, viridis } from "../ui/colours";
-import type { Theme } from "../ui/theme";
+import type { Theme } from "../ui/canvas";
 import { text } from "./text";
 
 export type FieldName = "vorticity" | "speed" | "energy" | "none";
@@ -57,15 +57,16 @@ function vorticityOf(replays: Replay[], theme: Theme): Field {
 }
 
 function speedOf(replays: Replay[]): Field {
-  const speeds = new Map(replays.map((replay) => [replay, new Speeds(replay)]));
+  const planes = new Map(replays.map((replay) => [replay, speedPlanes(replay)]));
+  const strongest = replays.map((replay) => strongestSpeed(replay, planes.get(replay)!));
   return {
     name: "speed",
     title: text.fields.speed,
     unit: "cells/step",
-    range: [0, Math.max(...[...speeds.values()].map((each) => each.strongest()))],
+    range: [0, Math.max(...strongest)],
     colour: viridis,
     ground: "dark",
-    plane: (replay, frame) => speeds.get(replay)!.plane(frame),
+    plane: (replay, frame) => planes.get(replay)!(frame),
     zero: 0,
     quantum: quantumOfSpeed,
   };
@@ -94,33 +95,27 @@ function planeOf<T extends Int8Array | Uint8Array>(levels: T, { size }: Replay["
 const quantumOfSpeed = ({ header }: Replay) => (Math.SQRT2 * header.velocity.scale) / 255;
 
 /** |u| of each frame, computed on demand. */
-class Speeds {
-  private readonly planes: (Uint8Array | undefined)[] = [];
-
-  constructor(private readonly replay: Replay) {}
-
-  plane(frame: number): Uint8Array {
-    return (this.planes[frame] ??= this.compute(frame));
-  }
-
-  private compute(frame: number): Uint8Array {
-    const { header, velocity } = this.replay;
-    const cells = header.size[0] * header.size[1];
+function speedPlanes(replay: Replay): (frame: number) => Uint8Array {
+  const { header, velocity } = replay;
+  const cells = header.size[0] * header.size[1];
+  const levels = header.velocity.scale / 127 / quantumOfSpeed(replay);
+  const compute = (frame: number) => {
     const start = 2 * frame * cells;
-    const levels = header.velocity.scale / 127 / quantumOfSpeed(this.replay);
     return Uint8Array.from({ length: cells }, (_, i) => {
       const [x, y] = [velocity[start + i]!, velocity[start + cells + i]!];
       return Math.min(255, Math.round(levels * Math.sqrt(x * x + y * y)));
     });
-  }
+  };
+  const planes: Uint8Array[] = [];
+  return (frame) => (planes[frame] ??= compute(frame));
+}
 
-  /** The 99th percentile of speed, over a few frames. */
-  strongest(): number {
-    const { frames } = this.replay.header;
-    const samples = [0.25, 0.5, 0.75, 1].map((share) => this.plane(Math.round(share * (frames - 1))));
-    const values = Uint8Array.from(samples.flatMap((plane) => [...plane])).sort();
-    return (values[Math.floor(0.99 * values.length)]! || 1) * quantumOfSpeed(this.replay);
-  }
+/** The 99th percentile of speed, over a few frames. */
+function strongestSpeed(replay: Replay, plane: (frame: number) => Uint8Array): number {
+  const last = replay.header.frames - 1;
+  const samples = [0.25, 0.5, 0.75, 1].map((share) => plane(Math.round(share * last)));
+  const values = Uint8Array.from(samples.flatMap((plane) => [...plane])).sort();
+  return (values[Math.floor(0.99 * values.length)]! || 1) * quantumOfSpeed(replay);
 }
 
 /** The 99th percentile of nonzero absolute vorticity; 0 if there is none. */

@@ -1,7 +1,7 @@
 /** The moment of a replay that all parts of a page show. */
 
 import { useEffect, useState } from "preact/hooks";
-import { prefersReducedMotion } from "../ui/theme";
+import { prefersReducedMotion } from "../ui/canvas";
 
 export class Moment {
   /** In frames; may be a fraction. */

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import type { Motion } from "../decode/motion";
+import type { Motion } from "../decode/replay";
 import { type Point, chainsOf, meanOf, positionsAt, splineOf } from "./motion";
 
 describe("motion", () => {

@@ -1,6 +1,6 @@
 /** Positions between recorded frames, and smooth lines through them. */
 
-import type { Motion } from "../decode/motion";
+import type { Motion } from "../decode/replay";
 
 export type Point = [number, number];
 

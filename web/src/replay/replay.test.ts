@@ -84,7 +84,7 @@ describe("the moment of a replay", () => {
     const change = { field: "speed", tracers: true, follow: false, speed: 4 } as const;
     const words = Object.entries(queryOf(change)).filter(([, word]) => word !== null);
     expect(replayViewOf(new URLSearchParams(words as [string, string][]))).toEqual(change);
-    expect(replayViewOf(new URLSearchParams("field=heat&pace=3")).speed).toBe(1);
+    expect(replayViewOf(new URLSearchParams("field=heat&speed=3")).speed).toBe(1);
     expect(replayViewOf(new URLSearchParams("field=heat")).field).toBeNull();
   });
 });

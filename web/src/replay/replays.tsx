@@ -3,6 +3,7 @@
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { type Replay, decodeReplay } from "../decode/replay";
+import { setNewest } from "../store/cache";
 import { poll } from "../store/polling";
 import { text } from "./text";
 import "./replay.css";
@@ -14,23 +15,7 @@ interface Rendered {
   error: string | null;
 }
 
-/** Bytes of replays that a tab caches. */
-const MAX_CACHED_BYTES = 64e6;
 const cache = new Map<string, Replay>();
-
-const bytesOf = ({ positions, vorticity }: Replay) => positions.byteLength + vorticity.buffer.byteLength;
-
-/** Add a replay as the newest, and drop the oldest ones beyond the limit. */
-function addToCache(sha: string, replay: Replay): void {
-  cache.delete(sha);
-  cache.set(sha, replay);
-  let total = [...cache.values()].reduce((sum, each) => sum + bytesOf(each), 0);
-  for (const [oldest, each] of cache) {
-    if (total <= MAX_CACHED_BYTES || oldest === sha) break;
-    cache.delete(oldest);
-    total -= bytesOf(each);
-  }
-}
 
 interface State {
   requested: string;
@@ -48,7 +33,7 @@ export function useReplays(shas: string[]): Rendered {
   useEffect(() => {
     const change = (part: Partial<State>) => setState((old) => ({ ...old, ...part }));
     const add = (sha: string, replay: Replay) => {
-      addToCache(sha, replay);
+      setNewest(cache, sha, replay);
       setState((old) => ({ ...old, found: new Map(old.found).set(sha, replay) }));
     };
     setState({ ...NOTHING, requested });

@@ -1,8 +1,8 @@
 /** Draw one moment of a replay: flow, path, body, and the copies of the body in other tiles. */
 
 import type { Replay } from "../decode/replay";
-import { type Size, prepare } from "../ui/canvas";
-import type { Theme } from "../ui/theme";
+import { type Size, type Theme, prepare } from "../ui/canvas";
+import { BODY_INK } from "./bodyPath";
 import type { FluidPainter } from "./fluid";
 import { type Point, chainsOf, meanOf, positionsAt, splineOf } from "./motion";
 import { type Tracers, drawTracers } from "./tracers";
@@ -24,8 +24,8 @@ interface Scene {
 }
 
 const INK = {
-  light: { body: "#12222c", halo: "rgb(255 255 255 / 0.85)", faint: "rgb(18 34 44 / 0.28)" },
-  dark: { body: "#fdf8ec", halo: "rgb(4 10 14 / 0.75)", faint: "rgb(230 240 245 / 0.26)" },
+  light: { body: BODY_INK.light, halo: "rgb(255 255 255 / 0.85)", faint: "rgb(18 34 44 / 0.28)" },
+  dark: { body: BODY_INK.dark, halo: "rgb(4 10 14 / 0.75)", faint: "rgb(230 240 245 / 0.26)" },
 };
 
 export function sceneOf(replay: Replay, view: Pick<Scene, "painter" | "follow" | "theme">): Scene {

@@ -15,7 +15,7 @@ interface Props {
 
 export function ArchiveRun({ run, detail, query }: Props) {
   const curves = detail?.curves && detail.curves.generation.length > 0 ? detail.curves : null;
-  const beside = useComparedRuns(query, run.id);
+  const compared = useComparedRuns(query, run.id);
   return (
     <>
       <div class={`run-columns ${query.get("view") === "gallery" ? "wide" : ""}`}>
@@ -29,9 +29,9 @@ export function ArchiveRun({ run, detail, query }: Props) {
             </>
           )}
         </section>
-        <CurvesCard {...{ run, curves, query, beside }} />
+        <CurvesCard {...{ run, curves, query, compared }} />
       </div>
-      {curves && <SearchCard {...{ run, curves, query, beside }} />}
+      {curves && <SearchCard {...{ run, curves, query, compared }} />}
     </>
   );
 }

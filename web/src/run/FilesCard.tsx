@@ -1,9 +1,9 @@
 /** Files of a run. */
 
-import { archiveUrl, resultsUrl } from "../api/urls";
+import { archiveUrl, resultsUrl } from "../api/files";
 import type { Run } from "../api/types";
 import { hasArchive } from "../store/fetch";
-import { FileLink } from "../ui/FileLink";
+import { FileLink } from "../ui/links";
 import { Card } from "../ui/Page";
 import { text } from "./text";
 

@@ -4,7 +4,7 @@ import type { Run } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { extend, remove, restore } from "../store/commands";
 import { dateTime, shortId } from "../ui/format";
-import { useDisclosure } from "../ui/disclosure";
+import { useDisclosure } from "../ui/forms";
 import { InlineForm } from "./InlineForm";
 import { text } from "./text";
 

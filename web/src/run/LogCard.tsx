@@ -83,7 +83,7 @@ function Line({ at, level, attempt, text: message }: LogEntry) {
   const [first, ...more] = summaryOf(message);
   return (
     <li class={`log-${level}`}>
-      <time dateTime={at} title={dateTime(at)}>
+      <time class="quiet" dateTime={at} title={dateTime(at)}>
         {new Date(at).toLocaleTimeString(undefined, { hour12: false })}
       </time>
       <span class="quiet log-attempt">{attempt > 0 ? text.attempt(attempt) : ""}</span>

@@ -1,7 +1,7 @@
 /** A name that is edited in place. */
 
 import type { ComponentChildren } from "preact";
-import { useDisclosure } from "../ui/disclosure";
+import { useDisclosure } from "../ui/forms";
 import { InlineText } from "../ui/InlineText";
 import { text } from "./text";
 

@@ -23,7 +23,7 @@ interface Props {
   run: Run;
   curves: Columns | null;
   query: URLSearchParams;
-  beside: ComparedRuns;
+  compared: ComparedRuns;
 }
 
 interface ComparedRuns {
@@ -32,7 +32,7 @@ interface ComparedRuns {
   error: string | null;
 }
 
-export function CurvesCard({ run, curves, query, beside: { ids, others, error } }: Props) {
+export function CurvesCard({ run, curves, query, compared: { ids, others, error } }: Props) {
   const view = curveViewOf(query);
   return (
     <Card id="curves" kind="curves-card" title={text.curves}>
@@ -52,9 +52,9 @@ export function CurvesCard({ run, curves, query, beside: { ids, others, error } 
   );
 }
 
-export function SearchCard({ run, curves, query, beside }: Props & { curves: Columns }) {
+export function SearchCard({ run, curves, query, compared }: Props & { curves: Columns }) {
   const view = curveViewOf(query);
-  const plots = arrangePlots(workOf, curves, beside.others, view);
+  const plots = arrangePlots(workOf, curves, compared.others, view);
   if (plots.length === 0 && run.diverged === 0) return null;
   return (
     <Card id="search" kind="wide-curves" title={text.search}>

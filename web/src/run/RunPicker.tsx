@@ -4,7 +4,7 @@ import { useEffect, useRef } from "preact/hooks";
 import type { Run } from "../api/types";
 import { useExperiments, useRunChoices } from "../store/fetch";
 import { dateTime, shortId, titleOf } from "../ui/format";
-import { useDisclosure } from "../ui/disclosure";
+import { useDisclosure } from "../ui/forms";
 import { InlineForm } from "./InlineForm";
 import { text } from "./text";
 

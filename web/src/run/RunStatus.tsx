@@ -3,7 +3,7 @@
 import type { Run } from "../api/types";
 import { cancelWithUndo, sendCommand } from "../store/commands";
 import { useRunRefresh } from "../store/fetch";
-import { useTick } from "../store/timing";
+import { useTick } from "../store/polling";
 import { Progress } from "../ui/Page";
 import { DASH, duration } from "../ui/format";
 import { text } from "./text";
@@ -45,19 +45,15 @@ export function CommandButtons({ run, title, name }: CommandProps) {
   const { id, status, requested_state } = run;
   const alive = ["queued", "running", "paused"].includes(status);
   if (!alive || requested_state === "cancelled") return null;
+  const command = status === "paused" ? "resume" : requested_state === "paused" ? null : "pause";
   return (
     <span class="actions">
-      {status === "paused" && (
-        <button onClick={() => void sendCommand(id, "resume")} aria-label={text.resumeRun(name)}>
-          {text.resume}
+      {command && (
+        <button onClick={() => void sendCommand(id, command)} aria-label={`${text[command]} ${name}`}>
+          {text[command]}
         </button>
       )}
-      {status !== "paused" && requested_state !== "paused" && (
-        <button onClick={() => void sendCommand(id, "pause")} aria-label={text.pauseRun(name)}>
-          {text.pause}
-        </button>
-      )}
-      <button class="danger" onClick={() => cancelWithUndo(id, title)} aria-label={text.cancelRun(name)}>
+      <button class="danger" onClick={() => cancelWithUndo(id, title)} aria-label={`${text.cancel} ${name}`}>
         {text.cancel}
       </button>
     </span>

@@ -20,13 +20,13 @@ describe("a log", () => {
     expect(atLeast(entries, "error").map(({ id }) => id)).toEqual([3]);
   });
 
-  it("is copied as lines in the order in which it happened", () => {
+  it("is copied as lines, oldest first", () => {
     expect(textOf(entries.slice(0, 2))).toBe(
       "2026-01-01T00:00:01Z info [attempt 1] Begins.\n2026-01-01T00:00:02Z warning [attempt 1] Full.",
     );
   });
 
-  it("tells of a traceback the line that says what went wrong", () => {
+  it("summarises a traceback by its last line", () => {
     const text = "Attempt 1 failed: Traceback:\n  File x\nValueError: no";
     expect(summaryOf(text)[0]).toBe("Attempt 1 failed: ValueError: no");
     expect(summaryOf(text).slice(1)).toEqual(text.split("\n"));
@@ -34,7 +34,7 @@ describe("a log", () => {
   });
 });
 
-describe("what a run is doing before its figures tell", () => {
+describe("the activity of a run without figures", () => {
   const run = {
     status: "running",
     generation: 0,
@@ -43,7 +43,7 @@ describe("what a run is doing before its figures tell", () => {
     started_at: "2026-01-01T00:01:00Z",
   } as Run;
 
-  it("is said, and for how long", () => {
+  it("is shown with its duration", () => {
     expect(activityOf(run)).toContain("up to a minute on a CPU");
     expect(activityOf({ ...run, device: "gpu, fast" })).not.toContain("CPU");
     expect(activityOf({ ...run, generation: 1 })).toBeNull();
@@ -56,7 +56,7 @@ describe("what a run is doing before its figures tell", () => {
   });
 });
 
-describe("why a run ended", () => {
+describe("the reason why a run ended", () => {
   const run = { generations: 50, spec: { search: { stop: { evaluations: 5000 } } } } as unknown as Run;
   it.each([
     [null, "Completed all 50 generations."],
@@ -65,7 +65,7 @@ describe("why a run ended", () => {
       "Ended after generation 12: it used its budget of 5,000 evaluations.",
     ],
     ["device_hours after generation 3", "Ended early: device hours after generation 3."],
-  ])("%j is told as %j", (ended, sentence) => {
+  ])("%j becomes %j", (ended, sentence) => {
     expect(endReasonOf({ ...run, summary: ended ? { ended } : null })).toBe(sentence);
   });
 });

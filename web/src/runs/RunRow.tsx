@@ -1,18 +1,19 @@
-/** A run in the list: status, labels, result and actions. */
+/** A run in the list: status, labels edited in place, result and actions. */
 
 import type { Experiment, Run } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { useStore } from "../store/store";
-import { editRun, restore } from "../store/commands";
-import { forceFreeShare } from "../ui/coupling";
+import { editRun, restore, addTag, removeNote, removeTag } from "../store/commands";
+import { NotForceFree, forceFreeShare } from "../ui/coupling";
 import { DASH, dateTime, number, shortId, titleOf } from "../ui/format";
-import { NotForceFree } from "../ui/NotForceFree";
 import { keyFigureOf } from "../run/figures";
 import { CommandButtons, StatusBadge, RunProgress, timeOf } from "../run/RunStatus";
 import { NameField } from "../run/NameField";
 import { Sparkline } from "../charts/Sparkline";
-import { NoteField, TagList } from "./RunLabels";
 import { text } from "./text";
+import { setQuery } from "../store/router";
+import { InlineText } from "../ui/InlineText";
+import { useDisclosure } from "../ui/forms";
 
 interface Props {
   id: string;
@@ -103,7 +104,7 @@ function RowNotes({ run }: { run: Run }) {
         <span class="row-note quiet">{text.compiling}</span>
       )}
       {run.purge_at && <span class="row-note gone quiet">{text.purged(dateTime(run.purge_at))}</span>}
-      {run.waiting_reason && <span class="row-note reason">{run.waiting_reason}</span>}
+      {run.waiting_reason && <span class="row-note reason quiet">{run.waiting_reason}</span>}
       {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}
       {run.warning && <span class="row-note warning-text">{run.warning}</span>}
     </>
@@ -134,4 +135,72 @@ function RowActions({ run, title, name }: Omit<PartProps, "fixed">) {
 
 function lastLine(traceback: string): string {
   return traceback.trim().split("\n").at(-1) ?? "";
+}
+
+interface LabelProps {
+  run: Run;
+  name: string;
+  fixed: boolean;
+}
+
+const MAX_TAGS = 20;
+
+export function TagList({ run, name, fixed, known }: LabelProps & { known: string }) {
+  const { open, setOpen, button } = useDisclosure();
+  const done = (tag: string | null) => {
+    setOpen(false);
+    if (tag) addTag(run, tag);
+  };
+  return (
+    <span class="tags row">
+      {run.tags.map((tag) => (
+        <span key={tag} class="tag">
+          <button title={text.runsTagged(tag)} onClick={() => setQuery({ tag })}>
+            {tag}
+          </button>
+          {!fixed && (
+            <button aria-label={text.removeTag(tag, name)} onClick={() => removeTag(run, tag)}>
+              ✕
+            </button>
+          )}
+        </span>
+      ))}
+      {open && <InlineText label={text.newTag(name)} value="" limit={50} list={known} onDone={done} />}
+      {!open && !fixed && run.tags.length < MAX_TAGS && (
+        <button
+          ref={button}
+          class="plain small-button"
+          aria-label={text.addTag(name)}
+          onClick={() => setOpen(true)}
+        >
+          {text.addTagShort}
+        </button>
+      )}
+    </span>
+  );
+}
+
+export function NoteField({ run, name, fixed }: LabelProps) {
+  const { open, setOpen, button } = useDisclosure();
+  const done = (note: string | null) => {
+    setOpen(false);
+    if (note === null || note === (run.note ?? "")) return;
+    if (note) void editRun(run.id, { note });
+    else removeNote(run);
+  };
+  if (fixed) return run.note ? <span class="note quiet small">{run.note}</span> : null;
+  if (open) {
+    return <InlineText label={text.noteOn(name)} value={run.note ?? ""} limit={10_000} long onDone={done} />;
+  }
+  return (
+    <button
+      ref={button}
+      class={`plain small-button note ${run.note ? "" : "none"}`}
+      aria-label={run.note ? text.editNote(name, run.note) : text.addNote(name)}
+      title={run.note ?? undefined}
+      onClick={() => setOpen(true)}
+    >
+      {run.note ?? text.addNoteShort}
+    </button>
+  );
 }

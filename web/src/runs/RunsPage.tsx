@@ -13,8 +13,16 @@ import { setQuery } from "../store/router";
 import { hasTakenTour } from "../archive/tour";
 import { Empty, Page } from "../ui/Page";
 import { Heading } from "../ui/Table";
-import { Filters } from "./Filters";
-import { NO_FILTERS, WITHOUT_SWEEP, ariaSort, groupsSweeps, isFiltered, nextSort, queryOf } from "./runQuery";
+import {
+  Filters,
+  NO_FILTERS,
+  WITHOUT_SWEEP,
+  ariaSort,
+  groupsSweeps,
+  isFiltered,
+  nextSort,
+  queryOf,
+} from "./Filters";
 import { RunRow } from "./RunRow";
 import { SweepRows } from "./SweepRows";
 import { text } from "./text";
@@ -162,7 +170,7 @@ function CompareBar({ ids, onClear }: { ids: string[]; onClear: () => void }) {
 function SweepBanner({ sweep }: { sweep: string }) {
   if (sweep === WITHOUT_SWEEP) return null;
   return (
-    <p class="banner reason">
+    <p class="banner reason quiet">
       {text.runsOf}
       <a href={`/sweeps/${sweep}`}>{text.oneSweep}</a>
       {text.sweepHint}

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { ariaSort, groupsSweeps, isFiltered, nextSort, queryOf } from "./runQuery";
+import { ariaSort, groupsSweeps, isFiltered, nextSort, queryOf } from "./Filters";
 
 describe("the list of runs in the address", () => {
   const query = (text: string) => queryOf(new URLSearchParams(text));

@@ -1,16 +1,18 @@
-/** The settings page: the signed-in principal, and for admins all tokens. */
+/** The settings page: the signed-in principal, and for admins all tokens; the sign-in page. */
 
-import { signOut } from "../api/client";
+import { readPrincipal, signOut, signIn } from "../api/client";
 import type { Principal } from "../api/types";
-import { usePrincipal } from "../store/principal";
+import { useFetched } from "../store/fetch";
 import { showFailure } from "../store/toasts";
 import { Card, Page } from "../ui/Page";
 import { Tokens, day } from "./Tokens";
 import { text } from "./text";
+import { useState } from "preact/hooks";
+import { useSubmit } from "../ui/forms";
 import "./settings.css";
 
 export function SettingsPage() {
-  const { value, error } = usePrincipal();
+  const { value, error } = useFetched(readPrincipal, []);
   return (
     <Page title={text.settings} error={error} loading={!value}>
       {value && (
@@ -48,5 +50,42 @@ function PrincipalCard({ principal: { name, scope, expires_at, needed } }: { pri
         </p>
       )}
     </Card>
+  );
+}
+
+export function SignInPage() {
+  const [token, setToken] = useState("");
+  const { busy, error, onSubmit } = useSubmit(async () => {
+    await signIn(token.trim());
+    location.reload();
+  });
+  return (
+    <main>
+      <form class="card sign-in" onSubmit={onSubmit}>
+        <h1>{text.signIn}</h1>
+        <p class="quiet">{text.signInHint}</p>
+        <label class="over">
+          {text.token}
+          <input
+            type="password"
+            name="token"
+            autocomplete="current-password"
+            required
+            value={token}
+            aria-invalid={error ? "true" : undefined}
+            aria-describedby={error ? "sign-in-error" : undefined}
+            onInput={({ currentTarget }) => setToken(currentTarget.value)}
+          />
+        </label>
+        {error && (
+          <p id="sign-in-error" class="wrong-text" role="alert">
+            {error}
+          </p>
+        )}
+        <button class="primary" disabled={busy || !token.trim()}>
+          {text.signIn}
+        </button>
+      </form>
+    </main>
   );
 }

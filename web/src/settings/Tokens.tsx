@@ -4,14 +4,14 @@ import { useState } from "preact/hooks";
 import { createToken, readTokens, revokeToken } from "../api/client";
 import type { Token, CreatedToken, TokenScope } from "../api/types";
 import { useFetched } from "../store/fetch";
-import { showFailure, showToast } from "../store/toasts";
+import { attempt, showToast } from "../store/toasts";
 import { ConfirmButton } from "../ui/ConfirmButton";
 import { Card } from "../ui/Page";
 import { Select } from "../ui/Select";
 import { type Column, Table } from "../ui/Table";
 import { copyText } from "../ui/clipboard";
 import { inDays } from "../ui/format";
-import { useSubmit } from "../ui/submit";
+import { useSubmit } from "../ui/forms";
 import { text } from "./text";
 
 export function Tokens({ own }: { own: string | null }) {
@@ -130,13 +130,9 @@ function TokenTable({ tokens, own, onRevoked }: TableProps) {
 }
 
 async function revoke({ id, name }: Token, onRevoked: () => void): Promise<void> {
-  try {
-    await revokeToken(id);
-    showToast({ kind: "note", text: text.revoked(name) });
-    onRevoked();
-  } catch (error) {
-    showFailure(error);
-  }
+  if ((await attempt(revokeToken(id))) === null) return;
+  showToast({ kind: "note", text: text.revoked(name) });
+  onRevoked();
 }
 
 export const day = (iso: string) =>
@@ -152,5 +148,4 @@ export function tokenStatus(token: Token, now = Date.now()): string {
 export const isExpired = (token: Token, now = Date.now()) =>
   token.revoked_at !== null || (token.expires_at !== null && Date.parse(token.expires_at) <= now);
 
-/** The expiry of a token that is valid for this number of days; null for none. */
 export const endOf = (days: number, now = Date.now()) => (days > 0 ? inDays(days, now) : null);

@@ -22,12 +22,12 @@ describe("a token", () => {
     [{ expires_at: "2026-07-01T12:00:00Z" }, "Until 1 Jul 2026", false],
     [{ expires_at: "2026-06-15T11:59:00Z" }, "Expired on 15 Jun 2026", true],
     [{ revoked_at: "2026-05-02T12:00:00Z" }, "Revoked on 2 May 2026", true],
-  ])("stands as %o says", (changes, standing, over) => {
-    expect(tokenStatus(token(changes), NOW)).toBe(standing);
-    expect(isExpired(token(changes), NOW)).toBe(over);
+  ])("stands as %o says", (changes, status, expired) => {
+    expect(tokenStatus(token(changes), NOW)).toBe(status);
+    expect(isExpired(token(changes), NOW)).toBe(expired);
   });
 
-  it("is good for as many days as were selected, or for ever", () => {
+  it("is valid for the selected number of days, or without limit", () => {
     expect(endOf(7, NOW)).toBe("2026-06-22T12:00:00.000Z");
     expect(endOf(0, NOW)).toBeNull();
   });
@@ -36,15 +36,15 @@ describe("a token", () => {
 describe("an answer that nobody is signed in", () => {
   afterEach(() => vi.unstubAllGlobals());
 
-  it("is told to the page once, whichever request got it", async () => {
+  it("is dispatched once, whichever request got it", async () => {
     vi.resetModules();
-    const told = vi.fn();
-    vi.stubGlobal("dispatchEvent", told);
-    const { isSignedOut: isUnknown, noteStatus } = await import("../api/signedOut");
+    const dispatched = vi.fn();
+    vi.stubGlobal("dispatchEvent", dispatched);
+    const { isSignedOut, noteStatus } = await import("../api/http");
     noteStatus(403);
-    expect([isUnknown(), told.mock.calls.length]).toEqual([false, 0]);
+    expect([isSignedOut(), dispatched.mock.calls.length]).toEqual([false, 0]);
     noteStatus(401);
     noteStatus(401);
-    expect([isUnknown(), told.mock.calls.length]).toEqual([true, 1]);
+    expect([isSignedOut(), dispatched.mock.calls.length]).toEqual([true, 1]);
   });
 });

@@ -4,7 +4,7 @@ import * as api from "../api/client";
 import type { Share } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { usePages } from "../store/paging";
-import { showFailure, showToast } from "../store/toasts";
+import { attempt, showToast } from "../store/toasts";
 import { dateTime } from "../ui/format";
 import { ConfirmButton } from "../ui/ConfirmButton";
 import { Empty, Page } from "../ui/Page";
@@ -78,10 +78,8 @@ function Actions({ share, onChange }: { share: Share; onChange: (share: Share) =
 }
 
 async function revoke(share: Share, onChange: (share: Share) => void): Promise<void> {
-  try {
-    onChange(await api.revoke(share.slug));
-    showToast({ kind: "note", text: text.revoked(share.title) });
-  } catch (error) {
-    showFailure(error);
-  }
+  const revoked = await attempt(api.revoke(share.slug));
+  if (!revoked) return;
+  onChange(revoked);
+  showToast({ kind: "note", text: text.revoked(share.title) });
 }

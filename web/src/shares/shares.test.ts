@@ -1,4 +1,4 @@
-/** Publishing, and pages that are open to strangers. */
+/** Publishing, and public pages. */
 
 import { describe, expect, it } from "vitest";
 import { isPublicPage } from "../api/address";
@@ -13,10 +13,10 @@ const form = (fields: Record<string, string>) => {
   return data;
 };
 
-describe("what a form asks to publish", () => {
+describe("the request of a form", () => {
   const plain = { title: " ", credit: "", licence: "CC0-1.0", term: "never" };
 
-  it("leaves what is empty to the server", () => {
+  it("leaves empty fields to the server", () => {
     expect(requestOf(form(plain))).toEqual({
       credit: [],
       licence: "CC0-1.0",
@@ -25,30 +25,30 @@ describe("what a form asks to publish", () => {
     });
   });
 
-  it("takes names apart and counts days from now", () => {
+  it("separates names and counts days from now", () => {
     const now = Date.parse("2026-03-01T00:00:00Z");
-    const asked = requestOf(
+    const request = requestOf(
       form({ ...plain, title: "Eel", credit: "Ada, , Bob ", term: "7", listed: "on" }),
       now,
     );
-    expect(asked).toMatchObject({ title: "Eel", credit: ["Ada", "Bob"], listed: true });
-    expect(asked.expires_at).toBe("2026-03-08T00:00:00.000Z");
+    expect(request).toMatchObject({ title: "Eel", credit: ["Ada", "Bob"], listed: true });
+    expect(request.expires_at).toBe("2026-03-08T00:00:00.000Z");
   });
 
-  it("takes a date as the clock on the wall has it", () => {
-    const asked = requestOf(form({ ...plain, term: "date", until: "2026-03-01T12:00" }));
-    expect(asked.expires_at).toBe(new Date("2026-03-01T12:00").toISOString());
+  it("takes a date in local time", () => {
+    const request = requestOf(form({ ...plain, term: "date", until: "2026-03-01T12:00" }));
+    expect(request.expires_at).toBe(new Date("2026-03-01T12:00").toISOString());
   });
 });
 
-describe("pages for strangers", () => {
+describe("public pages", () => {
   it("are shares and the commons", () => {
     expect(["/s/abc", "/s/abc/creatures/12", "/commons"].every(isPublicPage)).toBe(true);
     expect(["/", "/s", "/s/", "/shares", "/creatures/12", "/runs/s/abc"].some(isPublicPage)).toBe(false);
   });
 
-  it("hold one thing, or a creature of an archive", () => {
-    expect(routeOf("/s/abc")).toEqual({ page: "share", slug: "abc", sha: null });
+  it("show a share, or a creature of a shared archive", () => {
+    expect(routeOf("/s/abc")).toEqual({ page: "share", slug: "abc" });
     expect(routeOf("/s/abc/creatures/12")).toEqual({ page: "share", slug: "abc", sha: "12" });
     for (const path of ["/s", "/s/abc/runs/1", "/s/abc/creatures/1/2"]) {
       expect(routeOf(path)).toEqual({ page: "unknown" });

@@ -2,7 +2,8 @@
 
 import * as api from "../api/client";
 import type { Run, RunChange } from "../api/types";
-import { applyResponse, currentState, dispatch } from "./store";
+import { applyEdit } from "./reconcile";
+import { applyResponse, currentState, update } from "./store";
 import { attempt, delayWithUndo, offerUndo } from "./toasts";
 import { text } from "./text";
 
@@ -28,10 +29,10 @@ export async function remove(id: string, title: string): Promise<boolean> {
 /** Change name, tags or note at once; revert the change if the server refuses it. */
 export async function editRun(id: string, change: RunChange): Promise<void> {
   const before = currentState().runs.get(id);
-  dispatch({ type: "edit", run: id, change });
+  update((state) => applyEdit(state, id, change));
   if ((await apply(api.changeRun(id, change))) || !before) return;
   const { name, tags, note } = before;
-  dispatch({ type: "edit", run: id, change: { name, tags, note } });
+  update((state) => applyEdit(state, id, { name, tags, note }));
 }
 
 export function addTag({ id, tags }: Run, tag: string): void {

@@ -1,10 +1,24 @@
 import { describe, expect, it } from "vitest";
 import type { Values } from "../api/types";
-import { type Action, INITIAL_STATE, type State, reduce } from "./reducer";
+import { INITIAL_STATE, type State, reset, withResultsEvent } from "./state";
 import { MAX_POINTS, appendCurves, withPoint } from "./curves";
-import { RUN, generation, snapshot, after, open, opened } from "./state.fixture";
+import {
+  RUN,
+  after,
+  close,
+  generation,
+  generationEvent,
+  open,
+  opened,
+  rewind,
+  run,
+  snapshotSince,
+} from "./state.fixture";
 
-const bare = (state: State): Action => ({ ...(snapshot(state) as object), archive: null }) as Action;
+const bareSince = (before: State) => snapshotSince(before, null);
+const bare = (state: State) => bareSince(state)(state);
+const results = (generation: number, summary: Values | null) => (state: State) =>
+  withResultsEvent(state, { run: "a", generation, rows: [], summary });
 
 describe("long runs", () => {
   it("are thinned out", () => {
@@ -12,11 +26,11 @@ describe("long runs", () => {
     const rare = full.map((i) => (i === 7 || i === MAX_POINTS - 1 ? i : null));
     const costs = { evaluations: full, seconds: full };
     const columns = { generation: full, ...costs, qd_score: full, coverage: full, best: full };
-    const next = appendCurves({ ...columns, summary: { rare } }, generation(MAX_POINTS));
+    const next = appendCurves({ ...columns, summary: { rare } }, generationEvent(MAX_POINTS));
     expect(next.generation.length).toBe(MAX_POINTS / 2 + 1);
     expect(next.generation.at(-1)).toBe(MAX_POINTS);
-    const told = next.summary.rare!.flatMap((value, i) => (value === null ? [] : [[i, value]]));
-    expect(told).toEqual([
+    const values = next.summary.rare!.flatMap((value, i) => (value === null ? [] : [[i, value]]));
+    expect(values).toEqual([
       [4, 7],
       [MAX_POINTS / 2, MAX_POINTS - 1],
     ]);
@@ -33,35 +47,34 @@ describe("long runs", () => {
 
 describe("a run without an archive", () => {
   it("has curves and no elites", () => {
-    const detail = after(open, bare).details.get("a")!;
+    const detail = after(INITIAL_STATE, open, bare).details.get("a")!;
     expect([detail.archive, detail.elites.size]).toEqual([null, 0]);
     expect(detail.curves!.generation).toEqual([1, 2]);
   });
 
   it("counts the changes of its table", () => {
-    const event = { run: "a", generation: 3, rows: [], summary: null };
-    const state = after({ type: "results", event }, { type: "results", event });
+    const state = after(INITIAL_STATE, results(3, null), results(3, null));
     expect([state.tableVersions.get("a"), state.tableVersions.get("b")]).toEqual([2, undefined]);
   });
 
   it("keeps its newest summary", () => {
-    const told = (generation: number, summary: Values | null): Action => {
-      return { type: "results", event: { run: "a", generation, rows: [], summary } };
-    };
-    const run: Action = { type: "run", run: RUN };
-    const state = after(run, told(2, { best: 2 }), told(3, null), told(1, { best: 1 }));
+    const state = after(
+      INITIAL_STATE,
+      run(RUN),
+      results(2, { best: 2 }),
+      results(3, null),
+      results(1, { best: 1 }),
+    );
     expect(state.runs.get("a")!.summary).toEqual({ best: 2 });
   });
 });
 
 describe("curves without an archive", () => {
-  const close: Action = { ...open, more: -1 };
-  const third: Action = { type: "generation", event: generation(3) };
   const shown = (state: State) => state.details.get("a")?.curves;
 
   it("grow with every generation, before or after the snapshot", () => {
-    expect(shown(after(open, third, bare))!.generation).toEqual([1, 2, 3]);
-    const later = shown(after(open, bare, third))!;
+    expect(shown(after(INITIAL_STATE, open, generation(3), bare))!.generation).toEqual([1, 2, 3]);
+    const later = shown(after(INITIAL_STATE, open, bare, generation(3)))!;
     expect([later.evaluations, later.seconds]).toEqual([
       [16, 32, 48],
       [1, 2, 6],
@@ -69,27 +82,26 @@ describe("curves without an archive", () => {
   });
 
   it("are truncated by a rewind, after which older snapshots are ignored", () => {
-    const back: Action = { type: "rewind", event: { run: "a", generation: 1 } };
-    const state = after(open, bare, third, back);
+    const state = after(INITIAL_STATE, open, bare, generation(3), rewind(1));
     expect(shown(state)!.generation).toEqual([1]);
-    expect(shown(reduce(state, bare(INITIAL_STATE)))!.generation).toEqual([1]);
-    expect(shown(reduce(state, bare(state)))!.generation).toEqual([1, 2]);
+    expect(shown(after(state, bareSince(INITIAL_STATE)))!.generation).toEqual([1]);
+    expect(shown(bare(state))!.generation).toEqual([1, 2]);
   });
 
   it("outlive a reset until the next snapshot", () => {
-    const state = after(open, bare, third, { type: "reset" });
+    const state = after(INITIAL_STATE, open, bare, generation(3), reset);
     expect(shown(state)!.generation).toEqual([1, 2, 3]);
-    expect(shown(reduce(state, bare(state)))!.generation).toEqual([1, 2]);
+    expect(shown(bare(state))!.generation).toEqual([1, 2]);
   });
 
   it("are dropped with the last viewer", () => {
-    expect(after(open, open, bare, close).details.size).toBe(1);
-    expect(after(open, open, bare, close, close).details.size).toBe(0);
-    expect(after(bare, third).details.size).toBe(0);
+    expect(after(INITIAL_STATE, open, open, bare, close).details.size).toBe(1);
+    expect(after(INITIAL_STATE, open, open, bare, close, close).details.size).toBe(0);
+    expect(after(INITIAL_STATE, bare, generation(3)).details.size).toBe(0);
   });
 
   it("leave the archive of another snapshot in place", () => {
-    const detail = reduce(opened, bare(opened)).details.get("a")!;
+    const detail = bare(opened).details.get("a")!;
     expect(detail.archive).not.toBeNull();
     expect(detail.elites.size).toBe(2);
   });

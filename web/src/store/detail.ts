@@ -12,7 +12,7 @@ export interface Detail {
   curves: Curves | null;
   /** Events since the run was opened or the store was reset. */
   recent: { readonly elites: Elites; readonly curves: Curves };
-  watchers: number;
+  viewers: number;
 }
 
 const NO_RECENT = { elites: new Map(), curves: NO_CURVES };
@@ -22,7 +22,7 @@ export const EMPTY_DETAIL: Detail = {
   elites: new Map(),
   curves: null,
   recent: NO_RECENT,
-  watchers: 0,
+  viewers: 0,
 };
 
 export function withElitesEvent(detail: Detail, event: ElitesEvent): Detail {

@@ -1,9 +1,7 @@
-/** The draft of a spec, kept until the tab is closed. */
+/** The draft of a spec, kept until the tab is closed, and its source in the address. */
 
 import type { Spec } from "../api/types";
-import { formatCells } from "./cellRanges";
 
-/** The origin of a draft. */
 export interface Base {
   kind: "preset" | "run" | "creature" | "pasted";
   /** `experiment/name` of a preset, id of a run, hash of a creature, or name of a file. */
@@ -38,7 +36,6 @@ export interface Draft {
 const KEY = "microcosmos:draft";
 const QUERIES = { preset: "preset", run: "from", creature: "creature", pasted: null };
 
-/** The address of an origin; null if it has none. */
 export function addressOf({ kind, name, foreign, fork }: Omit<Base, "spec">): Address | null {
   if (fork) return addressOfFork(fork);
   const parameter = QUERIES[kind];
@@ -46,7 +43,7 @@ export function addressOf({ kind, name, foreign, fork }: Omit<Base, "spec">): Ad
 }
 
 function addressOfFork({ run, creature, cells, at }: ForkSource): Address {
-  if (run === null) return [["begin", creature!]];
+  if (run === null) return [["initial", creature!]];
   return forkAddress(run, {
     creature,
     cells: cells && formatCells(cells),
@@ -54,7 +51,6 @@ function addressOfFork({ run, creature, cells, at }: ForkSource): Address {
   });
 }
 
-/** The address of a fork of a run. */
 export function forkAddress(
   run: string,
   which: { [name in (typeof FORK_PARAMETERS)[number]]?: string | null },
@@ -93,4 +89,23 @@ function storedDraft(): Draft | null {
   } catch {
     return null;
   }
+}
+
+export function formatCells(cells: Iterable<number>): string {
+  const runs: [first: number, last: number][] = [];
+  for (const cell of [...cells].sort((a, b) => a - b)) {
+    const run = runs.at(-1);
+    if (run && cell <= run[1] + 1) run[1] = cell;
+    else runs.push([cell, cell]);
+  }
+  return runs.map(([first, last]) => (first === last ? first : `${first}-${last}`)).join();
+}
+
+/** A test for the cells in a text; malformed ranges are ignored. */
+export function parseCells(text: string): (cell: number) => boolean {
+  const runs = text.split(",").flatMap((run): [number, number][] => {
+    const [, first, last] = /^(\d+)(?:-(\d+))?$/.exec(run) ?? [];
+    return first === undefined ? [] : [[Number(first), Number(last ?? first)]];
+  });
+  return (cell) => runs.some(([first, last]) => first <= cell && cell <= last);
 }

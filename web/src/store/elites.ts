@@ -65,7 +65,6 @@ function eliteAt(columns: ArchiveColumns, i: number, seenAt: number): Elite {
   };
 }
 
-/** The fittest of some elites, with its key. */
 export function fittest<K>(elites: Iterable<readonly [K, Elite]>): readonly [K, Elite] | null {
   let best: readonly [K, Elite] | null = null;
   for (const entry of elites) if (!best || entry[1].fitness > best[1].fitness) best = entry;

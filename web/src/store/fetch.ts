@@ -6,10 +6,9 @@ import { messageOf } from "../api/problem";
 import type { Archive, Experiment, History, Results, Run, SpeciesHistory } from "../api/types";
 import type { Curves } from "./curves";
 import type { Elites } from "./elites";
-import { usePolled } from "./polling";
-import { epochOf } from "./reducer";
-import { applyResponse, currentState, dispatch, retain, useEach, useStore } from "./store";
-import { useThrottled, useTick } from "./timing";
+import { usePolled, useThrottled, useTick } from "./polling";
+import { epochOf, withSnapshot } from "./state";
+import { applyResponse, currentState, retain, update, useEach, useStore } from "./store";
 
 /** True if a run searches for elites; others produce a table of results. */
 export const hasArchive = ({ spec }: Run) => "search" in spec;
@@ -84,7 +83,7 @@ async function readDetail(id: string, withArchive: boolean): Promise<true> {
     withArchive && hasArchive(run) ? api.readArchive(id) : null,
     api.readGenerations(id, POINTS),
   ]);
-  dispatch({ type: "snapshot", run: id, epoch, archive, generations });
+  update((state) => withSnapshot(state, id, epoch, archive, generations));
   return true;
 }
 

@@ -2,11 +2,11 @@ import { beforeEach, describe, expect, it, vi } from "vitest";
 import type { LogEntry } from "../api/types";
 
 let stored: LogEntry[] = [];
-const asked = vi.fn();
+const requested = vi.fn();
 
 vi.mock("../api/client", () => ({
   readLog: async (_: string, limit: number, after?: number) => {
-    asked(after);
+    requested(after);
     const later = stored.filter(({ id }) => after === undefined || id > after);
     return { entries: after === undefined ? later.slice(-limit) : later.slice(0, limit) };
   },
@@ -18,7 +18,7 @@ const entries = (from: number, to: number, attempt: number) =>
   Array.from({ length: to - from }, (_, i) => ({ id: from + i, attempt }) as LogEntry);
 
 describe("a log that is read again", () => {
-  beforeEach(() => asked.mockClear());
+  beforeEach(() => requested.mockClear());
 
   it("starts after finished attempts, and drops entries that the server dropped", async () => {
     stored = [...entries(1, 401, 1), ...entries(401, 404, 2)];
@@ -26,7 +26,7 @@ describe("a log that is read again", () => {
     expect(known).toEqual(stored);
     stored = [...entries(1, 401, 1), ...entries(401, 402, 2), ...entries(404, 405, 2)];
     expect(await extendLog("a", known, false)).toEqual(stored);
-    expect(asked.mock.calls).toEqual([[undefined], [400]]);
+    expect(requested.mock.calls).toEqual([[undefined], [400]]);
   });
 
   it("reads all pages of new entries", async () => {

@@ -5,8 +5,8 @@ import * as api from "../api/client";
 import type { LogEntry, Run } from "../api/types";
 import { type Loaded, SLOW_MS, useFetched } from "./fetch";
 import { useStore } from "./store";
-import { useThrottled } from "./timing";
-import { epochOf } from "./reducer";
+import { useThrottled } from "./polling";
+import { epochOf } from "./state";
 
 /** Entries per answer of the server. */
 const PAGE = 500;
@@ -42,9 +42,9 @@ export async function extendLog(
   readAll: boolean,
 ): Promise<LogEntry[]> {
   // Newer entries of the current attempt may replace older ones.
-  const kept = known.filter(({ attempt }) => attempt < known.at(-1)!.attempt);
-  const after = kept.at(-1)?.id ?? (readAll ? 0 : undefined);
-  return [...kept, ...(await readFollowing(id, after))];
+  const finished = known.filter(({ attempt }) => attempt < known.at(-1)!.attempt);
+  const after = finished.at(-1)?.id ?? (readAll ? 0 : undefined);
+  return [...finished, ...(await readFollowing(id, after))];
 }
 
 async function readFollowing(id: string, after: number | undefined): Promise<LogEntry[]> {

@@ -2,18 +2,16 @@
 
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
-import { type Motion, decodeMotion } from "../decode/motion";
+import { type Motion, decodeMotion } from "../decode/replay";
+import { setNewest } from "./cache";
 import { poll } from "./polling";
 
 /** The renderer works in order, so a hovered cell waits for at most this number of requests. */
 const MAX_REQUESTS = 8;
-/** Cached motions of creatures that are not visible. */
-const MAX_HIDDEN = 100;
 /** A gallery requests nothing while it is scrolled. */
 const DEBOUNCE_MS = 150;
 
 const cache = new Map<string, Motion>();
-let visible: ReadonlySet<string> = new Set();
 /** Functions that stop the requests of creatures. */
 const requests = new Map<string, () => void>();
 let pending: string[] = [];
@@ -38,10 +36,9 @@ export function useMotions(shas: readonly string[]): ReadonlyMap<string, Motion>
 }
 
 function request(shas: readonly string[]): void {
-  visible = new Set(shas);
   for (const sha of shas) {
     const motion = cache.get(sha);
-    if (motion) addMotion(sha, motion);
+    if (motion) setNewest(cache, sha, motion);
   }
   pending = shas.filter((sha) => !cache.has(sha) && !requests.has(sha));
   startRequests();
@@ -58,7 +55,7 @@ function startRequest(sha: string): void {
   };
   const end = poll(async () => decoded(await api.readMotion(sha)), {
     value: (motion) => {
-      addMotion(sha, motion);
+      setNewest(cache, sha, motion);
       done();
       for (const listener of listeners) listener();
     },
@@ -74,21 +71,4 @@ function stop(): void {
   pending = [];
   for (const end of requests.values()) end();
   requests.clear();
-  visible = new Set();
-  dropOldest();
-}
-
-/** Add a motion as the newest. */
-function addMotion(sha: string, motion: Motion): void {
-  cache.delete(sha);
-  cache.set(sha, motion);
-  dropOldest();
-}
-
-/** Drop the oldest invisible motions beyond the limit. */
-function dropOldest(): void {
-  for (const oldest of cache.keys()) {
-    if (cache.size <= visible.size + MAX_HIDDEN) break;
-    if (!visible.has(oldest)) cache.delete(oldest);
-  }
 }

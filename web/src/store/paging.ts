@@ -15,7 +15,6 @@ export interface Pages<T> {
   error: string | null;
   /** Load the next page; null after the last one. */
   more: (() => void) | null;
-  /** Replace an item that has changed. */
   replace: (changed: T) => void;
 }
 

@@ -3,31 +3,24 @@
 import { useEffect, useState } from "preact/hooks";
 import { readPrincipal } from "../api/client";
 import type { Principal, Owned } from "../api/types";
-import { SIGNED_OUT, isSignedOut } from "../api/signedOut";
-import { type Loaded, useFetched } from "./fetch";
-import { dispatch, useStore } from "./store";
+import { SIGNED_OUT, isSignedOut } from "../api/http";
+import { update, useStore } from "./store";
 import { text } from "./text";
-
-export function usePrincipal(): Loaded<Principal> {
-  return useFetched(readPrincipal, []);
-}
+import { useListener } from "./polling";
 
 /** Load the principal into the store; after a failure the event stream loads it again. */
 export async function loadPrincipal(): Promise<void> {
   const principal = await readPrincipal().catch(() => null);
-  if (principal) dispatch({ type: "principal", principal });
+  if (principal) update((state) => ({ ...state, principal }));
 }
 
 /** True if a request was refused because it had no valid token. */
 export function useSignedOut(): boolean {
-  const [unknown, setUnknown] = useState(isSignedOut);
-  useEffect(() => {
-    const hear = () => setUnknown(isSignedOut());
-    hear();
-    window.addEventListener(SIGNED_OUT, hear);
-    return () => window.removeEventListener(SIGNED_OUT, hear);
-  }, []);
-  return unknown;
+  const [signedOut, setSignedOut] = useState(isSignedOut);
+  const read = () => setSignedOut(isSignedOut());
+  useEffect(read, []); // A request may have been refused since the component was drawn.
+  useListener(SIGNED_OUT, read);
+  return signedOut;
 }
 
 /** The reason that forbids creating, or changing `thing`; null if it is allowed. */

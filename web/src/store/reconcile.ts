@@ -1,7 +1,7 @@
 /** Merge events and answers about runs; an event wins over an answer requested before it. */
 
 import type { Run, RunChange, RunEvent } from "../api/types";
-import type { State } from "./reducer";
+import type { State } from "./state";
 
 /** Count an event of a run; answers that were requested before it are late. */
 export function noteEvent(state: State, id: string): State {

@@ -6,7 +6,7 @@ describe("an address", () => {
     ["/", { page: "runs" }],
     ["/new", { page: "new" }],
     ["/runs/abc", { page: "run", id: "abc" }],
-    ["/creatures/ff", { page: "creature", sha: "ff" }],
+    ["/creatures/ff", { page: "creature", id: "ff" }],
     ["/runs/abc/more", { page: "unknown" }],
     ["/runs/a%20b", { page: "run", id: "a b" }],
     ["/runs/%E0%A4%A", { page: "unknown" }],

@@ -1,46 +1,38 @@
 /** Routes, navigation, and the view in the query of the address. */
 
-import { useEffect, useState } from "preact/hooks";
+import { useState } from "preact/hooks";
+import { useListener } from "./polling";
 
-export type Route =
-  | { page: "runs" }
-  | { page: "new" }
-  | { page: "compare" }
-  | { page: "workers" }
-  | { page: "shares" }
-  | { page: "commons" }
-  | { page: "share"; slug: string; sha: string | null }
-  | { page: "settings" }
-  | { page: "run"; id: string }
-  | { page: "sweep"; id: string }
-  | { page: "creature"; sha: string }
-  | { page: "unknown" };
+/** A page, with the run, sweep or creature that it shows, or the share and a creature in it. */
+export interface Route {
+  page: string;
+  id?: string;
+  slug?: string;
+  sha?: string;
+}
 
 export interface PageLocation {
   route: Route;
   query: URLSearchParams;
 }
 
-const PAGES = ["new", "compare", "workers", "shares", "commons", "settings"] as const;
-const isPage = (name: string): name is (typeof PAGES)[number] => (PAGES as readonly string[]).includes(name);
+const PAGES = ["new", "compare", "workers", "shares", "commons", "settings"];
+const PAGES_OF_ONE: Record<string, string> = { runs: "run", sweeps: "sweep", creatures: "creature" };
 
 export function routeOf(path: string): Route {
   const [first, second, ...rest] = path.split("/").filter(Boolean);
   if (first === undefined) return { page: "runs" };
-  if (second === undefined && isPage(first)) return { page: first };
-  const name = rest.length === 0 ? decodePart(second) : null;
-  if (name !== null && first === "runs") return { page: "run", id: name };
-  if (name !== null && first === "sweeps") return { page: "sweep", id: name };
-  if (name !== null && first === "creatures") return { page: "creature", sha: name };
-  if (first === "s" && second !== undefined) return sharedRoute(second, rest);
-  return { page: "unknown" };
+  if (second === undefined) return { page: PAGES.includes(first) ? first : "unknown" };
+  if (first === "s") return sharedRoute(second, rest);
+  const page = PAGES_OF_ONE[first];
+  const id = rest.length === 0 ? decodePart(second) : null;
+  return page && id !== null ? { page, id } : { page: "unknown" };
 }
 
-/** A share, or a creature in it. */
 function sharedRoute(slug: string, [kind, sha, ...more]: string[]): Route {
-  if (kind === undefined) return { page: "share", slug, sha: null };
-  const one = kind === "creatures" && sha !== undefined && more.length === 0;
-  return one ? { page: "share", slug, sha } : { page: "unknown" };
+  if (kind === undefined) return { page: "share", slug };
+  const isCreature = kind === "creatures" && sha !== undefined && more.length === 0;
+  return isCreature ? { page: "share", slug, sha } : { page: "unknown" };
 }
 
 const UUID = /^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}$/i;
@@ -50,16 +42,16 @@ export const isUuid = (id: string) => UUID.test(id);
 /** False for text that can name no run, sweep or creature. */
 export const isId = (id: string) => isUuid(id) || /^[0-9a-f]{64}$/.test(id);
 
-/** Null for a missing part or malformed escapes. */
-function decodePart(part: string | undefined): string | null {
+/** Null for malformed escapes. */
+function decodePart(part: string): string | null {
   try {
-    return part === undefined ? null : decodeURIComponent(part);
+    return decodeURIComponent(part);
   } catch {
     return null;
   }
 }
 
-const NAVIGATED = "microcosmos:moved";
+const NAVIGATED = "microcosmos:navigated";
 
 export function navigate(to: string, replace = false): void {
   history[replace ? "replaceState" : "pushState"](null, "", to);
@@ -80,17 +72,10 @@ export function setQuery(changes: Record<string, string | null>): void {
 
 export function useLocation(): PageLocation {
   const [address, setAddress] = useState(location.pathname + location.search);
-  useEffect(() => {
-    const update = () => setAddress(location.pathname + location.search);
-    window.addEventListener("popstate", update);
-    window.addEventListener(NAVIGATED, update);
-    document.addEventListener("click", followLink);
-    return () => {
-      window.removeEventListener("popstate", update);
-      window.removeEventListener(NAVIGATED, update);
-      document.removeEventListener("click", followLink);
-    };
-  }, []);
+  const update = () => setAddress(location.pathname + location.search);
+  useListener("popstate", update);
+  useListener(NAVIGATED, update);
+  useListener("click", followLink);
   const { pathname, searchParams } = new URL(address, location.origin);
   return { route: routeOf(pathname), query: searchParams };
 }

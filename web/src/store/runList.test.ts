@@ -12,7 +12,8 @@ vi.mock("../api/client", () => ({
 }));
 
 const { readUpTo } = await import("./runList");
-const { RETAIN_MS, currentState, dispatch, retain } = await import("./store");
+const { RETAIN_MS, currentState, retain, update } = await import("./store");
+const { withSnapshot } = await import("./state");
 
 describe("a list that is read again", () => {
   it.each([
@@ -45,7 +46,7 @@ describe("the details of runs", () => {
 
   it("stay for runs that are still shown", () => {
     const leave = retain(["a", "b"]);
-    dispatch({ type: "snapshot", run: "a", epoch: 0, archive: null, generations });
+    update((state) => withSnapshot(state, "a", 0, null, generations));
     leave();
     const end = retain(["a"]);
     expect(currentState().details.get("a")!.curves!.generation).toEqual([1]);

@@ -4,8 +4,9 @@ import { useEffect } from "preact/hooks";
 import * as api from "../api/client";
 import type { Run, RunPage, RunQuery } from "../api/types";
 import { type Loaded, useFetched } from "./fetch";
-import { currentState, dispatch, useStore } from "./store";
-import { useThrottled, useTick } from "./timing";
+import { currentState, update, useStore } from "./store";
+import { withList, withMore } from "./state";
+import { useThrottled, useTick } from "./polling";
 
 const PAGE = 30;
 const MAX_PAGE = 200;
@@ -28,7 +29,7 @@ export function useRunList(filters: RunQuery): Loaded<true> {
     return { query, known, sent, page: await readUpTo(filters, known) };
   }, [query, version, tick]);
   useEffect(() => {
-    if (value) dispatch({ type: "list", ...value });
+    if (value) update((state) => withList(state, value));
   }, [value]);
   const stored = useStore((state) => state.query) === query;
   return { value: stored || null, error };
@@ -50,10 +51,9 @@ export async function readUpTo(query: RunQuery, known: number): Promise<RunPage>
 export async function moreRuns(query: RunQuery): Promise<void> {
   const { next: cursor, eventCount: sent } = currentState();
   const page = await api.readRuns({ ...query, limit: PAGE, ...(cursor && { cursor }) });
-  dispatch({ type: "more", query: JSON.stringify(query), page, cursor, sent });
+  update((state) => withMore(state, { query: JSON.stringify(query), page, cursor, sent }));
 }
 
-/** All tags of runs. */
 export function useTags(): string[] {
   const { value } = useFetched(api.readTags, [useListVersion()]);
   return (value ?? []).map(({ tag }) => tag);

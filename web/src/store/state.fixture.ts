@@ -1,7 +1,9 @@
 /** A run, its snapshot and its events, for tests of the store. */
 
-import type { Archive, GenerationEvent, Generations, Run } from "../api/types";
-import { type Action, INITIAL_STATE, type State, epochOf, reduce } from "./reducer";
+import type { Archive, GenerationEvent, Generations, Run, RunEvent } from "../api/types";
+import * as changes from "./state";
+
+type Change = (state: changes.State) => changes.State;
 
 export const RUN = {
   id: "a",
@@ -13,7 +15,7 @@ export const RUN = {
   spec: { archive: {} },
 } as unknown as Run;
 
-export const ARCHIVE: Archive = {
+const ARCHIVE: Archive = {
   generation: 2,
   kind: "grid",
   cells: 16,
@@ -30,9 +32,9 @@ export const ARCHIVE: Archive = {
   creature: ["aa", "bb"],
 };
 
-export const column = [1, 2];
+const column = [1, 2];
 
-export const GENERATIONS: Generations = {
+const GENERATIONS: Generations = {
   generation: column,
   qd_score: column,
   coverage: column,
@@ -44,36 +46,50 @@ export const GENERATIONS: Generations = {
   summary: { inserted: [5, 6], corrected: [null, 0.5] },
 };
 
-export function generation(number: number): GenerationEvent {
+export function generationEvent(number: number): GenerationEvent {
   const [evaluations, seconds] = [16 * number, 2 * number];
   const values = { qd_score: number, coverage: number, best: number, mean: number, diverged: 0 };
   const summary = { inserted: number, ended: "words", ...(number % 2 === 1 && { late: number }) };
   return { run: "a", generation: number, evaluations, seconds, ...values, summary };
 }
 
-export function elites(number: number, cell: number, creature: string): Action {
+export const after = (state: changes.State, ...then: Change[]): changes.State =>
+  then.reduce((now, change) => change(now), state);
+
+export const generation =
+  (number: number): Change =>
+  (state) =>
+    changes.withGenerationEvent(state, generationEvent(number));
+
+export function elites(number: number, cell: number, creature: string): Change {
   const columns = { cell: [cell], fitness: [9], descriptors: [[0, 0]], creature: [creature] };
   const event = { run: "a", generation: number, elite_generation: [number], ...columns };
-  return { type: "elites", event };
+  return (state) => changes.withElitesEvent(state, event);
 }
 
-export const snapshot = (state: State): Action => ({
-  type: "snapshot",
-  run: "a",
-  epoch: epochOf(state, "a"),
-  archive: ARCHIVE,
-  generations: GENERATIONS,
-});
+export const run =
+  (event: RunEvent): Change =>
+  (state) =>
+    changes.withRunEvent(state, event);
 
-export function after(...actions: (Action | ((state: State) => Action))[]): State {
-  return actions.reduce<State>((state, action) => {
-    return reduce(state, typeof action === "function" ? action(state) : action);
-  }, INITIAL_STATE);
-}
+export const rewind =
+  (generation: number): Change =>
+  (state) =>
+    changes.withRewind(state, { run: "a", generation });
 
-export const open: Action & { type: "open" } = { type: "open", run: "a", more: 1 };
+/** A snapshot that was requested in an earlier state. */
+export const snapshotSince =
+  (before: changes.State, archive: Archive | null = ARCHIVE): Change =>
+  (state) =>
+    changes.withSnapshot(state, "a", changes.epochOf(before, "a"), archive, GENERATIONS);
 
-export const opened = after({ type: "run", run: RUN }, open, snapshot);
+export const snapshot: Change = (state) => snapshotSince(state)(state);
 
-export const creatures = (state: State) =>
+export const open: Change = (state) => changes.withViewer(state, "a", 1);
+
+export const close: Change = (state) => changes.withViewer(state, "a", -1);
+
+export const opened = after(changes.INITIAL_STATE, run(RUN), open, snapshot);
+
+export const creatures = (state: changes.State) =>
   Object.fromEntries([...state.details.get("a")!.elites].map(([cell, { creature }]) => [cell, creature]));

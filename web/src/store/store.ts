@@ -2,17 +2,16 @@
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Run } from "../api/types";
-import { type Action, INITIAL_STATE, type State, reduce } from "./reducer";
+import { applyChange, applyResponses } from "./reconcile";
+import { INITIAL_STATE, type State, withViewer } from "./state";
 
 let state = INITIAL_STATE;
 const listeners = new Set<() => void>();
 
-export function currentState(): State {
-  return state;
-}
+export const currentState = (): State => state;
 
-export function dispatch(action: Action): void {
-  state = reduce(state, action);
+export function update(change: (state: State) => State): void {
+  state = change(state);
   for (const listener of listeners) listener();
 }
 
@@ -20,7 +19,7 @@ export function dispatch(action: Action): void {
 export async function applyResponse(type: "response" | "change", request: Promise<Run>): Promise<Run> {
   const sent = state.eventCount;
   const run = await request;
-  dispatch({ type, run, sent });
+  update((now) => (type === "change" ? applyChange(now, run, sent) : applyResponses(now, [run], sent)));
   return run;
 }
 
@@ -54,7 +53,6 @@ export function useEach<T>(ids: readonly string[], select: (state: State, id: st
   });
 }
 
-/** Some runs, undefined if not loaded. */
 export const useRuns = (ids: readonly string[]) => useEach(ids, ({ runs }, id) => runs.get(id));
 
 /** Runs without a viewer stay in the store for this long. */
@@ -62,8 +60,8 @@ export const RETAIN_MS = 60_000;
 
 /** Keep the details of runs until the returned function is called, and a little longer. */
 export function retain(runs: readonly string[]): () => void {
-  for (const run of runs) dispatch({ type: "open", run, more: 1 });
-  return () => {
-    setTimeout(() => runs.forEach((run) => dispatch({ type: "open", run, more: -1 })), RETAIN_MS);
-  };
+  const change = (more: 1 | -1) =>
+    update((state) => runs.reduce((now, run) => withViewer(now, run, more), state));
+  change(1);
+  return () => void setTimeout(change, RETAIN_MS, -1);
 }

@@ -2,13 +2,24 @@
 
 import { EVENTS_URL } from "../api/client";
 import { loadPrincipal } from "./principal";
-import { dispatch } from "./store";
-import type { Action } from "./reducer";
+import * as changes from "./state";
+import { update } from "./store";
 
 const RECONNECT_MS = 2000;
 const CONNECT_TIMEOUT_MS = 500;
 /** A browser has six connections to a host for all tabs; hidden tabs close theirs. */
 const CLOSE_HIDDEN_MS = 10_000;
+
+const CHANGES: Record<string, (state: changes.State, event: never) => changes.State> = {
+  run: changes.withRunEvent,
+  generation: changes.withGenerationEvent,
+  elites: changes.withElitesEvent,
+  results: changes.withResultsEvent,
+  rewind: changes.withRewind,
+  sweep: changes.withSweepEvent,
+  purge: changes.withoutRun,
+  reset: changes.reset,
+};
 
 type Timer = ReturnType<typeof setTimeout>;
 
@@ -39,33 +50,29 @@ function open(): EventSource {
   source = opened;
   let fresh = true;
   opened.onopen = () => {
-    dispatch({ type: "connection", connection: "live" });
-    if (fresh) dispatch({ type: "reset" });
+    setConnection("live");
+    if (fresh) update(changes.reset);
     fresh = false;
   };
   opened.onerror = () => {
-    dispatch({ type: "connection", connection: "lost" });
+    setConnection("lost");
     if (opened.readyState !== EventSource.CLOSED) return;
     reconnecting = setTimeout(open, RECONNECT_MS);
     void loadPrincipal(); // The stream does not report that a token was revoked.
   };
-  listen(opened, "run", (run) => ({ type: "run", run }) as Action);
-  for (const type of ["generation", "elites", "results", "rewind"]) {
-    listen(opened, type, (event) => ({ type, event }) as Action);
-  }
-  for (const type of ["sweep", "purge", "reset"]) {
-    listen(opened, type, (data) => ({ type, ...(data as object) }) as Action);
+  for (const [type, change] of Object.entries(CHANGES)) {
+    opened.addEventListener(type, ({ data }: MessageEvent) =>
+      update((state) => change(state, JSON.parse(data) as never)),
+    );
   }
   return opened;
 }
+
+const setConnection = (connection: changes.Connection) => update((state) => ({ ...state, connection }));
 
 function close(): void {
   clearTimeout(reconnecting);
   source?.close();
   source = null;
-  dispatch({ type: "connection", connection: "connecting" });
-}
-
-function listen(from: EventSource, name: string, action: (data: unknown) => Action): void {
-  from.addEventListener(name, (event) => dispatch(action(JSON.parse(event.data))));
+  setConnection("connecting");
 }

@@ -4,14 +4,13 @@ import * as api from "../api/client";
 import type { Sweep, SweepChanged, SweepCurves, SweepPage, SweepSummary } from "../api/types";
 import { type Loaded, useFetched } from "./fetch";
 import { useStore } from "./store";
-import { useThrottled } from "./timing";
+import { useThrottled } from "./polling";
 import { attempt, delayWithUndo, showToast, offerUndo } from "./toasts";
 import { text } from "./text";
 
 /** Points per curve, as many as a screen resolves. */
 const POINTS = 300;
 
-/** The newest sweeps. */
 export function useSweeps(limit: number, wanted: boolean): Loaded<SweepPage | null> {
   const version = useStore((state) => (wanted ? `${state.epoch} ${totalOf(state.sweepVersions)}` : ""));
   const throttled = useThrottled(version);
@@ -24,11 +23,9 @@ const totalOf = (counts: ReadonlyMap<string, number>) =>
 export interface SweepDetail {
   sweep: Sweep;
   summary: SweepSummary;
-  /** The curves of each run, if wanted. */
   curves: SweepCurves | null;
 }
 
-/** A sweep with the summary of its runs. */
 export function useSweep(id: string, each: boolean): Loaded<SweepDetail> {
   const throttled = useThrottled(useStore((state) => `${state.epoch} ${state.sweepVersions.get(id) ?? 0}`));
   return useFetched(async () => {
@@ -47,11 +44,9 @@ const OUTCOMES: Record<api.RunCommand, string> = {
   cancel: text.cancellingRuns,
 };
 
-/** Count the runs that changed and those that did not. */
 const outcome = ({ changed, skipped }: SweepChanged, done: string) =>
   text.outcome(text.runs(changed.length), done, skipped.length > 0 ? text.runs(skipped.length) : null);
 
-/** Send a command to every run. */
 export async function sendSweepCommand(id: string, verb: api.RunCommand): Promise<void> {
   const answer = await attempt(api.commandSweep(id, verb));
   if (answer) showToast({ kind: "note", text: outcome(answer, OUTCOMES[verb]) });

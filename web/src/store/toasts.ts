@@ -1,7 +1,7 @@
 /** Short notes at the edge of the page, some with an undo button. */
 
-import { useEffect, useState } from "preact/hooks";
 import { messageOf } from "../api/problem";
+import { currentState, update } from "./store";
 import { text } from "./text";
 
 export interface Toast {
@@ -13,28 +13,19 @@ export interface Toast {
 
 const SHOWN_MS = { note: 4000, wrong: 9000 };
 
-let toasts: readonly Toast[] = [];
 let count = 0;
-const listeners = new Set<(toasts: readonly Toast[]) => void>();
 
-function change(next: readonly Toast[]): void {
-  toasts = next;
-  for (const listener of listeners) listener(toasts);
-}
-
-export function dismissToast(id: number): void {
-  change(toasts.filter((toast) => toast.id !== id));
-}
+export const dismissToast = (id: number): void =>
+  update((state) => ({ ...state, toasts: state.toasts.filter((toast) => toast.id !== id) }));
 
 /** Show a note for a while; return the id that dismisses it. */
 export function showToast(toast: Omit<Toast, "id">): number {
   const id = ++count;
-  change([...toasts, { ...toast, id }]);
+  update((state) => ({ ...state, toasts: [...state.toasts, { ...toast, id }] }));
   setTimeout(() => dismissToast(id), SHOWN_MS[toast.kind]);
   return id;
 }
 
-/** Show what went wrong. */
 export function showFailure(error: unknown): void {
   showToast({ kind: "wrong", text: messageOf(error) });
 }
@@ -71,17 +62,8 @@ export function delayWithUndo(note: string, act: () => void): void {
 export function undoLatest(event: KeyboardEvent): void {
   const field = (event.target as Element).closest("input:not([type=checkbox]), textarea, select");
   if (event.key !== "z" || !(event.ctrlKey || event.metaKey) || event.shiftKey || field) return;
-  const last = toasts.findLast(({ action }) => action);
+  const last = currentState().toasts.findLast(({ action }) => action);
   if (!last) return;
   event.preventDefault();
   last.action!.run();
-}
-
-export function useToasts(): readonly Toast[] {
-  const [shown, setShown] = useState(toasts);
-  useEffect(() => {
-    listeners.add(setShown);
-    return () => void listeners.delete(setShown);
-  }, []);
-  return shown;
 }

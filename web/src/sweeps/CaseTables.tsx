@@ -54,7 +54,6 @@ const KNOWN_FIGURES: [name: string, title: string, format: Format][] = [
   ["evaluations", text.evaluations, count],
 ];
 
-/** The figures of any case, with their titles and formats. */
 function figuresOf(cases: ShownCase[]) {
   const names = new Set(cases.flatMap(({ summary }) => Object.keys(summary.finals)));
   return [...names].map((name) => {
@@ -104,7 +103,6 @@ function Figure({ spread, format }: { spread: Spread | undefined; format: Format
 interface Row {
   shown: ShownCase;
   member: Member;
-  /** The member's index within its case. */
   i: number;
 }
 

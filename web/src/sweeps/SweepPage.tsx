@@ -17,12 +17,11 @@ import { Curves } from "../charts/curves/Curves";
 import { type ShownCase, summaryPlotsOf, caseName } from "./summaryPlots";
 import { SweepProgress, SweepStates, sizeText, sweepTitle } from "./SweepStatus";
 import { dateTime } from "../ui/format";
-import { Card, Page, useTitle } from "../ui/Page";
+import { Card, NotFound, Page, useTitle } from "../ui/Page";
 import { ConfirmButton } from "../ui/ConfirmButton";
-import { NotFound } from "../ui/NotFound";
 import { NameField } from "../run/NameField";
 import { MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
-import { CurveBar, Check } from "../charts/curves/CurveOptions";
+import { CurveBar, QueryCheck } from "../charts/curves/CurveOptions";
 import { Cases, Finals, Members } from "./CaseTables";
 import { text } from "./text";
 
@@ -54,7 +53,7 @@ function LoadedSweep({ value, query, each }: { value: SweepDetail; query: URLSea
       </section>
       <Card id="curves" kind="wide-curves" title={text.curves} note={text.curvesAbout}>
         <CurveBar log={query.get("log") === "1"}>
-          <Check title={text.eachRun} name="each" on={each} />
+          <QueryCheck title={text.eachRun} name="each" on={each} />
         </CurveBar>
         {cases.length > 1 && <Cases cases={cases} selected={selected} onSelect={choose} />}
         <CaseCurves {...{ shown, query }} curves={each ? curves : null} />

@@ -10,7 +10,6 @@ type Score = (typeof SCORES)[0][0];
 
 export interface ShownCase {
   summary: CaseSummary;
-  /** Index among all cases. */
   caseIndex: number;
   name: string;
   colour: string;
@@ -70,5 +69,4 @@ export function gridValueText(value: Json): string {
   return written.length > 40 ? `${written.slice(0, 39)}…` : written;
 }
 
-/** The name of a run within its case. */
 export const memberName = ({ seed, run }: Member) => (seed === null ? shortId(run) : text.seed(seed));

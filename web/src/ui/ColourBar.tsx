@@ -2,7 +2,6 @@
 
 interface Props {
   name: string;
-  /** Description for screen readers. */
   label: string;
   /** The colour at a position from 0 to 1. */
   colourAt: (share: number) => string;

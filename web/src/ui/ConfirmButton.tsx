@@ -1,6 +1,6 @@
 /** A button for an action that destroys or queues something: it asks for confirmation in place. */
 
-import { useDisclosure } from "./disclosure";
+import { useDisclosure } from "./forms";
 import { text } from "./text";
 
 interface Props {

@@ -5,6 +5,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { importCreature } from "../api/client";
 import { messageOf } from "../api/problem";
 import { showToast } from "../store/toasts";
+import { useListener } from "../store/polling";
 import { navigate } from "../store/router";
 import { text } from "./text";
 
@@ -36,7 +37,7 @@ export function useFileDrop(prompt: string, take: DropHandler["take"]): void {
     return () => {
       handler = OPEN_CREATURE;
     };
-  }, []);
+  });
 }
 
 export function OpenButton() {
@@ -82,28 +83,18 @@ export function FileButton({ kind = "", name, take, children }: ButtonProps) {
 
 export function DropTarget() {
   const [over, setOver] = useState(false);
-  useEffect(() => {
-    const drag = (event: DragEvent) => {
-      if (!event.dataTransfer?.types.includes("Files")) return;
-      event.preventDefault();
-      setOver(true);
-    };
-    const leave = (event: DragEvent) => event.relatedTarget === null && setOver(false);
-    const drop = (event: DragEvent) => {
-      event.preventDefault();
-      setOver(false);
-      const file = event.dataTransfer?.files[0];
-      if (file) handler.take(file);
-    };
-    window.addEventListener("dragover", drag);
-    window.addEventListener("dragleave", leave);
-    window.addEventListener("drop", drop);
-    return () => {
-      window.removeEventListener("dragover", drag);
-      window.removeEventListener("dragleave", leave);
-      window.removeEventListener("drop", drop);
-    };
-  }, []);
+  useListener("dragover", (event: DragEvent) => {
+    if (!event.dataTransfer?.types.includes("Files")) return;
+    event.preventDefault();
+    setOver(true);
+  });
+  useListener("dragleave", (event: DragEvent) => event.relatedTarget === null && setOver(false));
+  useListener("drop", (event: DragEvent) => {
+    event.preventDefault();
+    setOver(false);
+    const file = event.dataTransfer?.files[0];
+    if (file) handler.take(file);
+  });
   return over ? (
     <div class="drop-target" aria-hidden="true">
       <p>{handler.prompt}</p>

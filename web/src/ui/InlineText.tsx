@@ -15,15 +15,15 @@ interface Props {
 /** Enter or leaving the field accepts the text, Escape discards it. */
 export function InlineText({ label, value, limit, long = false, list, onDone }: Props) {
   const field = useRef<HTMLInputElement & HTMLTextAreaElement>(null);
-  const over = useRef(false);
+  const ended = useRef(false);
   useLayoutEffect(() => {
     field.current!.focus(); // Before the user types.
     field.current!.select();
   }, []);
-  const end = (take: boolean) => {
-    if (over.current || !field.current) return; // A removed field loses the focus too.
-    over.current = true;
-    onDone(take ? field.current.value.trim() : null);
+  const end = (accept: boolean) => {
+    if (ended.current || !field.current) return; // A removed field loses the focus too.
+    ended.current = true;
+    onDone(accept ? field.current.value.trim() : null);
   };
   const common = {
     ref: field,

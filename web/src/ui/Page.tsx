@@ -2,17 +2,16 @@
 
 import type { ComponentChildren } from "preact";
 import { useEffect } from "preact/hooks";
+import { isId } from "../store/router";
 import { text } from "./text";
 
 interface PageProps {
   /** The heading; pages with a header of their own leave it out. */
   title?: string;
-  /** Beside the heading. */
   actions?: ComponentChildren;
   /** Links to the pages above this one. */
   crumbs?: (readonly [href: string, name: string])[];
   error?: string | null;
-  /** True until there is content. */
   loading?: boolean;
   children?: ComponentChildren;
 }
@@ -21,7 +20,7 @@ export function Page({ title, actions, crumbs, error, loading, children }: PageP
   return (
     <main>
       {crumbs && (
-        <nav class="crumbs" aria-label={text.breadcrumbs}>
+        <nav class="crumbs small" aria-label={text.breadcrumbs}>
           {crumbs.map(([href, name]) => (
             <a key={href} href={href}>
               {name}
@@ -55,11 +54,8 @@ interface CardProps {
   /** Id of the section; links lead to it. */
   id: string;
   title: ComponentChildren;
-  /** CSS classes. */
   kind?: string;
-  /** Beside the title. */
   note?: ComponentChildren;
-  /** At the right end of the title. */
   actions?: ComponentChildren;
   children?: ComponentChildren;
 }
@@ -99,6 +95,28 @@ export function Empty({ title, hint, children }: EmptyProps) {
     </section>
   );
 }
+
+interface NotFoundProps {
+  what: string;
+  reason: string;
+  /** The id in the address; a malformed one is named instead of the server's message. */
+  id?: string;
+  children?: ComponentChildren;
+}
+
+/** A page for something that does not exist on the server. */
+export function NotFound({ what, reason, id, children }: NotFoundProps) {
+  return (
+    <section class="empty card">
+      <h1>{what}</h1>
+      <p role="alert">{reasonOf(reason, id)}</p>
+      {children}
+    </section>
+  );
+}
+
+export const reasonOf = (reason: string, id?: string) =>
+  id === undefined || isId(id) ? reason : text.unknownId(id);
 
 interface ProgressProps {
   label: string;

@@ -20,7 +20,6 @@ export function Select({ title, choices, value, onChange }: Props) {
   );
 }
 
-/** The options of a list. */
 export const Options = ({ of }: { of: Option }) => (
   <>
     {of.map(([name, words]) => (

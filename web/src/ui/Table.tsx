@@ -16,7 +16,6 @@ interface Props<Row> {
   columns: readonly Column<Row>[];
   rows: readonly Row[];
   keyOf: (row: Row) => string | number;
-  /** CSS classes. */
   kind?: string;
   rowKind?: (row: Row) => string;
 }

@@ -1,8 +1,9 @@
 /** A short tour: a panel beside the page explains its parts step by step. */
 
 import { useEffect, useRef, useState } from "preact/hooks";
+import { useListener } from "../store/polling";
 import { text } from "./text";
-import { prefersReducedMotion } from "./theme";
+import { prefersReducedMotion } from "./canvas";
 import "./tour.css";
 
 export interface Step {
@@ -37,14 +38,10 @@ export function Tour({ steps, requested, onStep, onEnd }: Props) {
     panel.current!.focus();
     return () => before?.focus();
   }, []);
-  useEffect(() => {
-    const press = (event: KeyboardEvent) => {
-      const typing = (event.target as Element).closest?.("input, select, textarea");
-      if (event.key === "Escape" && !typing) onEnd();
-    };
-    window.addEventListener("keydown", press);
-    return () => window.removeEventListener("keydown", press);
-  }, [onEnd]);
+  useListener("keydown", (event: KeyboardEvent) => {
+    const typing = (event.target as Element).closest?.("input, select, textarea");
+    if (event.key === "Escape" && !typing) onEnd();
+  });
   return (
     <aside ref={panel} class="tour" aria-label={text.tour} tabIndex={-1}>
       <p class="tour-count quiet small">{text.step(number + 1, steps.length)}</p>

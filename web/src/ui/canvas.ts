@@ -1,4 +1,4 @@
-/** Canvases with the resolution of the screen. */
+/** Canvases in the resolution of the screen and its colour scheme; sizes in pixels. */
 
 import type { RefObject } from "preact";
 import { useEffect, useState } from "preact/hooks";
@@ -35,3 +35,25 @@ export function prepare(canvas: HTMLCanvasElement, size: Size): CanvasRenderingC
   context.clearRect(0, 0, size.width, size.height);
   return context;
 }
+
+const query = () => window.matchMedia("(prefers-color-scheme: dark)");
+
+export type Theme = "light" | "dark";
+
+export function useTheme(): Theme {
+  const [dark, setDark] = useState(() => query().matches);
+  useEffect(() => {
+    const media = query();
+    const listener = () => setDark(media.matches);
+    media.addEventListener("change", listener);
+    return () => media.removeEventListener("change", listener);
+  }, []);
+  return dark ? "dark" : "light";
+}
+
+export function prefersReducedMotion(): boolean {
+  return window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+}
+
+export const px = (sizes: Record<string, number>) =>
+  Object.fromEntries(Object.entries(sizes).map(([name, value]) => [name, `${value}px`]));

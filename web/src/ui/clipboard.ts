@@ -1,15 +1,11 @@
 /** Copy text to the clipboard, with a note on success or failure. */
 
-import { showFailure, showToast } from "../store/toasts";
+import { attempt, showToast } from "../store/toasts";
 import { text } from "./text";
 
 export async function copyText(content: string, note: string): Promise<void> {
-  try {
-    await writeClipboard(content);
-    showToast({ kind: "note", text: note });
-  } catch (error) {
-    showFailure(error);
-  }
+  const copied = await attempt(writeClipboard(content).then(() => true));
+  if (copied) showToast({ kind: "note", text: note });
 }
 
 /** Over plain HTTP, browsers only copy a selection. */

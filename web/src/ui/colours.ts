@@ -1,6 +1,6 @@
 /** Colour maps: sequential for magnitudes, diverging for signed values. */
 
-import type { Theme } from "./theme";
+import type { Theme } from "./canvas";
 
 export type Rgb = [number, number, number];
 

@@ -1,6 +1,6 @@
 /** Components that are loaded when they are first shown. */
 
-import type { ComponentType } from "preact";
+import type { ComponentType, FunctionComponent } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { text } from "./text";
 
@@ -8,7 +8,7 @@ import { text } from "./text";
 export function lazy<P extends object>(
   load: () => Promise<ComponentType<P>>,
   Placeholder: "main" | "section" = "main",
-): ComponentType<P> {
+): FunctionComponent<P> {
   let Loaded: ComponentType<P> | null = null;
   return function LazyComponent(props: P) {
     const [, redraw] = useState(0);
@@ -16,8 +16,8 @@ export function lazy<P extends object>(
     useEffect(() => {
       if (Loaded) return;
       load().then(
-        (found) => {
-          Loaded = found;
+        (component) => {
+          Loaded = component;
           redraw((count) => count + 1);
         },
         () => setFailed(true),

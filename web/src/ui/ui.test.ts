@@ -1,7 +1,9 @@
-import { describe, expect, it } from "vitest";
-import type { Run, Spec } from "../api/types";
+import { describe, expect, it, vi } from "vitest";
+import type { Experiment, Run, Spec } from "../api/types";
 import { diverging, viridis } from "./colours";
-import { bytes, duration, number, titleOf } from "./format";
+import { bytes, duration, labelOf, number, titleOf } from "./format";
+import { define, parse } from "./Term";
+import { reasonOf } from "./Page";
 
 describe("colours", () => {
   it("of viridis go from dark violet to yellow and get lighter", () => {
@@ -56,5 +58,68 @@ describe("formats", () => {
     expect(titleOf({ ...run, spec: { seed: 0 } }, known)).toBe("Quality diversity");
     const gaits = known.map((one) => ({ ...one, experiment: "gaits" }));
     expect(titleOf({ ...run, experiment: "gaits", spec: same }, gaits)).toBe("Gaits, demo");
+  });
+});
+
+describe("the title of a run", () => {
+  const run = { name: null, experiment: "quality-diversity", demonstration: false };
+
+  it("is its name, if it has one", () => {
+    expect(labelOf({ ...run, name: "Mine", demonstration: true })).toBe("Mine");
+    expect(titleOf({ ...run, name: "Mine" } as Run, [])).toBe("Mine");
+    expect([labelOf(run), labelOf({ ...run, demonstration: true })]).toEqual([
+      "Quality diversity",
+      "Demonstration",
+    ]);
+  });
+
+  it("is its preset's name for any seed, and the spec is read once", () => {
+    const reads = vi.fn();
+    const spec = {
+      experiment: "gaits",
+      get swimmers() {
+        reads();
+        return ["a"];
+      },
+      seed: 7,
+    };
+    const presets = [
+      { name: "one", spec: { experiment: "gaits", swimmers: ["b"], seed: 0 } },
+      { name: "two", spec: { experiment: "gaits", swimmers: ["a"], seed: 0 } },
+    ];
+    const experiments = [{ experiment: "gaits", presets }] as unknown as Experiment[];
+    const gaits = { ...run, experiment: "gaits", spec } as unknown as Run;
+    expect([titleOf(gaits, experiments), titleOf({ ...gaits }, experiments)]).toEqual([
+      "Gaits, two",
+      "Gaits, two",
+    ]);
+    expect(reads).toHaveBeenCalledTimes(1);
+  });
+});
+
+describe("the glossary", () => {
+  it("has terms with plain definitions", () => {
+    const markdown = "# G\n\nIntro.\n\n## QD score\n\nA `sum` of\n[elites](a.md).\n\n## Run\n\nOne.\n";
+    expect([...parse(markdown)]).toEqual([
+      ["qd score", "A sum of elites."],
+      ["run", "One."],
+    ]);
+  });
+
+  it("is that of the documentation", () => {
+    expect(define("QD score")).toMatch(/^The sum of the fitness/);
+    expect(define("Niche")).toBeUndefined();
+  });
+});
+
+describe("the page of a missing resource", () => {
+  it.each(["0190a6a0-0000-7000-8000-000000000001", "ab".repeat(32)])("repeats the server about %s", (id) => {
+    expect(reasonOf("No such run.", id)).toBe("No such run.");
+  });
+
+  it("names a malformed id and hides the parser's message", () => {
+    const reason = reasonOf("Input should be a valid UUID, invalid length", "abc");
+    expect(reason).toContain("abc");
+    expect(reason).not.toContain("UUID");
   });
 });

@@ -75,7 +75,7 @@ function Meter({ title, share, reading }: { title: string; share: number | null;
   const part = Math.min(1, Math.max(0, share ?? 0));
   return (
     <div class="meter">
-      <span>{title}</span>
+      <span class="quiet">{title}</span>
       <span>{reading}</span>
       {share !== null && (
         <div
@@ -160,7 +160,7 @@ function QueueCard({ queue: { total, items } }: { queue: Queue }) {
                 {run.memory_bytes !== null && `${bytes(run.memory_bytes)}, `}
                 {text.waitingFor(duration(secondsSince(run.queued_at)))}
               </span>
-              <span class="reason">{run.waiting_reason}</span>
+              <span class="quiet">{run.waiting_reason}</span>
             </li>
           ))}
         </ol>

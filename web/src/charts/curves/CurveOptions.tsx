@@ -2,7 +2,7 @@
 
 import type { ComponentChildren } from "preact";
 import { setQuery } from "../../store/router";
-import { Check as Toggle, Select } from "../../ui/Select";
+import { Check, Select } from "../../ui/Select";
 import { AXES, type CurveView, WINDOWS } from "./curveView";
 import { text } from "./text";
 import "./curves.css";
@@ -36,12 +36,12 @@ export function CurveBar({ log, children }: { log: boolean; children: ComponentC
   return (
     <div class="row curve-choices" role="group" aria-label={text.options}>
       {children}
-      <Check title={text.logScale} name="log" on={log} />
+      <QueryCheck title={text.logScale} name="log" on={log} />
     </div>
   );
 }
 
 /** A checkbox for a parameter of the address. */
-export function Check({ title, name, on }: { title: string; name: string; on: boolean }) {
-  return <Toggle title={title} on={on} onChange={(checked) => setQuery({ [name]: checked ? "1" : null })} />;
+export function QueryCheck({ title, name, on }: { title: string; name: string; on: boolean }) {
+  return <Check title={title} on={on} onChange={(checked) => setQuery({ [name]: checked ? "1" : null })} />;
 }

@@ -2,8 +2,7 @@
 
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import uPlot from "uplot";
-import { useSize } from "../../ui/canvas";
-import { useTheme } from "../../ui/theme";
+import { useSize, useTheme } from "../../ui/canvas";
 import { type CurveView, tableOf } from "./curveView";
 import { optionsOf } from "./options";
 import { type Band, type Plot, type Series, newest } from "./plots";
@@ -68,7 +67,7 @@ function Curve({ plot: { title, format, series, bands = NONE }, x, view }: Curve
   const label = text.label(title, text.over[over], now.map((each) => each.join(" ")).join(", "));
   return (
     <figure class="curve">
-      <figcaption>
+      <figcaption class="quiet small">
         <span>
           <Term name={title} />
         </span>

@@ -49,29 +49,18 @@ export function scoresOf(curves: Curves): Plot[] {
   return [
     { title: text.qdScore, format: number, series: [score, ...reevaluated(curves, "corrected_qd_score")] },
     { title: text.coverage, format: percent, series: [share, ...reevaluated(curves, "corrected_coverage")] },
-    {
-      title: text.bestFitness,
-      format: number,
-      series: [{ name: "best", colour: "--curve-3", y: best }],
-    },
+    { title: text.bestFitness, format: number, series: [{ name: "best", colour: "--curve-3", y: best }] },
   ];
 }
 
 /** Work of the search: insertions by emitter, re-evaluations, time, diverged evaluations. */
 export function workOf(curves: Curves): Plot[] {
+  const deviceSeconds = one(withoutFirst(curves), "device_seconds", "--curve-2", false);
   const plots: Plot[] = [
     { title: text.inserted, format: number, series: ofEmitters(curves, ": inserted") },
     { title: text.improved, format: number, series: ofEmitters(curves, ": improved") },
-    {
-      title: text.hitRate,
-      format: percent,
-      series: one(curves, "hit_rate", "--series-3", true),
-    },
-    {
-      title: text.deviceSeconds,
-      format: number,
-      series: one(withoutFirst(curves), "device_seconds", "--curve-2", false),
-    },
+    { title: text.hitRate, format: percent, series: one(curves, "hit_rate", "--series-3", true) },
+    { title: text.deviceSeconds, format: number, series: deviceSeconds },
     { title: text.diverged, format: number, series: divergedSoFar(curves) },
   ];
   return plots.filter(({ series }) => series.length > 0);

@@ -1,7 +1,7 @@
 /** Axes, grid and titles of a plot. */
 
 import { Term } from "../../ui/Term";
-import { px } from "../../ui/px";
+import { px } from "../../ui/canvas";
 import type { Axis } from "./Plot";
 import { positionOf, ticksOf } from "./scale";
 import "./plot.css";
@@ -54,7 +54,15 @@ export function Frame({ x, y, room, upper, shaded }: Props) {
         </g>
       ))}
       <path class="base" d={`M${left} ${bottom}H${right}`} />
-      {upper && <UpperTicks ticks={upper.ticks} {...{ across, room }} />}
+      {upper &&
+        uncrowded(upper.ticks, across).map(({ at, text }) => (
+          <g key={at}>
+            <path class="base" d={`M${across(at)} ${top}v-4`} />
+            <text x={across(at)} y={top - 9}>
+              {text}
+            </text>
+          </g>
+        ))}
     </g>
   );
 }
@@ -80,27 +88,10 @@ export function AxisTitles({ x, y, room, upper }: Omit<Props, "shaded">) {
   );
 }
 
-type UpperProps = Pick<Upper, "ticks"> & { across: (value: number) => number; room: Room };
-
-function UpperTicks({ ticks, across, room }: UpperProps) {
-  return (
-    <g>
-      {uncrowded(ticks, across).map(({ at, text }) => (
-        <g key={at}>
-          <path class="base" d={`M${across(at)} ${room.top}v-4`} />
-          <text x={across(at)} y={room.top - 9}>
-            {text}
-          </text>
-        </g>
-      ))}
-    </g>
-  );
-}
-
 /** The ticks with enough room, from the last one down. */
 function uncrowded(ticks: Upper["ticks"], across: (value: number) => number): Upper["ticks"] {
-  return ticks.reduceRight<Upper["ticks"]>((kept, tick) => {
-    const crowded = kept[0] && across(kept[0].at) - across(tick.at) < X_SPACING;
-    return crowded ? kept : [tick, ...kept];
+  return ticks.reduceRight<Upper["ticks"]>((labelled, tick) => {
+    const crowded = labelled[0] && across(labelled[0].at) - across(tick.at) < X_SPACING;
+    return crowded ? labelled : [tick, ...labelled];
   }, []);
 }

@@ -8,12 +8,12 @@ interface MarkProps {
   line: Line;
   spot: [number, number];
   state: string;
-  /** True if the tooltip is to the left. */
-  flip: boolean;
+  /** Of the plot: in its right half the tooltip is to the left. */
+  width: number;
   onFocusPoint: (point: Point | null) => void;
 }
 
-export function Mark({ point, line, spot, state, flip, onFocusPoint }: MarkProps) {
+export function Mark({ point, line, spot, state, width, onFocusPoint }: MarkProps) {
   const [name, ...figures] = point.tooltip;
   const kind = point.y === null ? "cross" : point.hollow ? "hollow" : "";
   const common = {
@@ -24,7 +24,7 @@ export function Mark({ point, line, spot, state, flip, onFocusPoint }: MarkProps
     onBlur: () => onFocusPoint(null),
   };
   const tip = (
-    <span class={`tip ${flip ? "flip" : ""}`} aria-hidden="true">
+    <span class={`tip ${spot[0] > width / 2 ? "flip" : ""}`} aria-hidden="true">
       <b>{name}</b>
       {figures.map((figure) => (
         <span key={figure}>{figure}</span>
@@ -32,16 +32,6 @@ export function Mark({ point, line, spot, state, flip, onFocusPoint }: MarkProps
       {point.href && <i>{text.clickToWatch}</i>}
     </span>
   );
-  if (point.href) {
-    return (
-      <a href={point.href} {...common}>
-        {tip}
-      </a>
-    );
-  }
-  return (
-    <span role="img" tabIndex={0} {...common}>
-      {tip}
-    </span>
-  );
+  if (!point.href) return <span role="img" tabIndex={0} {...common} children={tip} />;
+  return <a href={point.href} {...common} children={tip} />;
 }

@@ -2,7 +2,7 @@
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import { useSize } from "../../ui/canvas";
-import { AxisTitles, Frame, type Room, type Upper } from "./Frame";
+import { type Room, type Upper, AxisTitles, Frame } from "./Frame";
 import { Mark } from "./Mark";
 import { type Scale, positionOf } from "./scale";
 import "../lineStyle.css";
@@ -34,7 +34,7 @@ export interface Axis {
   format: (value: number) => string;
 }
 
-interface Props {
+export interface PlotProps {
   title: string;
   x: Axis;
   y: Axis;
@@ -45,7 +45,7 @@ interface Props {
   onFocusPoint?: (point: Point | null) => void;
 }
 
-export function Plot({ title, x, y, lines, upper = null, shaded = false, onFocusPoint }: Props) {
+export function Plot({ title, x, y, lines, upper = null, shaded = false, onFocusPoint }: PlotProps) {
   const host = useRef<HTMLDivElement>(null);
   const { width, height } = useSize(host);
   const [hovered, setHovered] = useState<string | null>(null);
@@ -74,26 +74,32 @@ export function Plot({ title, x, y, lines, upper = null, shaded = false, onFocus
         {width > 0 && (
           <svg width={width} height={height} aria-hidden="true">
             <Frame {...{ x, y, room, upper, shaded }} />
-            {drawn.map((each) => (
-              <LinePath key={each.line.name} {...each} faint={faint(each.line)} />
+            {drawn.map(({ line, spots }) => (
+              <path key={line.name} class={`xy-line ${faint(line)}`} {...pathOf(line, spots)} />
             ))}
           </svg>
         )}
         {width > 0 && <AxisTitles {...{ x, y, room, upper }} />}
         {width > 0 &&
-          drawn.map((each) => (
-            <Marks
-              key={each.line.name}
-              {...each}
-              {...{ focused, width }}
-              faint={faint(each.line)}
-              onFocusPoint={setFocused}
-            />
-          ))}
+          drawn.flatMap(({ line, spots }) =>
+            line.points.map((point, i) => (
+              <Mark
+                key={`${line.name} ${point.x}`}
+                {...{ point, line, spot: spots[i]!, width, onFocusPoint: setFocused }}
+                state={point === focused ? "near" : faint(line)}
+              />
+            )),
+          )}
       </div>
     </figure>
   );
 }
+
+const strokeOf = ({ colour, dash, width }: Line) => ({
+  stroke: `var(${colour})`,
+  strokeDasharray: dash,
+  strokeWidth: width,
+});
 
 /** The position of a point; crosses are at the top, one row per line. */
 function spotOf(point: Point, k: number, x: Axis, y: Axis, room: Room): [number, number] {
@@ -102,33 +108,6 @@ function spotOf(point: Point, k: number, x: Axis, y: Axis, room: Room): [number,
     left + positionOf(x.scale, point.x) * (right - left),
     point.y === null ? top + 10 + 12 * k : bottom - positionOf(y.scale, point.y) * (bottom - top),
   ];
-}
-
-function LinePath({ line, spots, faint }: Drawn & { faint: string }) {
-  return (
-    <path
-      class={`xy-line ${faint}`}
-      d={pathOf(spots.filter((_, i) => line.points[i]!.y !== null))}
-      style={{ stroke: `var(${line.colour})`, strokeDasharray: line.dash, strokeWidth: line.width }}
-    />
-  );
-}
-
-interface MarksProps extends Drawn {
-  focused: Point | null;
-  width: number;
-  faint: string;
-  onFocusPoint: (point: Point | null) => void;
-}
-
-function Marks({ line, spots, focused, width, faint, onFocusPoint }: MarksProps) {
-  return line.points.map((point, i) => (
-    <Mark
-      key={point.x}
-      {...{ point, line, spot: spots[i]!, flip: spots[i]![0] > width / 2, onFocusPoint }}
-      state={point === focused ? "near" : faint}
-    />
-  ));
 }
 
 interface Drawn {
@@ -151,8 +130,11 @@ function nearest(drawn: Drawn[], x: number, y: number): Point | null {
   return found;
 }
 
-function pathOf(spots: [number, number][]): string {
-  return spots.map(([x, y], i) => `${i ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
+/** The path through the spots of points with a value. */
+function pathOf(line: Line, spots: Drawn["spots"]) {
+  const known = spots.filter((_, i) => line.points[i]!.y !== null);
+  const d = known.map(([x, y], i) => `${i ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
+  return { d, style: strokeOf(line) };
 }
 
 interface LegendProps {
@@ -163,14 +145,11 @@ interface LegendProps {
 
 function Legend({ lines, of, onHover }: LegendProps) {
   return (
-    <figcaption class="row xy-legend">
+    <figcaption class="row small xy-legend">
       {lines.map((line) => (
         <span key={line.name} onPointerEnter={() => onHover(line.name)} onPointerLeave={() => onHover(null)}>
           <svg viewBox="0 0 26 10" aria-hidden="true">
-            <path
-              d="M1 5h24"
-              style={{ stroke: `var(${line.colour})`, strokeDasharray: line.dash, strokeWidth: 2.2 }}
-            />
+            <path d="M1 5h24" style={strokeOf({ ...line, width: 2.2 })} />
           </svg>
           {line.name}
           {line.power != null && (

@@ -17,20 +17,20 @@ interface Props {
 
 export function JsonView({ spec, errors, take, onProblem, replace }: Props) {
   const area = useRef<HTMLTextAreaElement>(null);
-  const own = useRef<string | null>(null);
+  const typed = useRef<string | null>(null);
   const [json, setJson] = useState(() => written(spec));
   const [problem, setProblem] = useState<string | null>(null);
-  const tell = (found: string | null) => {
-    setProblem(found);
-    onProblem(found);
+  const report = (error: string | null) => {
+    setProblem(error);
+    onProblem(error);
   };
   useEffect(() => {
-    // Changes from outside rewrite the text; its own changes do not.
-    const typing = own.current !== null;
-    own.current = null;
+    // Changes from outside rewrite the text; its typed changes do not.
+    const typing = typed.current !== null;
+    typed.current = null;
     if (typing) return;
     setJson(written(spec));
-    tell(null);
+    report(null);
   }, [spec]);
   useEffect(() => {
     if (replace) area.current!.select();
@@ -52,11 +52,11 @@ export function JsonView({ spec, errors, take, onProblem, replace }: Props) {
         aria-invalid={problem !== null || errors.length > 0}
         aria-describedby="spec-json-about spec-json-problems"
         onInput={(event) => {
-          own.current = event.currentTarget.value;
-          setJson(own.current);
-          const found = take(own.current);
-          if (found) own.current = null;
-          tell(found);
+          typed.current = event.currentTarget.value;
+          setJson(typed.current);
+          const error = take(typed.current);
+          if (error) typed.current = null;
+          report(error);
         }}
       />
       <Problems problem={problem} errors={errors} />

@@ -1,4 +1,4 @@
-/** A form for a spec, generated from its schema. */
+/** A form for a spec, generated from its schema, with an outline of its sections. */
 
 import type { ComponentChildren } from "preact";
 import type { Json } from "../../api/types";
@@ -7,7 +7,7 @@ import { Options } from "../../ui/Select";
 import { words } from "../../ui/format";
 import { countWithin, isOff, isApplicable, partOf, valueAt, withChoice } from "./document";
 import type { Field, Rows, Section, Union } from "./fields";
-import { Entry, EntryName, type FormState, Messages } from "./Entry";
+import { type FormState, Entry, EntryName, Messages } from "./Entry";
 import { text } from "./text";
 
 /** Sections of a form; the first one holds the values outside all others. */
@@ -171,3 +171,43 @@ function RowList({ rows, state }: { rows: Rows; state: FormState }) {
 }
 
 const lower = (title: string) => title.charAt(0).toLowerCase() + title.slice(1);
+
+interface Props {
+  parts: (Section | Union)[];
+  state: FormState;
+}
+
+export function Outline({ parts, state }: Props) {
+  return (
+    <nav class="outline" aria-label={text.sections}>
+      {parts.map((part) => {
+        const wrong = within(part, state.messages.keys(), parts);
+        const changed = within(part, state.changed, parts);
+        return (
+          <button type="button" key={part.path} class="plain" onClick={() => go(part.path, state)}>
+            {part.title}
+            {wrong > 0 && <span class="wrong-text">{text.errors(wrong)}</span>}
+            {wrong === 0 && changed > 0 && <span class="tally">{text.changed(changed)}</span>}
+          </button>
+        );
+      })}
+    </nav>
+  );
+}
+
+/** Number of paths in a section; paths outside all sections count for the first. */
+function within({ path }: Props["parts"][0], paths: Iterable<string>, parts: Props["parts"]): number {
+  const all = [...paths];
+  if (path) return countWithin(all, path);
+  const others = parts.reduce((sum, part) => sum + (part.path ? countWithin(all, part.path) : 0), 0);
+  return all.length - others;
+}
+
+function go(path: string, state: FormState): void {
+  state.close(path, false);
+  requestAnimationFrame(() => {
+    const section = document.getElementById(`section-${path || "general"}`);
+    section?.scrollIntoView({ block: "start" });
+    section?.querySelector<HTMLElement>("input, select, textarea")?.focus({ preventScroll: true });
+  });
+}

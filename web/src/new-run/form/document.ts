@@ -15,7 +15,6 @@ export function valueAt(document: Json, path: string): Json {
   }, document);
 }
 
-/** A copy of the document with another value at the path. */
 export function withValue(document: Json, path: string, value: Json): Json {
   if (path === "") return value;
   const [key, ...rest] = path.split(".") as [string, ...string[]];
@@ -34,7 +33,6 @@ export function typed(text: string): Json {
   return Number.isFinite(value) ? value : text;
 }
 
-/** The error of a number by the schema alone; null for a valid one. */
 export function numberError(field: NumberField, value: Json): string | null {
   if (value === null) return field.nullable ? null : text.needsNumber;
   if (typeof value !== "number") return text.notANumber(String(value));
@@ -82,7 +80,6 @@ export function typedJson(text: string): Json {
   }
 }
 
-/** Errors of a document by the schema alone. */
 export function schemaErrors(form: Section, document: Json): FieldError[] {
   return leavesOf(form, document).flatMap((field) => {
     const message = wrongWith(field, valueAt(document, field.path));
@@ -190,7 +187,6 @@ function sameKeys(a: Spec, b: Spec): boolean {
   return keysOf(a, b).every((key) => OF_PLUGINS.includes(key) || (key in a && key in b));
 }
 
-/** The number of paths in a part of the spec. */
 export function countWithin(paths: Iterable<string>, part: string): number {
   return [...paths].filter((path) => path === part || path.startsWith(`${part}.`)).length;
 }

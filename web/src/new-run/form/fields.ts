@@ -2,7 +2,7 @@
 
 import type { Json, Schema, Spec } from "../../api/types";
 import { words } from "../../ui/format";
-import { type Range, defaultOf, join, notNull, rangeOf, resolve, text } from "./schema";
+import { type Range, defaultOf, join, notNull, rangeOf, resolve, tagOf, text } from "./schema";
 
 export type { Range };
 
@@ -209,18 +209,6 @@ function unionOf(schema: Schema, root: Schema, common: Common): Union {
     });
   });
   return { ...common, kind: "union", tag, parts: new Map(named) };
-}
-
-/** The field that names each of several parts. */
-export function tagOf(parts: Schema[]): string {
-  const [first, ...rest] = parts.map((part) => (part.properties ?? {}) as Record<string, Schema>);
-  const fixed = (part: Record<string, Schema>, key: string) =>
-    part[key] !== undefined && ("const" in part[key] || Array.isArray(part[key].enum));
-  const found = Object.keys(first ?? {}).find(
-    (key) => "const" in first![key]! && rest.every((part) => fixed(part, key)),
-  );
-  if (found === undefined) throw new Error("A union needs a field with a constant in each of its parts.");
-  return found;
 }
 
 function rowsOf(schema: Schema, root: Schema, common: Common): Rows {

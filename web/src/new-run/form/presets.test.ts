@@ -12,7 +12,7 @@ import {
   withValue,
 } from "./document";
 import { type Field, formOf } from "./fields";
-import { PRESETS } from "./presets.fixture";
+import { PRESETS } from "./form.fixture";
 
 /** The value as it is after a person has typed what the form shows. */
 function retyped(field: Field, value: Json): Json {

@@ -3,30 +3,34 @@
 import { useMemo, useState } from "preact/hooks";
 import type { ResultRow } from "../../api/types";
 import { setQuery } from "../../store/router";
-import { formOf } from "../../ui/coupling";
-import { NotForceFree } from "../../ui/NotForceFree";
-import { Plot, type Point } from "../../charts/plot/Plot";
+import { NotForceFree, formOf } from "../../ui/coupling";
+import { type Point, Plot } from "../../charts/plot/Plot";
 import { formsOf, reynoldsAxis, sweepAxes, sweepLines } from "./gaits";
 import { Card } from "../../ui/Page";
 import { Segments } from "../../ui/Select";
 import { ReplayLoop } from "../../replay/Loop";
 import { ReplayStatus, useReplays } from "../../replay/replays";
-import { useDebounced } from "../../store/timing";
+import { useDebounced } from "../../store/polling";
 import { type ResultsProps, TableCard, hrefOf, useTable } from "../results/resultsPage";
 import { text } from "./text";
 import "./gaits.css";
 
-const REPLAYS = "beside";
+/** Delay before a mark counts as chosen, so that a moving pointer requests no replays. */
+const SETTLE_MS = 120;
+/** In the address: all forms side by side. */
+const ALL_FORMS = "all";
 
 export function GaitsRun({ run, query }: ResultsProps) {
   const { results, missing } = useTable(run);
   const forms = formsOf(run.spec);
   const wanted = query.get("form") ?? "";
-  const requested = [...forms, REPLAYS].includes(wanted) ? wanted : forms[0]!;
-  const shown = requested === REPLAYS ? forms : [requested];
+  const requested = [...forms, ALL_FORMS].includes(wanted) ? wanted : forms[0]!;
+  const shown = requested === ALL_FORMS ? forms : [requested];
   const rows = (results?.rows ?? []).filter((row) => shown.includes(String(row.form)));
   const [focused, setFocused] = useState<Point | null>(null);
-  const settled = useLastMark(focused);
+  // The last mark under a resting pointer; leaving it keeps its replay.
+  const [last, setLast] = useState<Point | null>(null);
+  useDebounced(focused?.href ? focused : null, SETTLE_MS, setLast);
   return (
     <>
       <Card
@@ -44,7 +48,13 @@ export function GaitsRun({ run, query }: ResultsProps) {
                 <Sweep key={form} {...{ run, query, form }} all={results!.rows} onFocusPoint={setFocused} />
               ))}
             </div>
-            <MarkReplay point={settled} />
+            <aside class="mark-replay" aria-label={text.replay}>
+              {last ? (
+                <MarkPlayer key={last.href} point={last} />
+              ) : (
+                <p class="quiet small">{text.pointAtMark}</p>
+              )}
+            </aside>
           </div>
         )}
         {rows.length > 0 && <MarkLegend rows={rows} />}
@@ -59,7 +69,7 @@ function Forms({ forms, selected }: { forms: string[]; selected: string }) {
   return (
     <Segments
       label={text.form}
-      choices={[...choices, [REPLAYS, text.sideBySide]]}
+      choices={[...choices, [ALL_FORMS, text.sideBySide]]}
       value={selected}
       onSelect={(form) => setQuery({ form: form === forms[0] ? null : form })}
     />
@@ -113,24 +123,6 @@ function MarkLegend({ rows }: { rows: ResultRow[] }) {
         </span>
       )}
     </p>
-  );
-}
-
-/** Delay before a mark counts as chosen, so that a moving pointer requests no replays. */
-const SETTLE_MS = 120;
-
-/** The last mark under a resting pointer; leaving it keeps its replay. */
-function useLastMark(focused: Point | null): Point | null {
-  const [last, setLast] = useState<Point | null>(null);
-  useDebounced(focused?.href ? focused : null, SETTLE_MS, setLast);
-  return last;
-}
-
-function MarkReplay({ point }: { point: Point | null }) {
-  return (
-    <aside class="mark-replay" aria-label={text.replay}>
-      {point ? <MarkPlayer key={point.href} point={point} /> : <p class="quiet small">{text.pointAtMark}</p>}
-    </aside>
   );
 }
 

@@ -21,7 +21,7 @@ describe("a sweep of gaits", () => {
     expect(worm!.points[1]!.tooltip).toEqual(["Worm at ν = 1", "0.5 cells per cycle", "Reynolds number 2"]);
   });
 
-  it("marks what limits or warnings make doubtful, and what did not finish", () => {
+  it("marks doubtful and unfinished simulations", () => {
     expect(worm!.points.map(({ hollow }) => hollow)).toEqual([true, false]);
     expect(worm!.points[0]!.tooltip).toContain("limits active in 10 % of node steps");
     expect(ray!.points[0]!.y).toBeNull();
@@ -39,7 +39,7 @@ describe("a sweep of gaits", () => {
     expect(reynoldsAxis([rows[2]!])).toBeNull();
   });
 
-  it("leaves out of its axis what did not finish", () => {
+  it("ignores unfinished simulations in its axis", () => {
     const burst = point({ viscosity: 1, displacement: 1e6, status: "supersonic" });
     expect(sweepAxes(spec, [...rows, burst]).y.scale).toEqual(sweepAxes(spec, rows).y.scale);
   });

@@ -12,7 +12,6 @@ const SWIMMERS = ["worm", "tadpole", "ray", "cilia", "jellyfish"];
 
 type Href = (creature: string) => string;
 
-const numbers = (value: unknown) => (Array.isArray(value) ? value.map(Number) : []);
 const strings = (value: unknown) => (Array.isArray(value) ? value.map(String) : []);
 const measure = (row: ResultRow, name: string) =>
   typeof row[name] === "number" ? (row[name] as number) : null;
@@ -24,11 +23,7 @@ export function sweepAxes(spec: Spec, rows: readonly ResultRow[]): { x: Axis; y:
   const displacements = rows.filter(finished).map((row) => Number(row.displacement));
   const format = (value: number) => number(value, 2);
   return {
-    x: {
-      title: text.viscosity,
-      scale: logAround(numbers(spec.viscosities)),
-      format,
-    },
+    x: { title: text.viscosity, scale: logAround(strings(spec.viscosities).map(Number)), format },
     y: { title: text.displacement, scale: fromZero(displacements), format },
   };
 }

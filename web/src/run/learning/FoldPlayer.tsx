@@ -3,12 +3,12 @@
 import { useMemo, useState } from "preact/hooks";
 import type { Target } from "../../api/types";
 import type { Replay } from "../../decode/replay";
+import { BODY_INK } from "../../replay/bodyPath";
 import { CanvasStage } from "../../replay/CanvasStage";
 import { StepRange } from "../../replay/Transport";
 import { useClock } from "../../replay/clock";
-import { chainsOf, type Point, positionsAt } from "../../replay/motion";
-import { type Size, prepare } from "../../ui/canvas";
-import { prefersReducedMotion, useTheme } from "../../ui/theme";
+import { type Point, chainsOf, positionsAt } from "../../replay/motion";
+import { type Size, prepare, prefersReducedMotion, useTheme } from "../../ui/canvas";
 import { text } from "./text";
 
 /** Seconds of playback, and of rest at the end. */
@@ -17,8 +17,8 @@ const [PLAY_SECONDS, PAUSE_SECONDS] = [4, 1.5];
 const MOMENTS = [0, 0.1, 0.4, 1];
 
 const INK = {
-  light: { body: "#12222c", halo: "rgb(255 255 255 / 0.7)", picture: [214, 106, 42] },
-  dark: { body: "#fdf8ec", halo: "rgb(4 10 14 / 0.6)", picture: [226, 132, 66] },
+  light: { body: BODY_INK.light, halo: "rgb(255 255 255 / 0.7)", picture: [214, 106, 42] },
+  dark: { body: BODY_INK.dark, halo: "rgb(4 10 14 / 0.6)", picture: [226, 132, 66] },
 };
 
 export function FoldPlayer({ replay, target }: { replay: Replay; target: Target }) {
@@ -120,12 +120,12 @@ export function pictureOf({ width, height, pixels }: Target, rgb: readonly numbe
 }
 
 /** Place of a picture on the lattice: left, top (upwards), width and height, in cells. */
-export function pictureBox(target: Target, [width, height]: readonly [number, number]) {
+export function pictureBox(target: Target, world: readonly [number, number]) {
   const scale = target.size / Math.max(target.width, target.height);
-  const [wide, high] = [Math.round(scale * target.width), Math.round(scale * target.height)];
-  const [left, bottom] = [Math.floor((width - wide) / 2), Math.floor((height - high) / 2)];
+  const [width, height] = [Math.round(scale * target.width), Math.round(scale * target.height)];
+  const [left, bottom] = [Math.floor((world[0] - width) / 2), Math.floor((world[1] - height) / 2)];
   // The centre of a cell is a whole coordinate.
-  return { left: left - 0.5, top: bottom + high - 0.5, wide, high };
+  return { left: left - 0.5, top: bottom + height - 0.5, width, height };
 }
 
 function drawFold(canvas: HTMLCanvasElement, size: Size, fold: Fold, time: number): void {
@@ -133,14 +133,14 @@ function drawFold(canvas: HTMLCanvasElement, size: Size, fold: Fold, time: numbe
   const world = fold.replay.header.size;
   const scale = size.width / world[0];
   const screen = ([x, y]: Point): Point => [(x + 0.5) * scale, (world[1] - 0.5 - y) * scale];
-  const { left, top, wide, high } = pictureBox(fold.target, world);
+  const { left, top, width, height } = pictureBox(fold.target, world);
   context.globalAlpha = fold.shown;
   context.imageSmoothingQuality = "high";
-  context.drawImage(fold.picture, ...screen([left, top]), wide * scale, high * scale);
+  context.drawImage(fold.picture, ...screen([left, top]), width * scale, height * scale);
   context.globalAlpha = 1;
   const points = positionsAt(fold.replay, time).map(screen);
   context.lineCap = context.lineJoin = "round";
-  for (const [colour, width] of [
+  for (const [colour, lineWidth] of [
     [fold.ink.halo, Math.max(2.6, 0.9 * scale)],
     [fold.ink.body, Math.max(1.1, 0.45 * scale)],
   ] as const) {
@@ -149,7 +149,7 @@ function drawFold(canvas: HTMLCanvasElement, size: Size, fold: Fold, time: numbe
       chain.forEach((node, i) => context[i === 0 ? "moveTo" : "lineTo"](...points[node]!));
     }
     context.strokeStyle = colour;
-    context.lineWidth = width;
+    context.lineWidth = lineWidth;
     context.stroke();
   }
 }

@@ -8,20 +8,13 @@ import { useStore } from "../../store/store";
 import { setQuery } from "../../store/router";
 import { number, shortId } from "../../ui/format";
 import { Card } from "../../ui/Page";
-import { FoldPlayer } from "./FoldPlayer";
-import { pictureOf } from "./FoldPlayer";
+import { FoldPlayer, pictureOf } from "./FoldPlayer";
 import { ReplayStatus, useReplays } from "../../replay/replays";
-import { hrefOf } from "../results/resultsPage";
+import { type ResultsProps, hrefOf } from "../results/resultsPage";
 import { text } from "./text";
 import "./folds.css";
 
-interface Props {
-  run: Run;
-  query: URLSearchParams;
-  rows: ResultRow[];
-}
-
-export function FoldsCard({ run, query, rows }: Props) {
+export function FoldsCard({ run, query, rows }: ResultsProps & { rows: ResultRow[] }) {
   const { value: targets, error } = useFetched(() => api.readTargets(run.id), [run.id]);
   const selected = targets?.find(({ name }) => name === query.get("picture")) ?? targets?.[0];
   const row = rows.find(({ picture }) => picture === selected?.name);

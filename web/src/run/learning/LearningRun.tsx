@@ -2,8 +2,9 @@
 
 import { useMemo } from "preact/hooks";
 import type { ResultRow, Run } from "../../api/types";
-import { Plot, type Axis, type Line } from "../../charts/plot/Plot";
+import { Plot, type Axis, type Line, type PlotProps } from "../../charts/plot/Plot";
 import { fromZero, logAround } from "../../charts/plot/scale";
+import { newMoment } from "../../replay/moment";
 import { ReplayPlayer } from "../../replay/ReplayPlayer";
 import { ReplayStatus, useReplays } from "../../replay/replays";
 import type { Curves } from "../../store/curves";
@@ -30,32 +31,29 @@ export function LearningRun({ run, query }: ResultsProps) {
       </Card>
       {run.experiment === "folding" && <FoldsCard {...{ run, query, rows }} />}
       {run.experiment === "refinement" && run.status === "finished" && rows.length > 1 && (
-        <Improvement run={run} before={rows[0]!} after={rows[rows.length - 1]!} />
+        <Improvement {...{ run, query }} before={rows[0]!} after={rows[rows.length - 1]!} />
       )}
       {rows.length > 0 && <TableCard run={run} query={query} rows={rows} />}
     </>
   );
 }
 
-interface Pair {
-  run: Run;
+interface Pair extends ResultsProps {
   before: ResultRow;
   after: ResultRow;
 }
 
-function Improvement({ run, before, after }: Pair) {
+function Improvement(pair: Pair) {
+  const changed = pair.before.creature !== pair.after.creature;
   return (
     <Card id="films" kind="films" title={text.beforeAndAfter}>
-      {before.creature === after.creature ? (
-        <p class="quiet">{text.unchanged}</p>
-      ) : (
-        <SideBySide {...{ run, before, after }} />
-      )}
+      {changed ? <SideBySide {...pair} /> : <p class="quiet">{text.unchanged}</p>}
     </Card>
   );
 }
 
-function SideBySide({ run, before, after }: Pair) {
+function SideBySide({ run, query, before, after }: Pair) {
+  const moment = useMemo(newMoment, []);
   const rendering = useReplays([before.creature!, after.creature!]);
   const [first, last] = rendering.replays ?? [];
   const films = useMemo(() => {
@@ -68,7 +66,7 @@ function SideBySide({ run, before, after }: Pair) {
   return (
     <>
       <ReplayStatus {...rendering} what={text.recordingBoth} />
-      {films.length > 0 && <ReplayPlayer films={films} />}
+      {films.length > 0 && <ReplayPlayer {...{ films, moment, query }} />}
     </>
   );
 }
@@ -88,15 +86,8 @@ function CreatureLink({ run, row, title }: { run: Run; row: ResultRow; title: st
 const MAX_MARKS = 120;
 const LOSS = "loss of ";
 
-export interface LearningCurve {
-  title: string;
-  x: Axis;
-  y: Axis;
-  lines: Line[];
-}
-
 /** The loss of each filament, or the fitness of a creature, by step. */
-export function learningCurveOf(run: Run, curves: Curves): LearningCurve {
+export function learningCurveOf(run: Run, curves: Curves): PlotProps {
   const folds = run.experiment === "folding";
   // A refinement measures its creature before the first step.
   const before = folds ? 0 : 1;
@@ -121,12 +112,12 @@ function lineOf(column: string, curves: Curves, before: number, k: number): Line
   const [name, values] = [column.replace(LOSS, ""), curves.summary[column]!];
   const step = (i: number) => curves.generation[i]! - before;
   const every = Math.max(1, Math.ceil(values.length / MAX_MARKS));
-  const kept = values.map((_, i) => i).filter((i) => i % every === 0 || i === values.length - 1);
+  const marked = values.map((_, i) => i).filter((i) => i % every === 0 || i === values.length - 1);
   return {
     name,
     colour: `--series-${1 + (k % 5)}`,
     ...(k >= 5 && { dash: "6 4" }),
-    points: kept
+    points: marked
       .filter((i) => values[i] !== null)
       .map((i) => ({
         x: step(i),

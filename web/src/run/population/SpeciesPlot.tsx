@@ -4,7 +4,7 @@ import { useMemo, useRef, useState } from "preact/hooks";
 import type { SpeciesHistory } from "../../api/types";
 import { type Size, useSize } from "../../ui/canvas";
 import { count } from "../../ui/format";
-import { AxisTitles, Frame, type Room } from "../../charts/plot/Frame";
+import { type Room, AxisTitles, Frame } from "../../charts/plot/Frame";
 import type { Axis } from "../../charts/plot/Plot";
 import { positionOf } from "../../charts/plot/scale";
 import { type Stack, colourOf, pathOf, speciesAt, stackOf } from "./speciesStack";

@@ -11,7 +11,7 @@ describe("species over time", () => {
     expect(stack.areas[1]).toEqual({ number: 2, from: [8, 5, 0], to: [8, 8, 8] });
   });
 
-  it("are told at a place with their size", () => {
+  it("are found at a point, with their size", () => {
     expect(speciesAt(stack, 1, 4)).toEqual([0, 5]);
     expect(speciesAt(stack, 1, 6)).toEqual([2, 3]);
     expect(speciesAt(stack, 1, 9)).toBeNull();

@@ -13,17 +13,17 @@ describe("a table", () => {
   const order = (by: string | null, down: boolean) =>
     sortRows(rows, { by, down }).map(({ swimmer }) => swimmer);
 
-  it("is in the order of a column, numbers by size, and what is missing last either way", () => {
+  it("is sorted by a column, with missing values last in both directions", () => {
     expect(order("displacement", false)).toEqual(["ray", "cilia", "worm"]);
     expect(order("displacement", true)).toEqual(["cilia", "ray", "worm"]);
     expect(order("swimmer", false)).toEqual(["cilia", "ray", "worm"]);
     expect(order(null, false)).toEqual(["ray", "worm", "cilia"]);
   });
 
-  it("has every column that any row has, with its unit, also one nobody foresaw", () => {
+  it("has every column of any row with its unit, also unknown columns", () => {
     const columns = columnsOf([...rows, row({ limited: 0.5, novelty: true })]);
-    const told = columns.map(({ title, unit, numeric }) => [title, unit, numeric]);
-    expect(told).toEqual([
+    const headings = columns.map(({ title, unit, numeric }) => [title, unit, numeric]);
+    expect(headings).toEqual([
       ["Swimmer", "", false],
       ["Displacement", "cells/cycle", true],
       ["Limited", "of node steps", true],

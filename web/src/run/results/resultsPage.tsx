@@ -1,7 +1,7 @@
 /** The sortable table of results of a run, and its states before there are rows. */
 
-import type { ResultRow, Results, Run, Value } from "../../api/types";
-import { resultsUrl } from "../../api/urls";
+import type { ResultRow, Run, Value } from "../../api/types";
+import { resultsUrl } from "../../api/files";
 import { useResults } from "../../store/fetch";
 import { setQuery } from "../../store/router";
 import { Card } from "../../ui/Page";
@@ -16,13 +16,8 @@ export interface ResultsProps {
   query: URLSearchParams;
 }
 
-interface Shown {
-  results: Results | null;
-  /** A note while there are no rows. */
-  missing: string | null;
-}
-
-export function useTable(run: Run): Shown {
+/** The results of a run; `missing` is a note while there are no rows. */
+export function useTable(run: Run) {
   const { value, error } = useResults(run.id);
   // The last rows stay while fetching them again fails.
   if (value && value.rows.length > 0) return { results: value, missing: null };
@@ -33,7 +28,6 @@ export const hrefOf = (run: Run) => (creature: string) => `/creatures/${creature
 
 export function TableCard({ run, query, rows }: ResultsProps & { rows: ResultRow[] }) {
   const order: Order = { by: query.get("sort"), down: query.get("order") === "down" };
-  const turn = ({ by, down }: Order) => setQuery({ sort: by, order: down ? "down" : null });
   const download = (
     <a class="button" href={resultsUrl(run.id)}>
       {text.download}
@@ -41,7 +35,7 @@ export function TableCard({ run, query, rows }: ResultsProps & { rows: ResultRow
   );
   return (
     <Card id="table" kind="table-card" title={text.table} note={text.rows(rows.length)} actions={download}>
-      <ResultTable rows={rows} order={order} onOrder={turn} hrefOf={hrefOf(run)} />
+      <ResultTable {...{ run, rows, order }} />
     </Card>
   );
 }
@@ -49,14 +43,8 @@ export function TableCard({ run, query, rows }: ResultsProps & { rows: ResultRow
 /** The column of warnings. */
 const NOTE = "warnings";
 
-interface Props {
-  rows: ResultRow[];
-  order: Order;
-  onOrder: (order: Order) => void;
-  hrefOf: (creature: string) => string;
-}
-
-function ResultTable({ rows, order, onOrder, hrefOf }: Props) {
+function ResultTable({ run, rows, order }: { run: Run; rows: ResultRow[]; order: Order }) {
+  const sort = ({ by, down }: Order) => setQuery({ sort: by, order: down ? "down" : null });
   // Warnings have a line of their own; a single form is named above the plot.
   const columns = columnsOf(rows).filter(
     ({ name }) => name !== NOTE && (name !== "form" || new Set(rows.map(({ form }) => form)).size > 1),
@@ -73,14 +61,14 @@ function ResultTable({ rows, order, onOrder, hrefOf }: Props) {
                 key={column.name}
                 {...column}
                 order={orderOf(column.name, order)}
-                onSort={() => onOrder({ by: column.name, down: order.by === column.name && !order.down })}
+                onSort={() => sort({ by: column.name, down: order.by === column.name && !order.down })}
               />
             ))}
           </tr>
         </thead>
         <tbody>
           {sortRows(rows, order).map((row, i) => (
-            <Row key={row.creature ?? i} {...{ row, columns, linked, hrefOf }} />
+            <Row key={row.creature ?? i} {...{ run, row, columns, linked }} />
           ))}
         </tbody>
       </table>
@@ -94,14 +82,14 @@ function orderOf(name: string, { by, down }: Order): SortOrder {
 }
 
 interface RowProps {
+  run: Run;
   row: ResultRow;
   columns: Column[];
   /** True if the rows have creatures. */
   linked: boolean;
-  hrefOf: (creature: string) => string;
 }
 
-function Row({ row, columns, linked, hrefOf }: RowProps) {
+function Row({ run, row, columns, linked }: RowProps) {
   const { creature, status, [NOTE]: note } = row;
   const failed = status !== undefined && status !== "ok";
   return (
@@ -110,7 +98,7 @@ function Row({ row, columns, linked, hrefOf }: RowProps) {
         {linked && (
           <td>
             {creature && (
-              <a href={hrefOf(creature)}>
+              <a href={hrefOf(run)(creature)}>
                 <code>{shortId(creature)}</code>
               </a>
             )}

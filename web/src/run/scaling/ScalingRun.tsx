@@ -1,7 +1,7 @@
 /** Results of a scaling run: wall time and memory against the number of nodes. */
 
-import type { ResultRow, Spec, Values } from "../../api/types";
-import { Plot, type Axis, type Line } from "../../charts/plot/Plot";
+import type { ResultRow, Values } from "../../api/types";
+import { Plot, type Axis, type Line, type Point } from "../../charts/plot/Plot";
 import { logAround } from "../../charts/plot/scale";
 import { Card } from "../../ui/Page";
 import { bytes, number, count } from "../../ui/format";
@@ -19,8 +19,9 @@ export function ScalingRun({ run, query }: ResultsProps) {
   }
   const { rows, summary } = results;
   const times = timeLines(rows, summary);
-  const memory = memoryLines(rows);
-  const x = nodesAxis(run.spec);
+  const memory = [lineOf(MEMORY, rows, bytes)];
+  const nodes = (run.spec.nodes as number[]) ?? [];
+  const x = { title: text.nodes, scale: logAround(nodes), format: thousands };
   return (
     <>
       <div class="run-columns">
@@ -58,61 +59,28 @@ const PARTS: Part[] = [
   { name: "coupling", method: "microcosmos", column: "coupling", colour: "--series-3" },
   { name: "constraints", method: "microcosmos", column: "constraints", colour: "--series-4" },
   { name: "steric", method: "microcosmos", column: "steric", colour: "--series-5" },
-  {
-    name: PAIRS,
-    method: "all-pairs",
-    column: "seconds",
-    colour: "--quiet",
-    dash: "6 5",
-  },
+  { name: PAIRS, method: "all-pairs", column: "seconds", colour: "--quiet", dash: "6 5" },
 ];
-const MEMORY: Part = {
-  name: "memory",
-  method: "microcosmos",
-  column: "memory_bytes",
-  colour: "--series-1",
-  width: 2.4,
-};
+const MEMORY: Part = { ...PARTS[0]!, name: "memory", column: "memory_bytes", width: 2.4 };
 
 const positive = (value: unknown): value is number => typeof value === "number" && value > 0;
 
 export function timeLines(rows: readonly ResultRow[], summary: Values | null): Line[] {
-  const power = (name: string) => {
-    const value = summary?.[name];
-    return typeof value === "number" ? value : null;
-  };
-  const powers: Record<string, number | null> = {
-    [OURS]: power("exponent"),
-    [PAIRS]: power("exponent_all_pairs"),
-  };
-  const lines = PARTS.map((part) => ({
-    ...lineOf(part, rows, (value) => text.secondsFor(number(value))),
-    power: powers[part.name] ?? null,
-  }));
+  const { exponent = null, exponent_all_pairs = null } = summary ?? {};
+  const powers = { [OURS]: exponent, [PAIRS]: exponent_all_pairs } as Record<string, number | null>;
+  const format = (value: number) => text.secondsFor(number(value));
+  const lines = PARTS.map((part) => ({ ...lineOf(part, rows, format), power: powers[part.name] ?? null }));
   return lines.filter(({ points }) => points.length > 0);
-}
-
-function memoryLines(rows: readonly ResultRow[]): Line[] {
-  return [lineOf(MEMORY, rows, bytes)];
 }
 
 function lineOf(part: Part, rows: readonly ResultRow[], format: (value: number) => string): Line {
   const { column, method, ...view } = part;
   const mine = rows.filter((row) => row.method === method && positive(row[column]));
-  const points = mine.map((row) => ({
-    x: Number(row.nodes),
-    y: Number(row[column]),
-    tooltip: [part.name, text.nodesOf(count(Number(row.nodes))), format(Number(row[column]))] as [
-      string,
-      ...string[],
-    ],
-  }));
+  const points = mine.map((row): Point => {
+    const [x, y] = [Number(row.nodes), Number(row[column])];
+    return { x, y, tooltip: [part.name, text.nodesOf(count(x)), format(y)] };
+  });
   return { ...view, points: points.sort((a, b) => a.x - b.x) };
-}
-
-function nodesAxis(spec: Spec): Axis {
-  const nodes = Array.isArray(spec.nodes) ? spec.nodes.map(Number) : [];
-  return { title: text.nodes, scale: logAround(nodes), format: thousands };
 }
 
 function logAxis(title: string, lines: Line[], format: (value: number) => string): Axis {

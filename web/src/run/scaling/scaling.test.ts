@@ -19,7 +19,7 @@ describe("a measurement of scaling", () => {
     expect([lines[0]!.power, lines[2]!.power]).toEqual([1.02, null]);
   });
 
-  it("has figures of its own, and one that stands for it", () => {
+  it("has its own figures and a key figure", () => {
     const summary = { exponent: 1.0213, peak_memory_bytes: 2_500_000 };
     const run = { experiment: "scaling", summary } as unknown as Run;
     expect(Object.fromEntries(figuresOf(run))).toMatchObject({

@@ -57,7 +57,9 @@ function Sections({ run }: { run: Run }) {
   }, [experiments, run.spec]);
   return (
     <>
-      {nearest && <p class="quiet small">{sentenceOf(nearest.preset.name, nearest.changed.length)}</p>}
+      {nearest && (
+        <p class="quiet small">{text.changes(nearest.changed.length, words(nearest.preset.name))}</p>
+      )}
       <div class="spec-sections">
         {sections.map(({ title, fields }) => (
           <details key={title} open={fields.some(({ presetValue }) => presetValue !== null)}>
@@ -66,8 +68,8 @@ function Sections({ run }: { run: Run }) {
             </summary>
             <dl>
               {fields.map(({ path, name, text: value, presetValue }) => (
-                <div key={path} class={presetValue === null ? "" : "unusual"} title={path}>
-                  <dt>{name}</dt>
+                <div key={path} class={presetValue === null ? "" : "changed-field"} title={path}>
+                  <dt class="quiet">{name}</dt>
                   <dd>
                     {value}
                     {presetValue !== null && (
@@ -85,11 +87,6 @@ function Sections({ run }: { run: Run }) {
       </div>
     </>
   );
-}
-
-function sentenceOf(preset: string, changed: number): string {
-  if (changed === 0) return text.samePreset(words(preset));
-  return changed === 1 ? text.oneChange(words(preset)) : text.changes(changed, words(preset));
 }
 
 const COLUMNS: Column<Difference>[] = [

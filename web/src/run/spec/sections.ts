@@ -8,7 +8,7 @@ import { text } from "./text";
 /** Characters of a value that are shown; pictures have thousands. */
 const MAX_LENGTH = 120;
 
-export interface Field {
+interface Field {
   path: string;
   name: string;
   text: string;
@@ -16,16 +16,8 @@ export interface Field {
   presetValue: string | null;
 }
 
-export interface Section {
-  title: string;
-  fields: Field[];
-}
-
 /** The preset with the fewest differences from a spec, whatever the seed. */
-export function nearestPreset(
-  spec: Spec,
-  presets: readonly Preset[],
-): { preset: Preset; changed: Difference[] } | null {
+export function nearestPreset(spec: Spec, presets: readonly Preset[]) {
   const seedless = (other: Spec) => ({ ...other, seed: spec.seed ?? null });
   const found = presets.map((preset) => ({
     preset,
@@ -35,7 +27,7 @@ export function nearestPreset(
 }
 
 /** One section for each part of the spec; fields that are no part come first. */
-export function sectionsOf(spec: Spec, changed: readonly Difference[]): Section[] {
+export function sectionsOf(spec: Spec, changed: readonly Difference[]) {
   const presetValue = new Map(changed.map(({ path, values }) => [path, values[0]]));
   const sections = new Map<string, Field[]>([["", []]]);
   for (const { path, values } of differences([{}, spec])) {

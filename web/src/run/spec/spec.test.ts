@@ -3,7 +3,7 @@ import type { Preset } from "../../api/types";
 import { differences, valueText } from "./difference";
 import { brief, nameOf, nearestPreset, sectionsOf } from "./sections";
 
-describe("a spec that is read", () => {
+describe("the sections of a spec", () => {
   const spec = { seed: 7, search: { batch: 64, stop: null }, axes: [{ name: "a" }], world: { width: 32 } };
   const preset = (name: string, other: object): Preset => ({
     name,
@@ -15,14 +15,14 @@ describe("a spec that is read", () => {
     preset("near", { search: { batch: 16, stop: null } }),
   ];
 
-  it("is told by the preset that it is nearest to, whatever the seed", () => {
+  it("names the nearest preset, whatever the seed", () => {
     const found = nearestPreset(spec, presets)!;
     expect(found.preset.name).toBe("near");
     expect(found.changed.map(({ path }) => path)).toEqual(["search.batch"]);
     expect(nearestPreset(spec, [])).toBeNull();
   });
 
-  it("has a section for each part, in which what differs stands out", () => {
+  it("has one for each part, with the preset's value of each changed field", () => {
     const sections = sectionsOf(spec, nearestPreset(spec, presets)!.changed);
     expect(sections.map(({ title }) => title)).toEqual(["Run", "Search", "Axes", "World"]);
     const [batch, stop] = sections[1]!.fields;

@@ -7,10 +7,10 @@ export const text = {
   copyJson: "Copy JSON",
   json: "JSON",
   preset: "preset:",
-  samePreset: (preset: string) => `Same as preset ${preset}, apart from the seed.`,
-  oneChange: (preset: string) => `1 field differs from preset ${preset}; it is highlighted below.`,
   changes: (count: number, preset: string) =>
-    `${count} fields differ from preset ${preset}; they are highlighted below.`,
+    count === 0
+      ? `Same as preset ${preset}, apart from the seed.`
+      : `${count} ${count === 1 ? "field differs" : "fields differ"} from preset ${preset}; ${count === 1 ? "it is" : "they are"} highlighted below.`,
   difference: "Differences from another run",
   loading: "Loading the other run …",
   noDifference: "No field differs from ",

@@ -1,10 +1,9 @@
-/** Descriptions of the coupling between bodies and fluid. */
+/** Descriptions of the coupling between bodies and fluid, and a badge for results that are not force-free. */
 
 import type { Json, Spec } from "../api/types";
 import { number } from "./format";
 import { text } from "./text";
 
-/** Title and description of a form of coupling, by its name in a spec. */
 export function formOf(name: string) {
   const [title, about] = text.forms[name] ?? [name, ""];
   return { title, about, free: name !== "paper" };
@@ -16,7 +15,6 @@ const part = (value: Json | undefined): Spec =>
 /** True if a coupling cannot exert a net force on a body. */
 export const isForceFree = (coupling: Json | undefined) => part(coupling).projection !== "none";
 
-/** The share of a run's simulations that are force-free. */
 export function forceFreeShare(spec: Spec): "all" | "some" | "none" {
   const forms = Array.isArray(spec.forms) ? spec.forms : null;
   if (!forms) return isForceFree(spec.coupling) ? "all" : "none";
@@ -25,7 +23,6 @@ export function forceFreeShare(spec: Spec): "all" | "some" | "none" {
   return free > 0 ? "some" : "none";
 }
 
-/** The coupling of a creature as rows of a table. */
 export function couplingFacts(coupling: Json | undefined): [string, string][] {
   const { projection, theta_feedback, layers, nu_c, kernel, force_factor, limits } = part(coupling);
   const free = { none: text.freedOfNothing, force: text.netForce }[String(projection)];
@@ -39,4 +36,12 @@ export function couplingFacts(coupling: Json | undefined): [string, string][] {
     [text.deltaKernel, String(kernel ?? "peskin")],
     [text.limits, limits === false ? text.off : text.on],
   ];
+}
+
+export function NotForceFree({ some = false }: { some?: boolean }) {
+  return (
+    <span class="badge not-force-free" title={text.notForceFreeAbout}>
+      {some ? text.partlyNotForceFree : text.notForceFree}
+    </span>
+  );
 }

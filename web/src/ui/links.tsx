@@ -1,9 +1,25 @@
-/** A link to a new run that starts from creatures. */
+/** Links to files and to new runs that start from creatures. */
 
+import { checkFile, save } from "../api/files";
+import { showFailure } from "../store/toasts";
 import { sharedSlug } from "../api/address";
 import { useRefusal } from "../store/principal";
 import { forkAddress } from "../store/draft";
 import { text } from "./text";
+
+export function FileLink({ url, name, title }: { url: string; name: string; title?: string }) {
+  const download = (event: MouseEvent) => {
+    event.preventDefault();
+    checkFile(url)
+      .then(() => save(url))
+      .catch(showFailure);
+  };
+  return (
+    <a class="button" href={url} title={title} onClick={download}>
+      {name}
+    </a>
+  );
+}
 
 interface Props {
   /** The run with the elites; null if unknown. */
@@ -13,14 +29,13 @@ interface Props {
   cells?: string | null;
   at?: number | null;
   title: string;
-  /** Within a line of text. */
   inline?: boolean;
 }
 
 export function ForkLink({ run, creature, cells, at = null, title, inline = false }: Props) {
   if (useRefusal() || sharedSlug) return null;
   const which = { creature, cells, at: at === null ? null : String(at) };
-  const address = run ? forkAddress(run, which) : [["begin", creature!]];
+  const address = run ? forkAddress(run, which) : [["initial", creature!]];
   return (
     <a
       class={inline ? "" : "button"}

@@ -1,9 +1,24 @@
-/** A schema with every kind of field, for tests of the form. */
+/** For tests: the experiments of the server and their presets, and a form with every kind of field. */
 
-import type { Schema } from "../../api/types";
+import { inject } from "vitest";
+import type { Experiment } from "../../api/types";
 import { formOf } from "./fields";
 
-export const SCHEMA: Schema = {
+declare module "vitest" {
+  interface ProvidedContext {
+    experiments: Experiment[];
+  }
+}
+
+export const EXPERIMENTS = inject("experiments");
+
+export const PRESETS = EXPERIMENTS.flatMap((one) =>
+  one.presets.map((preset) => [`${one.experiment}/${preset.name}`, one, preset] as const),
+);
+
+export const experiment = (name: string) => EXPERIMENTS.find((one) => one.experiment === name)!;
+
+export const FORM = formOf({
   description: "A run.",
   $defs: {
     World: {
@@ -92,6 +107,4 @@ export const SCHEMA: Schema = {
       maxItems: 3,
     },
   },
-};
-
-export const FORM = formOf(SCHEMA);
+});

@@ -1,6 +1,15 @@
 import { describe, expect, it } from "vitest";
-import { cellAt, cellOf, cornerOf, columnAndRow, rectangle, visibleBins } from "./geometry";
-import { type Direction, gridLayout, nextBin } from "./layout";
+import {
+  type Direction,
+  cellAt,
+  cellOf,
+  columnAndRow,
+  cornerOf,
+  gridLayout,
+  nextBin,
+  rectangle,
+  visibleBins,
+} from "./layout";
 
 const SHAPE = [4, 3] as const;
 

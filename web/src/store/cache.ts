@@ -1,0 +1,20 @@
+/** A cache of replays and motions, limited by their size. */
+
+import type { Motion, Replay } from "../decode/replay";
+
+const MAX_BYTES = 64e6;
+
+const bytesOf = (value: Motion | Replay) =>
+  value.positions.byteLength + ("vorticity" in value ? value.vorticity.buffer.byteLength : 0);
+
+/** Set a value as the newest, and drop the oldest ones beyond the limit. */
+export function setNewest<T extends Motion | Replay>(cache: Map<string, T>, sha: string, value: T): void {
+  cache.delete(sha);
+  cache.set(sha, value);
+  let total = [...cache.values()].reduce((sum, each) => sum + bytesOf(each), 0);
+  for (const [oldest, each] of cache) {
+    if (total <= MAX_BYTES || oldest === sha) break;
+    cache.delete(oldest);
+    total -= bytesOf(each);
+  }
+}

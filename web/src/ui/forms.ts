@@ -1,0 +1,38 @@
+/** The state of forms: requests, disclosure of controls, keys of requests. */
+
+import { useState, useEffect, useRef } from "preact/hooks";
+import { messageOf } from "../api/problem";
+
+export function useSubmit(send: (form: HTMLFormElement) => Promise<void>) {
+  const [busy, setBusy] = useState(false);
+  const [error, setError] = useState<string | null>(null);
+  const submit = async (form: HTMLFormElement) => {
+    setBusy(true);
+    setError(null);
+    await send(form).catch((problem) => setError(messageOf(problem)));
+    setBusy(false);
+  };
+  const onSubmit = (event: Event) => {
+    event.preventDefault();
+    void submit(event.currentTarget as HTMLFormElement);
+  };
+  return { busy, error, onSubmit };
+}
+
+export function useDisclosure<First extends HTMLElement>() {
+  const [open, setOpen] = useState(false);
+  const button = useRef<HTMLButtonElement>(null);
+  const first = useRef<First>(null);
+  const wasOpen = useRef(false);
+  useEffect(() => {
+    if (open) first.current?.focus();
+    else if (wasOpen.current && document.activeElement === document.body) button.current?.focus();
+    wasOpen.current = open;
+  }, [open]);
+  return { open, setOpen, button, first };
+}
+
+export function newIdempotencyKey(): string {
+  const parts = crypto.getRandomValues(new Uint32Array(4));
+  return [...parts].map((part) => part.toString(16).padStart(8, "0")).join("");
+}
