@@ -10,10 +10,10 @@ from jaxtyping import Array, Bool, Float
 
 from .. import units
 from ..filaments import Rest
-from ..spec.measures import Name
+from ..naming import MeasureName
 from ..world import Measures, State, World, centre, edges_there, joints_there, mean
 
-MEASURES: tuple[str, ...] = get_args(Name)
+MEASURES: tuple[str, ...] = get_args(MeasureName)
 """Measures of every elite, in this order; units in `docs/formats.md`."""
 
 MOTION = MEASURES[:6]

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Literal, get_args
 
+from ..naming import MeasureName as Name
+
 Scale = Literal["log10", "linear"]
 
 
@@ -16,30 +18,6 @@ class Measure:
     high: float
     scale: Scale = "linear"
 
-
-Name = Literal[
-    "displacement",
-    "bending_effort",
-    "stretching_effort",
-    "path_length",
-    "straightness",
-    "rotation",
-    "hidden_nodes",
-    "connections",
-    "energy",
-    "mach",
-    "limited",
-    "reynolds",
-    "mean_speed",
-    "turning",
-    "curvature_mean",
-    "curvature_spread",
-    "symmetry",
-    "power",
-    "efficiency",
-    "nodes",
-]
-"""Names of the measures, in the order in which they are recorded."""
 
 MEASURES: dict[str, Measure] = {
     "displacement": Measure("Displacement", "cells", 0.0, 20.0),
