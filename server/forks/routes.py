@@ -31,7 +31,7 @@ def extend_run(run_id: OwnRunId, services: ServicesDep, sent: Extension) -> RunR
     return longer
 
 
-@router.post("/fork", status_code=202)
+@router.post("/fork", status_code=202, responses={200: {"model": RunRead}})
 def fork_run(
     principal: Writer,
     run_id: UUID,

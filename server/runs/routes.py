@@ -45,7 +45,7 @@ NameQuery = Annotated[
 ]
 
 
-@router.post("", status_code=202)
+@router.post("", status_code=202, responses={200: {"model": RunRead}})
 def create_run(
     principal: Writer,
     spec: SpecDep,

@@ -52,7 +52,7 @@ def plan_sent(sent: SweepCreate, services: ServicesDep) -> Plan:
 PlanDep = Annotated[Plan, Depends(plan_sent)]
 
 
-@router.post("", status_code=202)
+@router.post("", status_code=202, responses={200: {"model": SweepRead}})
 def create_sweep(
     principal: Writer,
     plan: PlanDep,

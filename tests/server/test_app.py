@@ -32,6 +32,9 @@ def test_the_api_describes_itself(api):
         operation = next(iter(paths[f"/api/v1/{path}"].values()))
         (media,) = operation["responses"]["default"]["content"]
         assert media == "application/problem+json"
+    for path in ("runs", "sweeps", "runs/{run_id}/fork"):
+        answers = paths[f"/api/v1/{path}"]["post"]["responses"]
+        assert {"200", "202"} <= answers.keys(), "a repeated key is answered by 200"
     assert "HTTPValidationError" not in description["components"]["schemas"]
 
 
