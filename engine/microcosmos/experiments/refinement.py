@@ -37,14 +37,14 @@ class Trials:
     slope: float | None = None
     """Length of the slope of fitness; None if the present genes alone are tried."""
 
-    def agreement(self, before: float, fitness: np.ndarray) -> float | None:
+    def gain_ratio(self, before: float, fitness: np.ndarray) -> float | None:
         """Return the gain of the shortest trial over the gain that the slope predicts."""
         if not self.slope:
             return None
         shortest = 2 * ((len(self.lengths) - 1) // 2)
         predicted = self.lengths[shortest] * self.slope
-        agreement = (float(fitness[shortest]) - before) / predicted
-        return agreement if np.isfinite(agreement) else None
+        ratio = (float(fitness[shortest]) - before) / predicted
+        return ratio if np.isfinite(ratio) else None
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ class Refinement:
             longest = 0 < tried.lengths[best] == tried.lengths[0]
             length = state.length * (2.0 if longest else 1.0)
             state = replace(state, genes=tried.genes[best], fitness=float(found.fitness[best]))
-        agreement = tried.agreement(before, np.asarray(found.fitness))
+        agreement = tried.gain_ratio(before, np.asarray(found.fitness))
         row = replace(row, values={**row.values, "slope": tried.slope, "agreement": agreement})
         state = replace(state, length=length, table=state.table.grown((row,)))
         return state, self._report(state, row)

@@ -93,14 +93,9 @@ def assign(
         return (state.count < rows) & jnp.any(state.of == UNASSIGNED)
 
     nobody = jnp.full(individuals, UNASSIGNED)
-    state = Assignment(
-        representatives=representatives,
-        count=count.astype(nobody.dtype),
-        of=nobody,
-        nearest=jnp.zeros_like(nobody),
-        least=jnp.full(individuals, jnp.inf, dtype),
-        closest=jnp.zeros(rows, nobody.dtype),
-    )
+    far, no_members = jnp.full(individuals, jnp.inf, dtype), jnp.zeros(rows, nobody.dtype)
+    none = (nobody, jnp.zeros_like(nobody), far, no_members)
+    state = Assignment(representatives, count.astype(nobody.dtype), *none)
     state = jax.lax.fori_loop(0, state.count, join, state)
     state = jax.lax.while_loop(unfinished, found, state)
     return state._replace(of=jnp.where(state.of == UNASSIGNED, state.nearest, state.of))
