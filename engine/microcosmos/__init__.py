@@ -28,8 +28,8 @@ _HOME = {
     "check": "audit",
     "gradient": "audit",
     "report_gradient": "audit",
-    "to_pandas": "archive.dataframe",
-    "to_ribs": "archive.dataframe",
+    "to_pandas": "archive.export",
+    "to_ribs": "archive.export",
     "scoring_function": "build",
     "to_repertoire": "build",
 }

@@ -43,7 +43,6 @@ def prepare(devices: int | None = None, cache: str | os.PathLike | None = None) 
 
 
 def _cores() -> int:
-    """Return the number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

@@ -9,16 +9,10 @@ from uuid import UUID
 import numpy as np
 from sqlalchemy import insert, select
 
-from server.services import services
 from server.services.services import Services
-from server.settings import Settings
 from server.tables import FINISHED, Elite, Generation, Run
 
 GENERATIONS = 200
-
-
-def connect(data: str) -> Services:
-    return services.connect(Settings(data=data))
 
 
 def write_run(place: Services, of: str, side: int, filled: int, creatures: list[str]) -> str:

@@ -19,11 +19,14 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "faults"))
 
 from browser import launched
 from drive import ROOT, Installation, wait_until
-from large import connect, creatures_of, write_run
+from large import creatures_of, write_run
 from playwright.sync_api import Browser, Page, Response, ViewportSize
 from playwright.sync_api import TimeoutError as Late
 from rich.console import Console
 from rich.table import Table
+
+from server.services.services import connect
+from server.settings import Settings
 
 CORES = 2
 SETTINGS = {"MICROCOSMOS_DEMONSTRATION": "false"}
@@ -100,7 +103,7 @@ def main() -> None:
 def prepare(place: Installation) -> tuple[str, str, str]:
     """Carry out a search, fill archives with what it found, and have replays rendered."""
     found = searched(place)
-    services = connect(str(place.folder))
+    services = connect(Settings(data=place.folder))
     creatures = creatures_of(services, found)[:CREATURES]
     side = round(len(creatures) ** 0.5)
     runs = (

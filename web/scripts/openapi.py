@@ -1,6 +1,8 @@
 """Print the server's OpenAPI document: `.venv/bin/python web/scripts/openapi.py`."""
 
 import json
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from server.app import create_app
 from server.services.services import connect
@@ -8,8 +10,9 @@ from server.settings import Settings
 
 
 def main() -> None:
-    app = create_app(connect(Settings()))
-    print(json.dumps(app.openapi(), indent=1, sort_keys=True))
+    with TemporaryDirectory() as folder:
+        app = create_app(connect(Settings(data=Path(folder))))
+        print(json.dumps(app.openapi(), indent=1, sort_keys=True))
 
 
 if __name__ == "__main__":

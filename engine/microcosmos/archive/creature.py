@@ -3,21 +3,8 @@
 import json
 from typing import Any
 
-from ..naming import FORMAT, LICENCE, canonical, document, name
-from ..spec.creature import CreatureError, Identity, check, room, scene_of
-
-__all__ = [
-    "FORMAT",
-    "LICENCE",
-    "CreatureError",
-    "Identity",
-    "canonical",
-    "document",
-    "name",
-    "parse",
-    "room",
-    "scene_of",
-]
+from ..naming import FORMAT, LICENCE, canonical, document, name  # noqa: F401
+from ..spec.creature import CreatureError, Identity, check, room, scene_of  # noqa: F401
 
 
 def parse(data: Any) -> dict[str, Any]:

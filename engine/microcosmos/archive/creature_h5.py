@@ -43,16 +43,19 @@ def _tree(file: Mapping[str, Any]) -> dict[str, Any]:
     if measured:
         tree["measured"] = {
             "fitness": measured["fitness"],
-            **{group: _by_link(measured[group]) for group in ("descriptors", "measures")},
+            **{
+                group: {link(name): value for name, value in measured[group].items()}
+                for group in ("descriptors", "measures")
+            },
         }
     return tree
 
 
 def load(data: bytes) -> dict[str, Any]:
-    """The creature file in these bytes, checked as any other; `ValueError` where it is none.
+    """Return the creature file in these bytes, checked as any other.
 
-    It must equal what `dump` writes: other readers would trust arrays that differ from the
-    identity, and nothing outside the file may be read.
+    Raises `ValueError` where it is none. The file must equal what `dump` writes: other readers
+    would trust arrays that differ from the identity. Nothing outside the file may be read.
     """
     try:
         with h5py.File(BytesIO(data), "r") as file:
@@ -72,12 +75,8 @@ def load(data: bytes) -> dict[str, Any]:
 
 
 def link(name: str) -> str:
-    """A name for HDF5, with its path characters percent-encoded; `%` alone for an empty one."""
+    """Return a name for HDF5: path characters are percent-encoded, an empty one is `%`."""
     return re.sub("[%/.\0]", lambda found: f"%{ord(found[0]):02X}", name) or "%"
-
-
-def _by_link(values: Mapping[str, float]) -> dict[str, Any]:
-    return {link(name): value for name, value in values.items()}
 
 
 def _arrays(genome: Mapping[str, Any]) -> dict[str, Any]:

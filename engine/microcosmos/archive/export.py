@@ -1,13 +1,16 @@
-"""An archive as a table, in the columns of pyribs' `ArchiveDataFrame`."""
+"""An archive as a table: CSV, pandas' data frame, pyribs' archive."""
 
 import csv as csv_module
 import json
+import os
 from collections.abc import Sequence
 from io import StringIO
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..optional import require
 from .file import Tree, dump, load
 
 Columns = dict[str, Any]
@@ -60,36 +63,36 @@ def licensed(data: bytes, licence: str, credit: Sequence[str]) -> bytes:
 
 
 def centroids(data: bytes) -> np.ndarray:
-    """Centroids (cell, axis) of a CVT, from 0 to 1 on the axes' own scales."""
+    """Return the centroids (cell, axis) of a CVT, from 0 to 1 on the axes' own scales."""
     tree, _ = load(data)
     return tree["archive"]["centroids"]
 
 
 def repeated(archive: Tree) -> Columns:
-    """Results of reevaluation: count, failures, mean and standard deviation of fitness, and the
-    share that fell into the elite's own cell."""
+    """Return the results of reevaluation: count, failures, mean and standard deviation of
+    fitness, and the share that fell into the elite's own cell."""
     repeats = archive.get("repeats", {})
     if not np.any(repeats.get("count", 0)):
         return {}
-    count, sound = repeats["count"], repeats["count"] - repeats["failed"]
-    spread = np.sqrt(repeats["squares"] / np.maximum(sound - 1, 1))
+    count, valid = repeats["count"], repeats["count"] - repeats["failed"]
+    spread = np.sqrt(repeats["squares"] / np.maximum(valid - 1, 1))
     return {
         "repeats": count,
         "repeats_failed": repeats["failed"],
-        "repeats_mean": np.where(sound > 0, repeats["fitness"], np.nan),
-        "repeats_std": np.where(sound > 1, spread, np.nan),
+        "repeats_mean": np.where(valid > 0, repeats["fitness"], np.nan),
+        "repeats_std": np.where(valid > 1, spread, np.nan),
         "repeats_hit_rate": np.where(count > 0, repeats["hits"] / np.maximum(count, 1), np.nan),
     }
 
 
 def scaled(values: np.ndarray, axis: dict[str, Any]) -> np.ndarray:
-    """Values on an axis' own scale, cut at its ends."""
+    """Return values on an axis' own scale, cut at its ends."""
     values = np.clip(values, np.float32(axis["low"]), np.float32(axis["high"]))
     return np.log10(values) if axis["scale"] == "log10" else values
 
 
 def unit(values: np.ndarray, axis: dict[str, Any]) -> np.ndarray:
-    """Values from 0 to 1 on an axis' own scale."""
+    """Return values from 0 to 1 on an axis' own scale."""
     low, high = ends(axis)
     return ((scaled(values, axis) - low) / (high - low)).astype(values.dtype)
 
@@ -100,3 +103,67 @@ def ends(axis: dict[str, Any]) -> tuple[float, float]:
     if axis["scale"] == "log10":
         return float(np.log10(low)), float(np.log10(high))
     return low, high
+
+
+Source = bytes | str | os.PathLike
+"""An archive file, or its path."""
+
+
+def to_pandas(archive: Source) -> Any:
+    """Return a pandas `DataFrame` with pyribs' columns and types; see `export.columns`.
+
+    `ribs.archives.ArchiveDataFrame` takes it as it is. Raises `ImportError` without pandas.
+    """
+    return require("pandas", "pandas").DataFrame(columns(_bytes(archive)))
+
+
+def to_ribs(archive: Source) -> Any:
+    """Return pyribs' `GridArchive` or `CVTArchive` with our elites, measures as fields.
+
+    A grid has ranges on the axes' own scales; with centroids they are 0 to 1 on those scales.
+    pyribs rounds differently at the borders of bins, so an elite on a border moves to the
+    middle of its cell. Raises `ImportError` without pyribs.
+    """
+    data = _bytes(archive)
+    found, peer = columns(data), require("ribs.archives", "ribs[visualize]")
+    solution, measures = _beside(found, "solution_"), _beside(found, "measures_")
+    fields = list(found)[list(found).index("threshold") + 1 : -1]
+    fields = {name: np.asarray(found[name]) for name in fields}
+    filled = _empty(peer, data, solution.shape[1], fields)
+    misplaced = filled.index_of(measures) != found["index"]
+    measures[misplaced] = _middles(filled, found["index"])[misplaced]
+    filled.add(solution, found["objective"], measures, **fields)
+    return filled
+
+
+def _empty(peer: Any, data: bytes, genes: int, fields: dict[str, np.ndarray]) -> Any:
+    tree, attributes = load(data)
+    spec = json.loads(attributes["spec"])["archive"]
+    given = {
+        "solution_dim": genes,
+        "dtype": np.float32,
+        "extra_fields": {
+            name: ((), object if values.dtype.kind in "US" else values.dtype)
+            for name, values in fields.items()
+        },
+    }
+    axes, centroids = spec["descriptors"], tree["archive"].get("centroids")
+    if centroids is not None:
+        return peer.CVTArchive(centroids=centroids, ranges=[(0.0, 1.0)] * len(axes), **given)
+    bins, ranges = [axis["bins"] for axis in axes], [ends(axis) for axis in axes]
+    return peer.GridArchive(dims=bins, ranges=ranges, **given)
+
+
+def _middles(filled: Any, index: np.ndarray) -> np.ndarray:
+    if hasattr(filled, "centroids"):
+        return filled.centroids[index]
+    place = np.stack(np.unravel_index(index, filled.dims), 1) + 0.5
+    return filled.lower_bounds + place / filled.dims * filled.interval_size
+
+
+def _beside(found: dict[str, Any], prefix: str) -> np.ndarray:
+    return np.stack([x for name, x in found.items() if name.startswith(prefix)], 1)
+
+
+def _bytes(archive: Source) -> bytes:
+    return archive if isinstance(archive, bytes) else Path(archive).read_bytes()

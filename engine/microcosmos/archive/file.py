@@ -22,7 +22,7 @@ class Tree(dict[str, Any]):
 
 
 def dump(tree: Mapping[str, Any], attributes: Mapping[str, str]) -> bytes:
-    """A file with a group for each mapping and a dataset for each array, in sorted order.
+    """Return a file with a group per mapping and a dataset per array, in sorted order.
 
     It holds neither names nor times of a machine.
     """

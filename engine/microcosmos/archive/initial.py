@@ -99,25 +99,24 @@ def renumbered(genomes: Sequence[Genes], inputs: int, outputs: int) -> list[Gene
     to another family, whose numbers are shifted.
     """
     fixed = inputs + outputs
-    last = [max(_numbers(genome), default=0) for genome in genomes]
-    step = max([fixed, inputs * outputs, *last], default=0) + 1
+    step = max(fixed + 1, inputs * outputs + 1, *counters(genomes))
     # The genes of newcomers: see `genomes.cppn.minimal`.
     plain = {i: (i % inputs, inputs + i // inputs) for i in range(inputs * outputs)}
     families: list[dict[int, tuple[int, int]]] = [dict(plain)]
     found = []
     for genome in genomes:
         for family in count():
-            moved = _moved(genome, family * step, fixed, plain)
-            ends = _ends(moved)
+            shifted = _shifted(genome, family * step, fixed, plain)
+            ends = _ends(shifted)
             if family == len(families):
                 families.append(dict(plain))
             known = families[family]
             if all(known.get(number, pair) == pair for number, pair in ends.items()):
                 known.update(ends)
-                found.append(moved)
+                found.append(shifted)
                 break
-    limit = MAX_GENE_NUMBER // max(1, len(families))
-    if step * max(1, len(families)) >= MAX_GENE_NUMBER:
+    if step * len(families) >= MAX_GENE_NUMBER:
+        limit = MAX_GENE_NUMBER // len(families)
         needed = f"creatures whose genes have numbers below {limit:,}"
         raise CreatureError("search.initial", needed, step - 1)
     return found
@@ -130,17 +129,13 @@ def counters(genomes: Sequence[Genes]) -> tuple[int, int]:
     return max(connections, default=-1) + 1, max(nodes, default=-1) + 1
 
 
-def _numbers(genome: Genes) -> list[int]:
-    return [*genome["connections"]["innovation"], *genome["nodes"]["id"]]
-
-
 def _ends(genome: Genes) -> dict[int, tuple[int, int]]:
     genes = genome["connections"]
     pairs = zip(genes["source"], genes["target"], strict=True)
     return dict(zip(genes["innovation"], pairs, strict=True))
 
 
-def _moved(genome: Genes, by: int, fixed: int, plain: dict[int, tuple[int, int]]) -> Genes:
+def _shifted(genome: Genes, by: int, fixed: int, plain: dict[int, tuple[int, int]]) -> Genes:
     ends = _ends(genome)
 
     def node(number: int) -> int:

@@ -15,7 +15,7 @@ def document(file: Mapping[str, Any], ancestors: Iterable[Mapping[str, Any]]) ->
 
 
 def split(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    """A creature file and those of its ancestors, each checked with its hash.
+    """Return a creature file and those of its ancestors, each checked with its hash.
 
     Raises `CreatureError` if one is invalid, or is not an ancestor.
     """

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .. import bodies, build, search, spec, world
-from ..bodies.extent import extent
+from ..bodies import extent
 from ..filaments import Rest
 from ..genomes import Drive
 from ..viz.replay import graph_among, present_parts

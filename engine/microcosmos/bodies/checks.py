@@ -76,20 +76,15 @@ def _refuse_shapes(arrays: Mapping[str, np.ndarray]) -> None:
 
 
 def _refuse_values(arrays: Mapping[str, np.ndarray]) -> None:
-    for name in SHAPES:
-        if name not in WHOLE and not np.isfinite(arrays[name]).all():
-            raise ValueError(f"`{name}` must be finite, got {_first_infinite(arrays[name])}.")
+    for name in (name for name in SHAPES if name not in WHOLE):
+        if len(infinite := arrays[name][~np.isfinite(arrays[name])]):
+            raise ValueError(f"`{name}` must be finite, got {infinite[0]}.")
     for name in ("stretch", "shear", "bend"):
         low, high = arrays[name].min(initial=1), arrays[name].max(initial=0)
         if low < 0 or high > 1:
             raise ValueError(f"`{name}` must be from 0 to 1, got {low if low < 0 else high:g}.")
     if (shortest := arrays["rest_length"].min()) <= 0:
         raise ValueError(f"`rest_length` must be positive, got {shortest:g}.")
-
-
-def _first_infinite(values: np.ndarray) -> str:
-    flat = values.reshape(-1)
-    return f"{flat[np.argmin(np.isfinite(flat))]}"
 
 
 def _refuse_members(member: np.ndarray) -> None:
@@ -127,7 +122,6 @@ def _refuse_joints(joints: np.ndarray, edges: np.ndarray) -> None:
 
 
 def _refuse_pairs(name: str, pairs: np.ndarray, of: str, count: int) -> None:
-    """Raise `ValueError` unless pairs are distinct and of two different existing items."""
     if not pairs.size:
         return
     low, high = pairs.min(), pairs.max()

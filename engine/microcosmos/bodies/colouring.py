@@ -19,15 +19,11 @@ class Colour:
     sign: np.ndarray
 
 
-def colour(pairs: np.ndarray, members: int) -> tuple[Colour, ...]:
-    """Colour pairs greedily: each gets the first colour that neither member has yet."""
-    return _by_member(pairs, _greedy(pairs, members), members)
+def colour(pairs: np.ndarray, part: np.ndarray) -> tuple[Colour, ...]:
+    """Colour pairs greedily: each gets the first colour that neither member has yet.
 
-
-def colour_parts(pairs: np.ndarray, part: np.ndarray) -> tuple[Colour, ...]:
-    """Colour a graph of separate parts; equal parts are coloured once.
-
-    `part` is the part of each member, ascending; no pair joins two parts.
+    `part` is the part of the graph of each member, ascending; no pair joins two parts, and
+    equal parts are coloured once.
     """
     owner = part[pairs[:, 0]]
     order = np.argsort(owner, kind="stable")
@@ -42,7 +38,8 @@ def colour_parts(pairs: np.ndarray, part: np.ndarray) -> tuple[Colour, ...]:
         if name not in known:
             known[name] = _greedy(pairs_of_part, int(start[i + 1] - start[i]))
         chosen[order[first:last]] = known[name]
-    return _by_member(pairs, chosen, len(part))
+    colours = range(chosen.max(initial=-1) + 1)
+    return tuple(_pairing(pairs, np.flatnonzero(chosen == c), len(part)) for c in colours)
 
 
 def _greedy(pairs: np.ndarray, members: int) -> np.ndarray:
@@ -54,11 +51,6 @@ def _greedy(pairs: np.ndarray, members: int) -> np.ndarray:
         taken[first].add(int(chosen[number]))
         taken[second].add(int(chosen[number]))
     return chosen
-
-
-def _by_member(pairs: np.ndarray, chosen: np.ndarray, members: int) -> tuple[Colour, ...]:
-    colours = range(chosen.max(initial=-1) + 1)
-    return tuple(_pairing(pairs, np.flatnonzero(chosen == c), members) for c in colours)
 
 
 def _pairing(pairs: np.ndarray, group: np.ndarray, members: int) -> Colour:

@@ -5,6 +5,7 @@ from typing import Any, Unpack
 
 import numpy as np
 
+from ..optional import require
 from .graph import Body
 from .shape import Stiffness, from_edges
 
@@ -58,7 +59,6 @@ def _refuse_curve(corners: np.ndarray, spacing: float) -> None:
 
 
 def _strand(corners: np.ndarray, spacing: float, closed: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Return positions at equal arc lengths, and the edges between them."""
     if closed:
         corners = np.concatenate([corners, corners[:1]])
     steps = np.diff(corners, axis=0)
@@ -74,12 +74,7 @@ def _strand(corners: np.ndarray, spacing: float, closed: bool) -> tuple[np.ndarr
 
 def _strands(text: str) -> list[tuple[np.ndarray, bool]]:
     """Return the points of every unbroken part of the SVG, and whether it is closed."""
-    try:
-        import svgpathtools
-    except ImportError as missing:
-        raise ImportError(
-            "Bodies from SVG need svgpathtools: pip install microcosmos[shapes]"
-        ) from missing
+    svgpathtools = require("svgpathtools", "microcosmos[shapes]")
     if "<svg" in text:
         paths = svgpathtools.Document.from_svg_string(text).paths()
     else:
@@ -111,5 +106,5 @@ def _join(places: np.ndarray, edges: np.ndarray, reach: float) -> tuple[np.ndarr
         nearest = int(np.argmin(gap))
         if gap[nearest] < reach and root(nearest) != end:
             same[end] = root(nearest)
-    kept, number = np.unique([root(node) for node in same], return_inverse=True)
-    return places[kept], number[edges]
+    merged, number = np.unique([root(node) for node in same], return_inverse=True)
+    return places[merged], number[edges]

@@ -90,19 +90,36 @@ def distances(nodes: int, edges: np.ndarray, length: np.ndarray, start: int = 0)
     for (first, second), cells in zip(edges.tolist(), length.tolist(), strict=True):
         neighbours[first].append((second, cells))
         neighbours[second].append((first, cells))
-    way = np.full(nodes, np.inf)
-    way[start], waiting = 0, [(0.0, start)]
+    distance = np.full(nodes, np.inf)
+    distance[start], waiting = 0, [(0.0, start)]
     while waiting:
         here, node = heapq.heappop(waiting)
         for other, cells in neighbours[node]:
-            if here + cells < way[other]:
-                way[other] = here + cells
+            if here + cells < distance[other]:
+                distance[other] = here + cells
                 heapq.heappush(waiting, (here + cells, other))
-    return way
+    return distance
 
 
 def _arc(nodes: int, edges: np.ndarray, length: np.ndarray) -> np.ndarray:
     """Return shares of the path from the first node to the furthest; 0 without a path."""
-    way = distances(nodes, edges, length)
-    way[np.isinf(way)] = 0
-    return way / max(way.max(), 1e-12)
+    distance = distances(nodes, edges, length)
+    distance[np.isinf(distance)] = 0
+    return distance / max(distance.max(), 1e-12)
+
+
+def extent(body: Body) -> float:
+    """Return the longest path along edges between two nodes, in cells.
+
+    The path is found from the node farthest from the first node: exact without loops, and for
+    one loop, of which the shorter way counts.
+    """
+    farthest, _ = _farthest(body, 0)
+    return _farthest(body, farthest)[1]
+
+
+def _farthest(body: Body, start: int) -> tuple[int, float]:
+    distance = distances(len(body.positions), body.edges, body.rest_length, start)
+    distance[np.isinf(distance)] = -1.0
+    last = int(np.argmax(distance))
+    return last, float(distance[last])

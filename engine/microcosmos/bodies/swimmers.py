@@ -165,7 +165,6 @@ def _stroke(time, amplitude: float, curl: float, power: float) -> tuple[np.ndarr
 
 
 def _roots(body_nodes: int, hairs: int) -> np.ndarray:
-    """Return the ring's nodes with hairs, the same number on both flanks."""
     if hairs < 2 or hairs % 2:
         raise ValueError(f"`hairs` must be an even number from 2 on, got {hairs}.")
     flank = np.arange(1, hairs // 2 + 1) / (hairs // 2 + 1)
@@ -223,5 +222,4 @@ def _column(time: np.ndarray) -> np.ndarray:
 
 
 def _still(time: np.ndarray, items: np.ndarray) -> np.ndarray:
-    """Return zero deviations of all joints or edges."""
     return np.zeros((len(time), len(items)))

@@ -30,14 +30,14 @@ def unfolded(body: Body) -> Unfolded:
     nodes, edges = len(body.positions), len(body.edges)
     if nodes > MAX_NODES:
         raise ValueError(f"a body to lay out must have at most {MAX_NODES} nodes, got {nodes}")
-    ways = _ways(body)
-    if edges != nodes - 1 or ways is None:
+    parts, _, ways = _forest(nodes, body.edges)
+    if edges != nodes - 1 or parts > 1:
         raise ValueError(
             f"a body to lay out must be one piece without loops, got {nodes} nodes and "
             f"{edges} edges"
         )
-    joints, turned = _turned(body)
-    return Unfolded(joints, turned, ways)
+    _, joints, turned = _forest(edges, body.joints)
+    return Unfolded(np.array(joints, int), turned[:, joints], ways)
 
 
 def drawn(body: Body) -> tuple[np.ndarray, np.ndarray]:
@@ -46,44 +46,30 @@ def drawn(body: Body) -> tuple[np.ndarray, np.ndarray]:
     return np.arctan2(v[:, 1], v[:, 0]), np.hypot(v[:, 0], v[:, 1])
 
 
-def _ways(body: Body) -> np.ndarray | None:
-    """Return the paths from the first node, or None where some node cannot be reached."""
-    met: list[list[tuple[int, int, int]]] = [[] for _ in body.positions]
-    for number, (first, second) in enumerate(body.edges.tolist()):
-        met[first].append((number, second, 1))
-        met[second].append((number, first, -1))
-    ways = np.zeros((len(met), len(body.edges)), np.int8)
-    seen, waiting = {0}, [0]
-    while waiting:
-        node = waiting.pop()
-        for number, other, sign in met[node]:
-            if other not in seen:
-                seen.add(other)
-                waiting.append(other)
-                ways[other] = ways[node]
-                ways[other, number] = sign
-    return ways if len(seen) == len(met) else None
+def _forest(count: int, pairs: np.ndarray) -> tuple[int, list[int], np.ndarray]:
+    """Return a spanning forest of `count` items: its trees, its pairs, and the paths.
 
-
-def _turned(body: Body) -> tuple[np.ndarray, np.ndarray]:
-    """Return the joints of a spanning tree of the edges, and the edges that each turns."""
-    met: list[list[tuple[int, int, int]]] = [[] for _ in body.edges]
-    for number, (first, second) in enumerate(body.joints.tolist()):
-        met[first].append((number, second, 1))
-        met[second].append((number, first, -1))
-    turned = np.zeros((len(met), len(body.joints)), np.int8)
-    seen, used = set(), []
-    for root in range(len(met)):
-        waiting = [] if root in seen else [root]
-        seen.add(root)
+    A path is a row of the signs with which each pair lies on the way from the tree's root.
+    """
+    neighbours: list[list[tuple[int, int, int]]] = [[] for _ in range(count)]
+    for number, (first, second) in enumerate(pairs.tolist()):
+        neighbours[first].append((number, second, 1))
+        neighbours[second].append((number, first, -1))
+    paths = np.zeros((count, len(pairs)), np.int8)
+    trees, visited, used = 0, set(), []
+    for root in range(count):
+        if root in visited:
+            continue
+        trees += 1
+        visited.add(root)
+        waiting = [root]
         while waiting:
-            edge = waiting.pop()
-            for number, other, sign in met[edge]:
-                if other not in seen:
-                    seen.add(other)
+            item = waiting.pop()
+            for number, other, sign in neighbours[item]:
+                if other not in visited:
+                    visited.add(other)
                     used.append(number)
                     waiting.append(other)
-                    turned[other] = turned[edge]
-                    turned[other, number] = sign
-    joints = np.array(sorted(used), int)
-    return joints, turned[:, joints]
+                    paths[other] = paths[item]
+                    paths[other, number] = sign
+    return trees, sorted(used), paths

@@ -42,10 +42,8 @@ def _build(
                 threshold=emitter.threshold,
             )
         case words.CmaMeEmitter():
-            cells, count = (
-                build_cells(chosen.archive, measures_of(chosen.scene)),
-                emitter.emitters,
-            )
+            cells = build_cells(chosen.archive, measures_of(chosen.scene))
+            count = emitter.emitters
             return qdax.cma_me(slots, newcomer, cells, step=emitter.step, emitters=count)
         case words.LamarckianEmitter():
             return emitters.Lamarckian(
@@ -84,7 +82,6 @@ def _population(
 def build_settings(
     emitter: words.PopulationEmitter, chosen: spec.Evolution, slots: int
 ) -> neat.Settings:
-    """Build the settings of a NEAT population."""
     whole = neat.PRESETS[emitter.preset]
     rates = build_rates(chosen)
     if emitter.preset != "paper":  # TensorNEAT's rates, over all activations.

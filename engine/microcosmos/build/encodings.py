@@ -73,7 +73,6 @@ def _encoding(
 
 
 def build_layout(body: bodies.Body) -> genomes.Plan:
-    """Build the layout of a body without loops."""
     unfolded = bodies.unfolded(body)
     angle, length = bodies.drawn(body)
     return genomes.Plan(

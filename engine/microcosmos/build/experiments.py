@@ -144,14 +144,11 @@ def with_initial(
     names = [np.frombuffer(bytes.fromhex(name), np.uint8) for name in chosen.search.initial]
     rows = jax.tree.map(lambda *parts: np.stack(parts), *genotypes)
     return replace(
-        plan,
-        initial=InitialCreatures(np.stack(names), rows),
-        counters=_counters(plan, genes),
+        plan, initial=InitialCreatures(np.stack(names), rows), counters=_counters(plan, genes)
     )
 
 
 def _counters(plan: Plan, genes: list[dict[str, Any]]) -> neat.Counters:
-    """Return the next gene numbers after those of the initial creatures."""
     if plan.encoding.room is None:
         return plan.counters
     connections, nodes = counters(genes)
@@ -162,7 +159,6 @@ def _counters(plan: Plan, genes: list[dict[str, Any]]) -> neat.Counters:
 
 
 def build_limits(stop: spec.Stop) -> Limits:
-    """Build the conditions that end a run early."""
     given = {name: value for name, value in stop.model_dump().items() if value is not None}
     return Limits(**given)
 

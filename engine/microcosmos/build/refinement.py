@@ -1,7 +1,6 @@
 """Build a refinement experiment."""
 
 import json
-from typing import Any
 
 import jax
 import numpy as np
@@ -19,7 +18,9 @@ from .scene import build_task
 def build_refinement(chosen: spec.Refinement) -> refinement.Refinement:
     """Build a refinement, whose programs are compiled on first use."""
     found = parsed(chosen.creature)
-    scene, room = _scene(chosen, found), creature.room(found)
+    scene, room = creature.scene_of(found), creature.room(found)
+    measures = {**scene.plugins, **chosen.archive.plugins}
+    scene = scene.model_copy(update={"plugins": measures})
     task = build_task(scene, room=room)
     names = tuple(axis.name for axis in chosen.archive.descriptors)
     assert task.encoding is not None
@@ -44,9 +45,3 @@ def build_refinement(chosen: spec.Refinement) -> refinement.Refinement:
         measures=measures_of(scene),
         plugins=plugin_versions(scene),
     )
-
-
-def _scene(chosen: spec.Refinement, found: dict[str, Any]) -> spec.Scene:
-    """Return the creature's scene with the plug-in measures of its file and of the archive."""
-    scene = creature.scene_of(found)
-    return scene.model_copy(update={"plugins": {**scene.plugins, **chosen.archive.plugins}})

@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .. import bodies, coupling, fields, filaments, fluid, groups, search, spec, world
-from ..bodies.extent import extent
+from ..bodies import extent
 from .encodings import build_encoding
 from .plugins import build_measures, strokes_of
 
@@ -54,7 +54,6 @@ def build_task(
 
 
 def build_goal(task: spec.Task) -> search.Goal:
-    """Build the terms of the fitness."""
     if task.plugin is not None:
         return search.Goal(plugin=task.fitness)
     displacement, energy = GOALS[task.fitness]
@@ -99,7 +98,6 @@ def build_world(
 
 
 def build_limits(form: spec.Coupling, viscosity: float, dtype: Any) -> world.Limits:
-    """Build the limits of a step at a viscosity."""
     return world.Limits(
         displacement=_scalar(form.displacement_limit(viscosity), dtype),
         force=_scalar(form.force_limit(viscosity), dtype),

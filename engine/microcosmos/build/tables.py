@@ -7,7 +7,7 @@ import jax.numpy as jnp
 
 from .. import bodies, device, filaments, spec, units, world
 from ..archive.report import Row
-from ..bodies.extent import extent
+from ..bodies import extent
 from ..experiments import gaits, scaling
 from ..experiments.table_file import TableRun
 from ..spec.scaling import SPACING
@@ -26,7 +26,6 @@ def build_gaits(chosen: spec.Gaits) -> TableRun:
 
 
 def build_strokes(chosen: spec.Gaits) -> tuple[gaits.Stroke, ...]:
-    """Build the strokes of a sweep, one per generation."""
     return tuple(_stroke(chosen, form, swimmer) for form, swimmer in chosen.strokes)
 
 

@@ -11,6 +11,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 from pydantic import ValidationError
 from rich.console import Console
+from typer import Argument, Option
 
 from ..spec import field_path
 from ..version import VERSION
@@ -26,18 +27,18 @@ CACHE = Path.home() / ".cache" / "microcosmos"
 """The default of JAX_COMPILATION_CACHE_DIR, the folder of compiled programs."""
 
 CreaturePath = Annotated[
-    Path, typer.Argument(metavar="FILE", exists=True, dir_okay=False, help="A creature file.")
+    Path, Argument(metavar="FILE", exists=True, dir_okay=False, help="A creature file.")
 ]
 Set = Annotated[
     list[str] | None,
-    typer.Option(
+    Option(
         "--set",
         metavar="FIELD=VALUE",
         help="Set a field, such as world.viscosity=0.1; repeatable.",
     ),
 ]
 OtherDevice = Annotated[
-    bool, typer.Option(help="Continue a run that another kind of device started.")
+    bool, Option(help="Continue a run that another kind of device started.")
 ]
 
 
@@ -51,9 +52,7 @@ def _print_version(asked: bool) -> None:
 def main(
     version: Annotated[
         bool,
-        typer.Option(
-            "--version", callback=_print_version, is_eager=True, help="Print the version."
-        ),
+        Option("--version", callback=_print_version, is_eager=True, help="Print the version."),
     ] = False,
 ) -> None:
     """Options of the program itself."""

@@ -1,27 +1,38 @@
-"""Commands for creature files: replay, audit, gradient."""
+"""Commands for creature files: replay, audit, gradient, network."""
 
 import json
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from typer import Option
 
 from ..archive.atomic import write_whole
 from ..archive.creature import parse
-from .app import CreaturePath, app, failing
+from ..viz import networks
+from .app import CreaturePath, app, fail, failing
 from .modules import Modules, prepare_engine
 
-Report = Annotated[Path | None, typer.Option(help="File to write the report to, as JSON.")]
+Report = Annotated[Path | None, Option(help="File to write the report to, as JSON.")]
+ZIP = b"PK"
+"""The first bytes of a TensorNEAT genome."""
+TEXTS = {
+    "formula": networks.formula,
+    "svg": networks.svg,
+    "dot": networks.dot,
+    "python": networks.numpy_code,
+}
 
 
 @app.command()
 def replay(
     file: CreaturePath,
     check: Annotated[
-        bool, typer.Option("--check", help="Evaluate again and compare bit for bit.")
+        bool, Option("--check", help="Evaluate again and compare bit for bit.")
     ] = False,
-    out: Annotated[Path | None, typer.Option(help="File to write the replay to.")] = None,
+    out: Annotated[Path | None, Option(help="File to write the replay to.")] = None,
     module: Modules = None,
 ) -> None:
     """Simulate a creature file again."""
@@ -55,14 +66,12 @@ def audit(file: CreaturePath, out: Report = None, module: Modules = None) -> Non
 @app.command()
 def gradient(
     file: CreaturePath,
-    of: Annotated[str, typer.Option(help="fitness, or a measure.")] = "fitness",
+    of: Annotated[str, Option(help="fitness, or a measure.")] = "fitness",
     by: Annotated[
         list[str] | None,
-        typer.Option(help="genes (default), rest_angle, rest_length, stretch, viscosity …"),
+        Option(help="genes (default), rest_angle, rest_length, stretch, viscosity …"),
     ] = None,
-    starts: Annotated[
-        int, typer.Option(min=1, help="Number of other starts to compare with.")
-    ] = 8,
+    starts: Annotated[int, Option(min=1, help="Number of other starts to compare with.")] = 8,
     out: Report = None,
     module: Modules = None,
 ) -> None:
@@ -76,6 +85,30 @@ def gradient(
         _write(out, found.document())
     for line in found.lines():
         print(line)
+
+
+@app.command()
+def network(
+    file: CreaturePath,
+    form: Annotated[
+        str,
+        Option(
+            "--as",
+            help="formula, svg, dot (for Graphviz), python (with NumPy), or tensorneat (.npz).",
+        ),
+    ] = "formula",
+    out: Annotated[Path | None, Option(help="File to write; default: standard output.")] = None,
+) -> None:
+    """Write the network of a creature file or of a TensorNEAT genome."""
+    if form not in (*TEXTS, "tensorneat"):
+        fail(f"--as must be one of {', '.join(TEXTS)}, tensorneat; got {form}")
+    with failing(file):
+        data = _rendered(file.read_bytes(), form)
+        if out is None:
+            sys.stdout.buffer.write(data)
+        else:
+            write_whole(out, data)
+            print(out)
 
 
 def _write(out: Path | None, report: Mapping[str, Any]) -> None:
@@ -108,3 +141,13 @@ def _print_audit(found: Mapping[str, Any]) -> None:
     print("Its swimming survives." if survives else "Its swimming does not survive:")
     for reason in found["verdict"]["reasons"]:
         print(f"  {reason}")
+
+
+def _rendered(data: bytes, form: str) -> bytes:
+    if data[:2] == ZIP:
+        network = networks.load_tensorneat(data)[0]
+    else:
+        network = networks.of_creature(parse(data)["identity"])
+    if form == "tensorneat":
+        return networks.dump_tensorneat(networks.write_tensorneat(network))
+    return TEXTS[form](network).encode()

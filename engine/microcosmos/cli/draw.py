@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 from rich.progress import Progress
+from typer import Argument, Option
 from typer.core import TyperGroup
 
 from ..archive.creature import parse
@@ -35,36 +36,29 @@ figures = typer.Typer(
 )
 app.add_typer(figures, name="figure")
 
-File = Annotated[
-    Path, typer.Argument(exists=True, dir_okay=False, help="The archive file of a run.")
-]
+File = Annotated[Path, Argument(exists=True, dir_okay=False, help="The archive file of a run.")]
 Out = Annotated[
-    Path | None, typer.Argument(help="A .pdf, .svg or .png file; default: a PDF beside FILE.")
+    Path | None, Argument(help="A .pdf, .svg or .png file; default: a PDF beside FILE.")
 ]
 Axes = Annotated[
     str | None,
-    typer.Option(
-        help="One or two measures as a,b; default: the first two axes of the archive."
-    ),
+    Option(help="One or two measures as a,b; default: the first two axes of the archive."),
 ]
 
 
 @contextmanager
 def _printed(
     width: Annotated[
-        str,
-        typer.Option(
-            help="single (85 mm), double (178 mm), or a width such as 120mm or 3.5in."
-        ),
+        str, Option(help="single (85 mm), double (178 mm), or a width such as 120mm or 3.5in.")
     ] = "single",
-    dpi: Annotated[int, typer.Option(min=50, max=1200, help="Resolution of a PNG.")] = 300,
+    dpi: Annotated[int, Option(min=50, max=1200, help="Resolution of a PNG.")] = 300,
     caption: Annotated[
-        bool, typer.Option("--caption", help="Draw the caption under the figure.")
+        bool, Option("--caption", help="Draw the caption under the figure.")
     ] = False,
     latex: Annotated[
-        bool, typer.Option("--latex", help="Write the caption for LaTeX to OUT.caption.tex.")
+        bool, Option("--latex", help="Write the caption for LaTeX to OUT.caption.tex.")
     ] = False,
-    palette: Annotated[str, typer.Option(help="viridis, cividis or magma.")] = "viridis",
+    palette: Annotated[str, Option(help="viridis, cividis or magma.")] = "viridis",
 ) -> Iterator[drawing.Print]:
     with failing():
         yield drawing.Print(width, dpi, caption, latex, palette)
@@ -72,10 +66,9 @@ def _printed(
 
 @figures.command(DEFAULT_COMMAND)
 def of_file(
-    file: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
+    file: Annotated[Path, Argument(exists=True, dir_okay=False)],
     out: Annotated[
-        Path,
-        typer.Argument(help=".png, .gif or .mp4 for a creature; .png, .svg or .pdf for a run."),
+        Path, Argument(help=".png, .gif or .mp4 for a creature; .png, .svg or .pdf for a run.")
     ],
     module: Modules = None,
 ) -> None:
@@ -96,7 +89,7 @@ def archive(
     file: File,
     out: Out = None,
     axes: Axes = None,
-    colour: Annotated[str, typer.Option(help="fitness, or a measure.")] = "fitness",
+    colour: Annotated[str, Option(help="fitness, or a measure.")] = "fitness",
 ) -> None:
     """Draw the map of an archive: bins, or the cells of a tessellation."""
     _print(drawing.archive(file, _beside(file, out, "archive"), how, _names(axes), colour))
@@ -108,15 +101,12 @@ def curves(
     how: drawing.Print,
     files: Annotated[
         list[Path],
-        typer.Argument(metavar="FILE... OUT", help="Archive files, then the figure to write."),
+        Argument(metavar="FILE... OUT", help="Archive files, then the figure to write."),
     ],
     shown: Annotated[
-        str,
-        typer.Option(
-            help="Some of qd_score, coverage, best, mean, evaluations …, with commas."
-        ),
+        str, Option(help="Some of qd_score, coverage, best, mean, evaluations …, with commas.")
     ] = "best,coverage,qd_score",
-    against: Annotated[str, typer.Option(help="evaluations or generations.")] = "evaluations",
+    against: Annotated[str, Option(help="evaluations or generations.")] = "evaluations",
 ) -> None:
     """Draw the curves of runs: the median and a band over the seeds of each spec."""
     *given, out = files
@@ -134,9 +124,9 @@ def sheet(
     file: File,
     out: Out = None,
     axes: Axes = None,
-    columns: Annotated[int, typer.Option(help="Number of regions along the first axis.")] = 6,
-    rows: Annotated[int, typer.Option(help="Number of regions along the second axis.")] = 4,
-    moments: Annotated[int, typer.Option(help="Number of moments of each swimmer.")] = 5,
+    columns: Annotated[int, Option(help="Number of regions along the first axis.")] = 6,
+    rows: Annotated[int, Option(help="Number of regions along the second axis.")] = 4,
+    moments: Annotated[int, Option(help="Number of moments of each swimmer.")] = 5,
     module: Modules = None,
 ) -> None:
     """Draw a contact sheet of gaits: the fittest swimmer of each region of the archive."""
@@ -164,7 +154,7 @@ def lineage(
     out: Out = None,
     cell: Annotated[
         int | None,
-        typer.Option(help="Cell of the elite whose ancestors are drawn; default: the fittest."),
+        Option(help="Cell of the elite whose ancestors are drawn; default: the fittest."),
     ] = None,
 ) -> None:
     """Draw the pedigree of an archive's elites, and the ancestors of one of them."""

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
-import typer
+from typer import Option
 
 from ..archive import creature_h5, initial
 from ..archive.creature import parse
@@ -18,7 +18,7 @@ CreatureFile = dict[str, Any]
 
 From = Annotated[
     list[Path] | None,
-    typer.Option(
+    Option(
         "--from",
         exists=True,
         dir_okay=False,

@@ -3,29 +3,31 @@
 from typing import Annotated, Any
 
 import typer
+from typer import Argument, Option
 
-from ..client import Client, Run, Sweep, specs
-from . import overrides
+from ..client import Client, Run, Sweep
+from ..client import specs as server_specs
+from . import specs
 from .app import Set
 from .monitor import watch_to_end
 from .remote import RUNS, Id, Ids, Json, describe, find, say, server_command, show, title
 
-Name = Annotated[str | None, typer.Option(help="Name of the run.")]
-Watch = Annotated[bool, typer.Option("--watch", "-w", help="Watch until it ends.")]
-Yes = Annotated[bool, typer.Option("--yes", "-y", help="Do not ask for confirmation.")]
+Name = Annotated[str | None, Option(help="Name of the run.")]
+Watch = Annotated[bool, Option("--watch", "-w", help="Watch until it ends.")]
+Yes = Annotated[bool, Option("--yes", "-y", help="Do not ask for confirmation.")]
 
 
 @server_command(RUNS)
 def submit(
     client: Client,
-    spec: Annotated[str, typer.Argument(help="Spec file, or name of a preset.")],
+    spec: Annotated[str, Argument(help="Spec file, or name of a preset.")],
     seeds: Annotated[
-        int | None, typer.Option(min=1, help="Queue a sweep with this number of seeds.")
+        int | None, Option(min=1, help="Queue a sweep with this number of seeds.")
     ] = None,
     settings: Set = None,
     sweep: Annotated[
         list[str] | None,
-        typer.Option(
+        Option(
             metavar="FIELD=A,B,...",
             help="Queue a run for each value of a field; several fields make a grid.",
         ),
@@ -35,12 +37,9 @@ def submit(
     json: Json = False,
 ) -> None:
     """Queue a run or a sweep, and print its id."""
-    grid = overrides.grid(sweep or [])
-    document = overrides.applied(specs.document(client.connection, spec), settings or [])
-    if seeds is None and not grid:
-        made = client.submit(document, name=name)
-    else:
-        made = client.submit(document, seeds=seeds or 1, grid=grid, name=name)
+    grid = specs.grid(sweep or [])
+    document = specs.applied(server_specs.document(client.connection, spec), settings or [])
+    made = client.submit(document, seeds=seeds, grid=grid or None, name=name)
     _report(made, watch, json)
 
 
@@ -48,7 +47,7 @@ def submit(
 def extend(
     client: Client,
     id: Id,
-    generations: Annotated[int, typer.Argument(min=1, help="Number of generations to add.")],
+    generations: Annotated[int, Argument(min=1, help="Number of generations to add.")],
     watch: Watch = False,
     json: Json = False,
 ) -> None:
@@ -61,25 +60,21 @@ def fork(
     client: Client,
     id: Id,
     elite: Annotated[
-        list[str] | None,
-        typer.Option(metavar="SHA", help="Start from this creature; repeatable."),
+        list[str] | None, Option(metavar="SHA", help="Start from this creature; repeatable.")
     ] = None,
     cells: Annotated[
-        str | None,
-        typer.Option(metavar="N,N,...", help="Start from the elites of these cells."),
+        str | None, Option(metavar="N,N,...", help="Start from the elites of these cells.")
     ] = None,
     region: Annotated[
         list[str] | None,
-        typer.Option(
+        Option(
             metavar="AXIS=LOW:HIGH",
             help="Start from the elites with measures in this range; repeatable.",
         ),
     ] = None,
-    whole: Annotated[
-        bool, typer.Option("--all", help="Start from all elites (default).")
-    ] = False,
+    whole: Annotated[bool, Option("--all", help="Start from all elites (default).")] = False,
     generation: Annotated[
-        int | None, typer.Option(min=0, help="Take the archive after this generation.")
+        int | None, Option(min=0, help="Take the archive after this generation.")
     ] = None,
     settings: Set = None,
     name: Name = None,
@@ -90,11 +85,11 @@ def fork(
     chosen: dict[str, Any] = {
         "creatures": elite or None,
         "cells": _numbers(cells),
-        "region": overrides.region(region) if region else None,
+        "region": specs.region(region) if region else None,
     }
     if whole + sum(what is not None for what in chosen.values()) > 1:
         raise typer.BadParameter("fork takes one of --elite, --cells, --region and --all")
-    patch = overrides.patch(settings or [])
+    patch = specs.patch(settings or [])
     run = client.run(id).fork(**chosen, generation=generation, spec=patch, name=name)
     _report(run, watch, json)
 
@@ -145,7 +140,6 @@ def _each(client: Client, ids: list[str], action: str) -> None:
 
 
 def _report(made: Run | Sweep, watch: bool, json: bool) -> None:
-    """Print the id for scripts and a hint for people; watch it if asked to."""
     if json:
         show(made.record)
     else:

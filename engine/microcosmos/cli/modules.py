@@ -3,16 +3,14 @@
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Option
 
 from .. import plugins
 from .app import CACHE, app, console, failing
 
 Modules = Annotated[
     list[Path] | None,
-    typer.Option(
-        "--module", help="A Python file with plug-ins, see docs/plugins.md; repeatable."
-    ),
+    Option("--module", help="A Python file with plug-ins, see docs/plugins.md; repeatable."),
 ]
 
 

@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import typer
 from rich.text import Text
+from typer import Argument, Option
 
 from ..client import Client, Run, Sweep
 from ..client.formatting import COLOURS, MEASURES, figure
@@ -19,29 +20,24 @@ def runs(
     client: Client,
     status: Annotated[
         list[str] | None,
-        typer.Option(
-            help="queued, running, paused, finished, failed or cancelled; repeatable."
-        ),
+        Option(help="queued, running, paused, finished, failed or cancelled; repeatable."),
     ] = None,
     experiment: Annotated[
-        list[str] | None,
-        typer.Option(help="Kind of run, such as quality-diversity; repeatable."),
+        list[str] | None, Option(help="Kind of run, such as quality-diversity; repeatable.")
     ] = None,
-    tag: Annotated[str | None, typer.Option(help="List only runs with this tag.")] = None,
+    tag: Annotated[str | None, Option(help="List only runs with this tag.")] = None,
     search: Annotated[
-        str | None, typer.Option("--search", "-s", help="Text in names, tags and notes.")
+        str | None, Option("--search", "-s", help="Text in names, tags and notes.")
     ] = None,
     sweep: Annotated[
-        str | None, typer.Option(metavar="ID", help="List only runs of this sweep.")
+        str | None, Option(metavar="ID", help="List only runs of this sweep.")
     ] = None,
-    deleted: Annotated[
-        bool, typer.Option("--deleted", help="List the runs in the bin.")
-    ] = False,
+    deleted: Annotated[bool, Option("--deleted", help="List the runs in the bin.")] = False,
     sort: Annotated[
-        str, typer.Option(help="created, name, best, qd_score …; with - in front: descending.")
+        str, Option(help="created, name, best, qd_score …; with - in front: descending.")
     ] = "-created",
     limit: Annotated[
-        int, typer.Option("--limit", "-n", min=1, help="Largest number of runs to list.")
+        int, Option("--limit", "-n", min=1, help="Largest number of runs to list.")
     ] = 20,
     json: Json = False,
 ) -> None:
@@ -69,11 +65,9 @@ def watch(
     client: Client,
     id: Annotated[
         str | None,
-        typer.Argument(
-            metavar="ID", help="Id of a run or a sweep; its first characters are enough."
-        ),
+        Argument(metavar="ID", help="Id of a run or a sweep; its first characters are enough."),
     ] = None,
-    last: Annotated[bool, typer.Option("--last", help="Watch the newest run.")] = False,
+    last: Annotated[bool, Option("--last", help="Watch the newest run.")] = False,
 ) -> None:
     """Watch a run or a sweep until it ends. Ctrl-C stops watching, not the run.
 
@@ -90,7 +84,7 @@ def pull(
     id: Id,
     out: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             help="File or folder to write to; default: the current folder.", show_default=False
         ),
     ] = None,
@@ -103,7 +97,7 @@ def pull(
 def sweep(
     client: Client,
     id: Id,
-    runs: Annotated[bool, typer.Option("--runs", help="Print a row for each run.")] = False,
+    runs: Annotated[bool, Option("--runs", help="Print a row for each run.")] = False,
     json: Json = False,
 ) -> None:
     """Print the results of a sweep: median and quartiles of each case."""

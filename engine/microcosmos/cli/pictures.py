@@ -6,6 +6,7 @@ from typing import Annotated
 
 import httpx
 import typer
+from typer import Argument, Option
 
 from ..archive.atomic import write_whole
 from ..spec import picture as target
@@ -28,14 +29,14 @@ app.add_typer(data, name="data")
 @app.command()
 def picture(
     file: Annotated[
-        Path | None, typer.Argument(help="A picture, or an IDX file of images such as MNIST's.")
+        Path | None, Argument(help="A picture, or an IDX file of images such as MNIST's.")
     ] = None,
     number: Annotated[
-        int | None, typer.Option(help="Number of the image in an IDX file, from 0.")
+        int | None, Option(help="Number of the image in an IDX file, from 0.")
     ] = None,
-    text: Annotated[str | None, typer.Option(help="Text to draw, instead of FILE.")] = None,
-    font: Annotated[Path | None, typer.Option(help="Font file for --text.")] = None,
-    name: Annotated[str | None, typer.Option(help="Name of the picture in the run.")] = None,
+    text: Annotated[str | None, Option(help="Text to draw, instead of FILE.")] = None,
+    font: Annotated[Path | None, Option(help="Font file for --text.")] = None,
+    name: Annotated[str | None, Option(help="Name of the picture in the run.")] = None,
 ) -> None:
     """Print a picture as JSON, for `targets` of a folding spec."""
     if (file is None) == (text is None):
@@ -52,9 +53,7 @@ def picture(
 
 @data.command()
 def mnist(
-    folder: Annotated[Path, typer.Argument(help="Folder to write the files to.")] = Path(
-        "mnist"
-    ),
+    folder: Annotated[Path, Argument(help="Folder to write the files to.")] = Path("mnist"),
 ) -> None:
     """Download and verify the test images and labels of MNIST."""
     with failing("FOLDER must be a folder or a new path"):

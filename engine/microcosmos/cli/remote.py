@@ -2,7 +2,7 @@
 
 import json
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Annotated, Any
 
@@ -10,9 +10,10 @@ import typer
 from rich.console import Console
 from rich.table import Column, Table
 from rich.text import Text
+from typer import Argument, Option
 
 from ..client import Client, NotFound, Refused, Run, ServerError, Sweep
-from ..client.formatting import counts_as_text, status_of
+from ..client.formatting import counts_as_text, quoted, status_of
 from .app import app, console, with_options
 
 RUNS = "Runs on a server"
@@ -23,7 +24,7 @@ WIDE = 200
 
 Url = Annotated[
     str | None,
-    typer.Option(
+    Option(
         envvar="MICROCOSMOS_URL",
         help="Address of the server.",
         show_default="http://127.0.0.1:8000",
@@ -32,16 +33,16 @@ Url = Annotated[
 ]
 Token = Annotated[
     str | None,
-    typer.Option(
+    Option(
         envvar="MICROCOSMOS_TOKEN",
         help="Access token, if the server requires one.",
         rich_help_panel=SERVER,
     ),
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print the full record as JSON.")]
-Id = Annotated[str, typer.Argument(metavar="ID", help="Id; its first characters are enough.")]
+Json = Annotated[bool, Option("--json", help="Print the full record as JSON.")]
+Id = Annotated[str, Argument(metavar="ID", help="Id; its first characters are enough.")]
 Ids = Annotated[
-    list[str], typer.Argument(metavar="ID...", help="Ids; their first characters are enough.")
+    list[str], Argument(metavar="ID...", help="Ids; their first characters are enough.")
 ]
 
 
@@ -127,8 +128,4 @@ def describe(thing: Run | Sweep) -> str:
 
 def title(thing: Run | Sweep) -> str:
     """Return the kind, the short id and the name of a run or a sweep."""
-    return f"{type(thing).__name__} {thing.id[:8]}{named(thing.record)}"
-
-
-def named(record: Mapping[str, Any]) -> str:
-    return f" “{record['name']}”" if record.get("name") else ""
+    return f"{type(thing).__name__} {thing.id[:8]}{quoted(thing.record)}"

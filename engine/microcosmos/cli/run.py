@@ -1,5 +1,6 @@
-"""The command `evolve`: carry out a run without a server."""
+"""Commands that carry out runs without a server: evolve, refine."""
 
+import json
 import signal
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -14,10 +15,13 @@ from rich.progress import (
     TextColumn,
     TimeRemainingColumn,
 )
+from typer import Argument, Option
 
-from ..doctor.memory import memory_bytes
-from ..spec import Spec, estimate
-from .app import CACHE, OtherDevice, Set, app, console, fail, failing
+from ..archive.creature import parse
+from ..archive.file import read_table
+from ..doctor.machine import memory_bytes
+from ..spec import Archive, Refinement, Spec, estimate
+from .app import CACHE, CreaturePath, OtherDevice, Set, app, console, fail, failing
 from .fork import From, with_initial
 from .modules import Modules, load_modules
 from .specs import changed, presets, read_spec, with_generations
@@ -25,19 +29,19 @@ from .specs import changed, presets, read_spec, with_generations
 
 @app.command()
 def evolve(
-    spec: Annotated[str, typer.Argument(help="Spec file, or name of a preset.")],
+    spec: Annotated[str, Argument(help="Spec file, or name of a preset.")],
     archive: Annotated[
-        Path | None, typer.Option("--out", help="Archive file; default: beside the spec.")
+        Path | None, Option("--out", help="Archive file; default: beside the spec.")
     ] = None,
     generations: Annotated[
         int | None,
-        typer.Option(
+        Option(
             help="Total number of generations; extends a finished archive. Default: the spec's."
         ),
     ] = None,
     settings: Set = None,
     checkpoint_seconds: Annotated[
-        float, typer.Option(min=0.0, help="Seconds between two checkpoints.")
+        float, Option(min=0.0, help="Seconds between two checkpoints.")
     ] = 60.0,
     other_device: OtherDevice = False,
     begin_from: From = None,
@@ -58,6 +62,44 @@ def evolve(
     carry_on(chosen, path, checkpoint_seconds, other_device, initial)
     best = path.with_suffix(".best.json")
     console.print(f"Done: {path}" + (f"; the best creature: {best}" if best.exists() else ""))
+
+
+@app.command()
+def refine(
+    file: CreaturePath,
+    like: Annotated[
+        str | None,
+        Option(
+            help="Spec or preset whose archive cells bound the search; default: 20 × 20 cells."
+        ),
+    ] = None,
+    steps: Annotated[int, Option(min=1, help="Number of steps.")] = 20,
+    length: Annotated[float, Option(help="Length of the first step.")] = 0.2,
+    out: Annotated[Path | None, Option(help="Archive file; default: NAME.refined.h5.")] = None,
+    segment: Annotated[
+        int | None,
+        Option(
+            min=1,
+            help="Simulation steps whose states the gradient keeps in memory; default: all.",
+        ),
+    ] = None,
+    other_device: OtherDevice = False,
+    module: Modules = None,
+) -> None:
+    """Improve a creature by gradient steps that stay in its cell."""
+    load_modules(module)
+    path = out or file.with_name(f"{file.name.removesuffix('.json')}.refined.h5")
+    with failing(file):
+        spec = Refinement(
+            creature=parse(file.read_bytes()),
+            archive=_archive(like),
+            steps=steps,
+            length=length,
+            segment=segment,
+        )
+    prepare_run(spec, path)
+    carry_on(spec, path, 60.0, other_device)
+    _print_comparison(path)
 
 
 def prepare_run(spec: Spec, path: Path) -> int:
@@ -126,7 +168,6 @@ def carry_on(
 
 
 def _summary(report: Any) -> str:
-    """Summarise a generation in a few words."""
     if report.qd_score is None:
         values = (report.summary or {}).items()
         shown = ((name, value) for name, value in values if value is not None)
@@ -138,3 +179,24 @@ def _summary(report: Any) -> str:
         f"QD score {report.qd_score:.2f}  coverage {100 * report.coverage:.1f} %  "
         f"best {report.best:.2f}"
     )
+
+
+def _archive(like: str | None) -> Archive:
+    if like is None:
+        return Archive()
+    found = getattr(read_spec(like), "archive", None)
+    if found is None:
+        fail(f"--like needs a spec with an archive, got {like}")
+    return found
+
+
+def _print_comparison(path: Path) -> None:
+    rows = read_table(path.read_bytes()).rows
+    before, after = rows[0], rows[-1]
+    print(f"{'':>20}  {'before':>12}  {'after':>12}")
+    for name in before:
+        if before[name] is not None and name != "step":
+            print(f"{name:>20}  {before[name]:>12.6g}  {after[name]:>12.6g}")
+    best = path.with_suffix(".best.json")
+    name = json.loads(best.read_bytes())["sha256"][:12]
+    print(f"{len(rows) - 1} steps into {path}; the creature {name}: {best}")

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from typer import Argument, Option
 
 from ..client import Client
 from .app import app
@@ -12,12 +13,12 @@ from .remote import SHARING, Ids, Json, say, server_command, show, show_table
 tokens = typer.Typer(help="Create, list and revoke access tokens.", no_args_is_help=True)
 app.add_typer(tokens, name="tokens", rich_help_panel=SHARING)
 
-Days = Annotated[float | None, typer.Option(help="Days until it expires; default: never.")]
+Days = Annotated[float | None, Option(help="Days until it expires; default: never.")]
 
 
 @server_command(SHARING, "import")
 def import_(
-    client: Client, files: Annotated[list[Path], typer.Argument(exists=True, dir_okay=False)]
+    client: Client, files: Annotated[list[Path], Argument(exists=True, dir_okay=False)]
 ) -> None:
     """Import creature files into a server, which verifies their hashes."""
     for file in files:
@@ -28,25 +29,21 @@ def import_(
 def share(
     client: Client,
     what: Annotated[
-        str,
-        typer.Argument(metavar="SHA|RUN", help="Name of a creature (SHA-256), or id of a run."),
+        str, Argument(metavar="SHA|RUN", help="Name of a creature (SHA-256), or id of a run.")
     ],
     generation: Annotated[
-        int | None,
-        typer.Option(min=0, help="Publish the archive of the run after this generation."),
+        int | None, Option(min=0, help="Publish the archive of the run after this generation.")
     ] = None,
     days: Days = None,
-    title: Annotated[str | None, typer.Option(help="Title of the shared page.")] = None,
-    credit: Annotated[str | None, typer.Option(help="Authors to credit.")] = None,
-    licence: Annotated[str | None, typer.Option(help="Licence, such as CC-BY-4.0.")] = None,
-    listed: Annotated[bool, typer.Option("--listed", help="List it in the commons.")] = False,
+    title: Annotated[str | None, Option(help="Title of the shared page.")] = None,
+    credit: Annotated[str | None, Option(help="Authors to credit.")] = None,
+    licence: Annotated[str | None, Option(help="Licence, such as CC-BY-4.0.")] = None,
+    listed: Annotated[bool, Option("--listed", help="List it in the commons.")] = False,
     json: Json = False,
 ) -> None:
     """Publish a creature or an archive; people without a token can open the link."""
-    options: dict[str, Any] = {"title": title, "credit": credit, "licence": licence}
-    if generation is not None:
-        options["generation"] = generation
-    made = client.share(what, listed=listed, days=days, **options)
+    texts = {"title": title, "credit": credit, "licence": licence}
+    made = client.share(what, generation=generation, listed=listed, days=days, **texts)
     if json:
         show(made.record)
         return
@@ -57,7 +54,7 @@ def share(
 @server_command(SHARING)
 def unshare(
     client: Client,
-    slugs: Annotated[list[str], typer.Argument(metavar="LINK...", help="Links or slugs.")],
+    slugs: Annotated[list[str], Argument(metavar="LINK...", help="Links or slugs.")],
 ) -> None:
     """Revoke shares."""
     for slug in slugs:
@@ -76,10 +73,10 @@ def shares(client: Client, json: Json = False) -> None:
 @server_command(None, "create", tokens)
 def create_token(
     client: Client,
-    name: Annotated[str, typer.Argument(help="Owner or purpose of the token.")],
+    name: Annotated[str, Argument(help="Owner or purpose of the token.")],
     scope: Annotated[
         str,
-        typer.Option(
+        Option(
             help="read, write (also create runs and change your own), or admin (everything)."
         ),
     ] = "write",
@@ -114,7 +111,6 @@ def _list(records: list[dict[str, Any]], json: bool, fields: str) -> None:
         show(records)
         return
     names = fields.split()
-    rows = [[one.get(name) for name in names] for one in records]
-    for row in rows:
-        row[0] = str(row[0])[:8] if names[0] == "id" else row[0]
+    short = [{**one, "id": str(one.get("id"))[:8]} for one in records]
+    rows = [[one.get(name) for name in names] for one in short]
     show_table([name.removesuffix("_at") for name in names], rows)

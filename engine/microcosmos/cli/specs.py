@@ -1,12 +1,14 @@
-"""Specs from files, or presets by name."""
+"""Specs from files or presets, and fields set by their dotted paths."""
 
 import json
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
+
+import typer
 
 from ..spec import EXPERIMENTS, Evolution, Spec, parse
 from .app import fail, failing
-from .overrides import applied
 
 
 def read_spec(name: str) -> Spec:
@@ -34,6 +36,91 @@ def changed(spec: Spec, settings: Sequence[str], option: str = "--set") -> Spec:
 
 
 def presets() -> dict[str, Spec]:
-    """By experiment and name; those of quality-diversity by their name alone as well."""
+    """Return presets by experiment and name, those of quality-diversity also by name alone."""
     named = {f"{e.name}/{p.name}": p.spec for e in EXPERIMENTS.values() for p in e.presets}
     return {p.name: p.spec for p in EXPERIMENTS["quality-diversity"].presets} | named
+
+
+def value(text: str) -> Any:
+    """Parse JSON; return other text as it is."""
+    try:
+        return json.loads(text)
+    except ValueError:
+        return text
+
+
+def pair(text: str, option: str) -> tuple[str, str]:
+    path, equals, given = text.partition("=")
+    if not equals or not all(path.strip().split(".")):
+        raise typer.BadParameter(
+            f"{option} needs FIELD=VALUE, such as world.viscosity=0.1; got {text!r}"
+        )
+    return path.strip(), given.strip()
+
+
+def applied(spec: dict[str, Any], settings: Sequence[str]) -> dict[str, Any]:
+    """Return a copy of a spec with some fields set; missing parts are added."""
+    spec = json.loads(json.dumps(spec))
+    for text in settings:
+        path, given = pair(text, "--set")
+        *parents, last = path.split(".")
+        place: Any = spec
+        for name in parents:
+            place = _part(place, name, path)
+        place[_key(place, last, path)] = value(given)
+    return spec
+
+
+def patch(settings: Sequence[str]) -> dict[str, Any]:
+    """Return the fields to merge into a spec; lists are replaced whole."""
+    for text in settings:
+        path, _ = pair(text, "--set")
+        if any(name.isdigit() for name in path.split(".")):
+            raise typer.BadParameter(
+                f"a fork replaces a list as a whole: --set needs the list, got {path}"
+            )
+    return applied({}, settings)
+
+
+def grid(sweeps: Sequence[str]) -> dict[str, list[Any]]:
+    """Return values by path: a JSON list, or values with commas between them."""
+    found: dict[str, list[Any]] = {}
+    for text in sweeps:
+        path, given = pair(text, "--sweep")
+        whole = value(given)
+        found[path] = whole if isinstance(whole, list) else [value(v) for v in given.split(",")]
+    return found
+
+
+def region(bounds: Sequence[str]) -> dict[str, list[float]]:
+    """Return low and high by axis."""
+    found = {}
+    for text in bounds:
+        axis, given = pair(text, "--region")
+        try:
+            low, high = map(float, given.split(":"))
+        except ValueError:
+            raise typer.BadParameter(
+                f"--region needs AXIS=LOW:HIGH, such as turning=0:1.5; got {text!r}"
+            ) from None
+        found[axis] = [low, high]
+    return found
+
+
+def _part(place: Any, name: str, path: str) -> Any:
+    key = _key(place, name, path)
+    if isinstance(place, dict) and place.get(name) is None:
+        place[name] = {}
+    if isinstance(place, dict) and not isinstance(place[name], dict | list):
+        raise typer.BadParameter(f"{path}: {name} has no fields; it is {place[name]!r}")
+    return place[key]
+
+
+def _key(place: Any, name: str, path: str) -> str | int:
+    if not isinstance(place, list):
+        return name
+    if not name.isdigit() or int(name) >= len(place):
+        raise typer.BadParameter(
+            f"{path}: needs a number from 0 to {len(place) - 1}; got {name}"
+        )
+    return int(name)

@@ -78,14 +78,16 @@ class Archive:
 
     def columns(self) -> dict[str, Any]:
         place = unit if self.kind == "cvt" else scaled
-        measures = {
-            f"measures_{i}": place(self.descriptors[:, i], axis)
-            for i, axis in enumerate(self.axes)
+        places = map(place, self.descriptors.T, self.axes)
+        return {
+            "objective": self.fitness,
+            **{f"measures_{i}": values for i, values in enumerate(places)},
+            "threshold": self.fitness,
+            **self.measures,
+            "generation": self.elite_generation,
+            "creature": self.creature,
+            "index": self.cell,
         }
-        found = {"objective": self.fitness, **measures, "threshold": self.fitness}
-        found |= self.measures
-        found |= {"generation": self.elite_generation, "creature": self.creature}
-        return found | {"index": self.cell}
 
     def _nth(self, index: int) -> Creature:
         return Creature(self._connection, self.creature[index])

@@ -119,17 +119,18 @@ class Client:
         sort: str = "-created",
     ) -> Iterator[Run]:
         """Yield the runs that match, newest first; pages are read as they are needed."""
-        asked = {
-            "status": [status] if isinstance(status, str) else list(status),
-            "experiment": [experiment] if isinstance(experiment, str) else list(experiment),
-            "tag": tag,
-            "q": text,
-            "sweep": sweep.id if isinstance(sweep, Sweep) else sweep,
-            "deleted": deleted or None,
-            "sort": sort,
-            "limit": 200,
-        }
-        return (Run(self.connection, one) for one in self.connection.items("runs", **asked))
+        found = self.connection.items(
+            "runs",
+            status=[status] if isinstance(status, str) else list(status),
+            experiment=[experiment] if isinstance(experiment, str) else list(experiment),
+            tag=tag,
+            q=text,
+            sweep=sweep.id if isinstance(sweep, Sweep) else sweep,
+            deleted=deleted or None,
+            sort=sort,
+            limit=200,
+        )
+        return (Run(self.connection, one) for one in found)
 
     def run(self, id: str, *, deleted: bool = False) -> Run:
         """Return the run whose id begins so. Raise `NotFound`, and `Refused` for several."""

@@ -2,12 +2,12 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from importlib import import_module
 from typing import Any
 
 import numpy as np
 
 from ..archive.file import load
+from ..optional import require
 
 
 class Columns(dict[str, np.ndarray]):
@@ -64,11 +64,7 @@ def _objects(values: Sequence[Any]) -> np.ndarray:
 
 def frame(columns: Mapping[str, Any] | Sequence[Mapping[str, Any]]) -> Any:
     """Return a pandas `DataFrame` of columns or of rows."""
-    try:
-        pandas = import_module("pandas")
-    except ImportError as error:
-        raise ImportError("Data frames need pandas: pip install pandas") from error
-    return pandas.DataFrame(columns if isinstance(columns, Mapping) else list(columns))
+    return require("pandas", "pandas").DataFrame(columns)
 
 
 def lineage(data: bytes) -> Columns:
@@ -83,12 +79,11 @@ def lineage(data: bytes) -> Columns:
     rows = tree["lineage"]
     operators = json.loads(attributes["operators"])
     axes = [axis["name"] for axis in json.loads(attributes["spec"])["archive"]["descriptors"]]
-    parents = [
-        [bytes(parent).hex() for parent in row if parent.any()] for row in rows["parents"]
-    ]
     found = {
         "creature": [bytes(row).hex() for row in rows["creature"]],
-        "parents": _objects(parents),
+        "parents": _objects(
+            [[bytes(p).hex() for p in row if p.any()] for row in rows["parents"]]
+        ),
         "operator": [operators[number] for number in rows["operator"]],
     }
     found |= {name: rows[name] for name in ("generation", "cell", "fitness")}

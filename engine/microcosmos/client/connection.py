@@ -55,19 +55,17 @@ class Connection:
         weakref.finalize(self, self.http.close)  # People write `Client(url).submit(spec)`.
 
     def read(self, path: str, **params: Any) -> Any:
-        """Return the JSON at a path."""
         return self.json(self.ask("GET", path, params=params))
 
     def items(self, path: str, **params: Any) -> Iterator[dict[str, Any]]:
         """Yield all entries of a list; request each page when it is needed."""
         page = self.read(path, **params)
-        if isinstance(page, list):
-            yield from page
-            return
-        yield from page["items"]
-        while cursor := page.get("next"):
-            page = self.read(path, **params, cursor=cursor)
+        while isinstance(page, dict):
             yield from page["items"]
+            if not (cursor := page.get("next")):
+                return
+            page = self.read(path, **params, cursor=cursor)
+        yield from page
 
     def rendering(self, path: str, timeout: float = 300.0) -> bytes:
         """Return a replay, picture or film, once the server has made it."""
@@ -146,13 +144,13 @@ class Connection:
         repeatable = key is not None or method in IDEMPOTENT
         waited, attempt = 0.0, 0
         while True:
-            begun, answer, failure = time.monotonic(), None, None
+            start, answer, failure = time.monotonic(), None, None
             try:
                 answer = self.http.send(request, stream=stream)
                 self.answered = True
             except httpx.TransportError as error:
                 failure = error
-            waited += time.monotonic() - begun
+            waited += time.monotonic() - start
             pause = self._pause(answer, failure, repeatable, attempt)
             if pause is None or waited + pause > self.patience:
                 break
@@ -184,7 +182,6 @@ class Connection:
 
 
 def _retry_after(answer: httpx.Response) -> float | None:
-    """Return the seconds that the server asks to wait."""
     text = answer.headers.get("retry-after", "")
     if text.isdigit():
         return float(text)
@@ -205,9 +202,9 @@ def normal(url: str) -> str:
     whole = url.strip() if "://" in url else f"http://{url.strip()}"
     try:
         parts = urlsplit(whole)
-        sound = parts.scheme in ("http", "https") and bool(parts.hostname) and parts.port != 0
+        valid = parts.scheme in ("http", "https") and bool(parts.hostname) and parts.port != 0
     except ValueError:
-        sound = False
-    if not sound:
+        valid = False
+    if not valid:
         raise ValueError(f"`url` must be an address like http://127.0.0.1:8000, got {url!r}")
     return whole.partition("?")[0].rstrip("/").removesuffix(API.rstrip("/")).rstrip("/")

@@ -22,10 +22,13 @@ def braille(values: Sequence[float | None], width: int, height: int) -> list[str
     columns, rows = 2 * width, 4 * height
     signs = [[EMPTY] * width for _ in range(height)]
     before: int | None = None
-    for x, place in enumerate(_places(values, columns, rows)):
-        if place is None:
+    shares = _shares(values)
+    for x in range(columns if shares else 0):
+        share = shares[round(x * (len(shares) - 1) / (columns - 1))]
+        if share is None:
             before = None
             continue
+        place = round(share * (rows - 1))
         low, high = sorted((place, place if before is None else before))
         for y in range(low, high + 1):
             if y != before or low == high:
@@ -34,27 +37,22 @@ def braille(values: Sequence[float | None], width: int, height: int) -> list[str
     return ["".join(map(chr, line)) for line in signs]
 
 
-def _places(values: Sequence[float | None], columns: int, rows: int) -> list[int | None]:
-    """Return the row of each column, counted from below."""
+def _shares(values: Sequence[float | None]) -> list[float | None]:
+    """Return values from 0 for the least to 1 for the largest; none if all are unknown."""
     known = [value for value in values if value is not None]
     if not known:
         return []
     low, span = min(known), (max(known) - min(known)) or 1.0
-    last = len(values) - 1
-    taken = [values[round(x * last / (columns - 1))] for x in range(columns)]
-    return [None if v is None else round((v - low) / span * (rows - 1)) for v in taken]
+    return [None if value is None else (value - low) / span for value in values]
 
 
 def polyline(values: Sequence[float | None], width: float, height: float) -> str:
     """Return the `points` of an SVG polyline, without unknown values."""
-    known = [(i, value) for i, value in enumerate(values) if value is not None]
-    if not known:
-        return ""
-    low, high = min(v for _, v in known), max(v for _, v in known)
-    span, last = (high - low) or 1.0, max(1, len(values) - 1)
+    last = max(1, len(values) - 1)
     return " ".join(
-        f"{i * width / last:.1f},{height - (value - low) / span * height:.1f}"
-        for i, value in known
+        f"{i * width / last:.1f},{height - place * height:.1f}"
+        for i, place in enumerate(_shares(values))
+        if place is not None
     )
 
 

@@ -13,10 +13,7 @@ class ServerError(Exception):
     """A failed request, with the HTTP `status` and the `errors` of fields."""
 
     def __init__(
-        self,
-        message: str,
-        status: int | None = None,
-        errors: Sequence[Mapping[str, Any]] = (),
+        self, message: str, status: int | None = None, errors: Sequence[Mapping[str, Any]] = ()
     ):
         super().__init__(message)
         self.status, self.errors = status, list(errors)
@@ -46,12 +43,7 @@ class Refused(ServerError):
     """The request is wrong."""
 
 
-KINDS: dict[int, type[ServerError]] = {
-    401: NotAllowed,
-    403: NotAllowed,
-    404: NotFound,
-    409: Conflict,
-}
+KINDS = {401: NotAllowed, 403: NotAllowed, 404: NotFound, 409: Conflict}
 
 
 def checked(answer: httpx.Response, url: str) -> httpx.Response:
@@ -92,23 +84,18 @@ def stranger(answer: httpx.Response, url: str, kind: str) -> ServerError:
     """Explain an answer that no Microcosmos server would give."""
     status = f"{answer.status_code} {answer.reason_phrase}".strip()
     if answer.status_code in (502, 503, 504):
-        return NoAnswer(
-            f"A proxy at {url} answers {status}: the server behind it is down or starting. "
-            "Try again in a moment.",
-            answer.status_code,
-        )
+        text = "the server behind it is down or starting. Try again in a moment."
+        return NoAnswer(f"A proxy at {url} answers {status}: {text}", answer.status_code)
     if answer.is_redirect:
         where = answer.headers.get("location", "another address")
-        return NotMicrocosmos(
-            f"{url} sends on to {where}: give the address that answers itself.",
-            answer.status_code,
+        text = f"{url} redirects to {where}: give the address that answers itself."
+    else:
+        content = "a web page" if kind == "text/html" else kind or "nothing"
+        text = (
+            f"{url} answers {status} with {content}, as no Microcosmos server does: is the "
+            "address right, and is a proxy in between that wants a log-in?"
         )
-    what = "a web page" if kind == "text/html" else kind or "nothing"
-    return NotMicrocosmos(
-        f"{url} answers {status} with {what}, as no Microcosmos server does: is the address "
-        "right, and is a proxy in between that wants a log-in?",
-        answer.status_code,
-    )
+    return NotMicrocosmos(text, answer.status_code)
 
 
 def unreachable(error: httpx.TransportError, url: str) -> NoAnswer:

@@ -19,6 +19,7 @@ from rich.progress import (
     TransferSpeedColumn,
 )
 
+from ..archive.atomic import sync_folder
 from .connection import Connection
 from .errors import NotMicrocosmos, Refused, ServerError, unreachable
 
@@ -32,7 +33,7 @@ Tell = Callable[[int, int], None]
 """Called with the number of bytes so far, and of the whole file."""
 
 
-def silent(there: int, whole: int) -> None:
+def silent(received: int, total: int) -> None:
     """Ignore the progress."""
 
 
@@ -43,16 +44,11 @@ def progress_bar(name: str, quiet: bool = False) -> Iterator[Tell]:
     if quiet or not console.is_terminal:
         yield silent
         return
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        DownloadColumn(),
-        TransferSpeedColumn(),
-        TimeRemainingColumn(),
-    )
+    description, rate = TextColumn("{task.description}"), TransferSpeedColumn()
+    columns = (description, BarColumn(), DownloadColumn(), rate, TimeRemainingColumn())
     with Progress(*columns, console=console) as progress:
         task = progress.add_task(name, total=None)
-        yield lambda there, whole: progress.update(task, completed=there, total=whole)
+        yield lambda received, total: progress.update(task, completed=received, total=total)
 
 
 def fetch(connection: Connection, path: str, to: Path, tell: Tell = silent) -> Path:
@@ -63,12 +59,12 @@ def fetch(connection: Connection, path: str, to: Path, tell: Tell = silent) -> P
     """
     if not to.parent.is_dir():
         raise NotADirectoryError(f"{to.name} needs an existing folder; got {to.parent}")
-    there, tries = digest(to) if to.exists() else None, 0
+    sha, tries = digest(to) if to.exists() else None, 0
     while True:
         part = part_of(to)
         before = size(part)
         try:
-            found = _more(connection, path, to, part, there, tell)
+            found = _more(connection, path, to, part, sha, tell)
         except httpx.TransportError as error:
             tries = 0 if size(part_of(to)) > before else tries + 1
             if tries >= TRIES:
@@ -81,16 +77,11 @@ def fetch(connection: Connection, path: str, to: Path, tell: Tell = silent) -> P
 
 
 def _more(
-    connection: Connection,
-    path: str,
-    to: Path,
-    part: Path | None,
-    there: str | None,
-    tell: Tell,
+    connection: Connection, path: str, to: Path, part: Path | None, sha: str | None, tell: Tell
 ) -> Path | None:
     """Return the completed part; None if the file exists already."""
     headers = {"Accept-Encoding": "identity"}
-    headers |= {"If-None-Match": f'"{there}"'} if there else {}
+    headers |= {"If-None-Match": f'"{sha}"'} if sha else {}
     if part:
         headers |= {"Range": f"bytes={size(part)}-", "If-Range": f'"{_named(part)}"'}
     try:
@@ -113,16 +104,16 @@ def _written(answer: httpx.Response, to: Path, part: Path | None, tell: Tell, ur
     resumed = answer.status_code == 206 and target == part
     if part and not resumed:
         part.unlink(missing_ok=True)
-    start = size(target) if resumed else 0
-    whole = start + int(answer.headers.get("content-length", 0))  # Some proxies drop it.
+    received = size(target) if resumed else 0
+    total = received + int(answer.headers.get("content-length", 0))  # Some proxies drop it.
     try:
         with target.open("ab" if resumed else "wb") as file:
-            tell(start, whole)
+            tell(received, total)
             for chunk in answer.iter_raw(CHUNK):
                 file.write(chunk)
                 file.flush()
-                start += len(chunk)
-                tell(start, max(start, whole))
+                received += len(chunk)
+                tell(received, max(received, total))
             os.fsync(file.fileno())
     except OSError as error:  # The error of a full disk has no name.
         error.filename = error.filename or str(target)
@@ -140,11 +131,7 @@ def _place(part: Path, to: Path) -> None:
             "way, and is not kept. Try again."
         )
     part.replace(to)
-    folder = os.open(to.parent, os.O_RDONLY)
-    try:
-        os.fsync(folder)
-    finally:
-        os.close(folder)
+    sync_folder(to.parent)
 
 
 def part_of(to: Path) -> Path | None:
@@ -164,5 +151,4 @@ def digest(path: Path) -> str:
 
 
 def _named(part: Path) -> str:
-    """Return the expected hash of a part."""
     return part.name.split(".")[-2]

@@ -5,6 +5,7 @@ from typing import Any
 
 MEASURES = {"qd_score": "QD score", "coverage": "coverage", "best": "best"}
 """Titles of the measures of an archive's quality."""
+UNITS = ((86400, "d", 3600, "h"), (3600, "h", 60, "min"), (60, "min", 1, "s"))
 COLOURS = {
     "finished": "green",
     "failed": "red",
@@ -19,13 +20,10 @@ def duration(seconds: float | None) -> str:
     if seconds is None:
         return ""
     whole = max(0, round(seconds))
-    if whole < 60:
-        return f"{whole} s"
-    if whole < 3600:
-        return f"{whole // 60} min {whole % 60} s"
-    if whole < 86400:
-        return f"{whole // 3600} h {whole % 3600 // 60} min"
-    return f"{whole // 86400} d {whole % 86400 // 3600} h"
+    for large, name, small, rest in UNITS:
+        if whole >= large:
+            return f"{whole // large} {name} {whole % large // small} {rest}"
+    return f"{whole} s"
 
 
 def figure(name: str, value: float | None) -> str:
@@ -45,8 +43,11 @@ def figures(record: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 def title(record: Mapping[str, Any]) -> str:
     """Return experiment, name and short id."""
-    name = f" “{record['name']}”" if record.get("name") else ""
-    return f"{record['experiment']}{name}  {record['id'][:8]}"
+    return f"{record['experiment']}{quoted(record)}  {record['id'][:8]}"
+
+
+def quoted(record: Mapping[str, Any]) -> str:
+    return f" “{record['name']}”" if record.get("name") else ""
 
 
 def status_of(record: Mapping[str, Any]) -> str:
@@ -74,6 +75,5 @@ def speed(record: Mapping[str, Any]) -> str:
     """Format the rate of a run and its remaining time."""
     rate, remaining = record.get("evaluations_per_second"), record.get("eta_seconds")
     parts = [f"{rate:.3g} evaluations/s"] if rate and record["status"] == "running" else []
-    return "   ".join(
-        [*parts, *([f"{duration(remaining)} left"] if remaining is not None else [])]
-    )
+    parts += [f"{duration(remaining)} left"] if remaining is not None else []
+    return "   ".join(parts)

@@ -25,11 +25,12 @@ def notebook() -> Iterator[Show]:
 
     def draw(state: RunState) -> None:
         nonlocal handle
+        shown = import_module("IPython.display")
+        page = shown.HTML(html(state))
         if handle is None:
-            display = import_module("IPython.display").display
-            handle = display(Page(html(state)), display_id=True)
+            handle = shown.display(page, display_id=True)
         else:
-            handle.update(Page(html(state)))
+            handle.update(page)
 
     def show(state: RunState) -> None:
         nonlocal last, at
@@ -45,22 +46,11 @@ def notebook() -> Iterator[Show]:
             draw(last)
 
 
-class Page:
-    """HTML that a notebook shows."""
-
-    def __init__(self, text: str):
-        self.text = text
-
-    def _repr_html_(self) -> str:
-        return self.text
-
-
 def html(state: RunState) -> str:
     record = state.record
     colour = COLOURS.get(record["status"], "#2f7ec0")
-    figures = [
-        f"{escape(name)} <b>{escape(value)}</b>" for name, value in formatting.figures(record)
-    ]
+    pairs = formatting.figures(record)
+    figures = [f"{escape(name)} <b>{escape(value)}</b>" for name, value in pairs]
     words = [formatting.done(record), *figures, formatting.speed(record)]
     problems = " ".join(filter(None, [record.get("warning"), state.problem]))
     curves = (

@@ -45,26 +45,26 @@ class RunState:
                     values.append(event.data.get(name))
 
 
-Source = Callable[[RunState], Iterator[RunState]]
+Source = Callable[[Connection, str, RunState], Iterator[RunState]]
 """Updates a state, again and again, while the server answers."""
 
 
 def follow(connection: Connection, run: str) -> Iterator[RunState]:
     """Yield the same object, updated, until the run has ended."""
-    return _through_outages(lambda state: _run_states(connection, run, state))
+    return _through_outages(_run_states, connection, run)
 
 
 def follow_sweep(connection: Connection, sweep: str) -> Iterator[RunState]:
-    """Do the same for all runs of a sweep together."""
-    return _through_outages(lambda state: _sweep_states(connection, sweep, state))
+    """Yield the same object, updated, until all runs of the sweep have ended."""
+    return _through_outages(_sweep_states, connection, sweep)
 
 
-def _through_outages(source: Source) -> Iterator[RunState]:
+def _through_outages(source: Source, connection: Connection, id: str) -> Iterator[RunState]:
     state = RunState()
     lost: float | None = None
     while True:
         try:
-            for found in source(state):
+            for found in source(connection, id, state):
                 state.problem, lost = None, None
                 yield found
                 if found.ended:

@@ -87,10 +87,8 @@ class Run(Record):
             "from": chosen or {"archive": True},
             "spec": {**(spec or {})},
         }
-        if generation is not None:
-            document["generation"] = generation
-        if name:
-            document["name"] = name
+        document |= {} if generation is None else {"generation": generation}
+        document |= {"name": name} if name else {}
         path, key = f"{self._path}/fork", str(uuid4())
         return Run(self._connection, self._connection.send("POST", path, document, key=key))
 

@@ -33,7 +33,7 @@ def read(path: Path) -> dict[str, Any]:
 
 
 def preset(connection: Connection, name: str) -> dict[str, Any]:
-    """By experiment and name; those of quality-diversity by their name alone as well."""
+    """Return a preset by experiment and name, or by the name alone in quality-diversity."""
     known = {
         f"{experiment['experiment']}/{one['name']}": one["spec"]
         for experiment in connection.read("experiments")

@@ -43,37 +43,28 @@ def drawn(state: RunState, width: int) -> RenderableType:
 
 
 def _bar(state: RunState, width: int) -> RenderableType:
-    """Draw the bar on one line, in the room that its words leave."""
+    """Draw the bar on one line, in the space that its words leave."""
     record = state.record
-    words = [
-        f"{100 * record['progress']:.0f} %",
-        formatting.done(record),
-        formatting.speed(record),
-    ]
-    room = width - sum(len(text) + 2 for text in words)
-    length = max(4, min(LONGEST_BAR, room))
+    percent = f"{100 * record['progress']:.0f} %"
+    words = [percent, formatting.done(record), formatting.speed(record)]
+    length = max(4, min(LONGEST_BAR, width - sum(len(text) + 2 for text in words)))
     table = Table.grid(padding=(0, 2))
     table.add_row(ProgressBar(total=1.0, completed=record["progress"], width=length), *words)
     return table
 
 
-def _range(values: list[float | None]) -> str:
-    known = [value for value in values if value is not None]
-    return f"{min(known):.3g} to {max(known):.3g}"
-
-
 def _curves(state: RunState, width: int) -> list[RenderableType]:
-    """Draw the curves that have points, side by side."""
-    known = [
-        (title, state.curves[name])
-        for name, title in formatting.MEASURES.items()
-        if sum(value is not None for value in state.curves.get(name, [])) > 1
-    ]
-    if not known:
+    curves = {}
+    for name, title in formatting.MEASURES.items():
+        known = [value for value in state.curves.get(name, []) if value is not None]
+        if len(known) > 1:
+            head = f"{title}  {min(known):.3g} to {max(known):.3g}"
+            curves[head] = state.curves[name]
+    if not curves:
         return []
     table = Table.grid(padding=(0, 2))
-    each = max(8, min(36, (width - 2 * len(known)) // len(known)))
-    table.add_row(*(Text(f"{title}  {_range(values)}", "dim") for title, values in known))
-    pictures = (drawing.braille(values, each, CURVE_LINES) for _, values in known)
+    each = max(8, min(36, (width - 2 * len(curves)) // len(curves)))
+    table.add_row(*(Text(head, "dim") for head in curves))
+    pictures = (drawing.braille(values, each, CURVE_LINES) for values in curves.values())
     table.add_row(*(Text("\n".join(lines), "cyan", no_wrap=True) for lines in pictures))
     return [table]

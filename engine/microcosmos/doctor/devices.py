@@ -18,7 +18,7 @@ CPU = "JAX_PLATFORMS=cpu leaves the GPU out"
 
 
 def devices(cache: Path, patience: float = PATIENCE) -> Iterator[Finding]:
-    """Check JAX, each device, and that compiled programs are kept and found again."""
+    """Check JAX, each device, and that compiled programs are stored and loaded again."""
     yield from _folder(cache)
     try:
         found = probed(cache, patience)
@@ -31,10 +31,11 @@ def devices(cache: Path, patience: float = PATIENCE) -> Iterator[Finding]:
         yield problem("devices", f"JAX fails: {error}", f"make install; {CPU}")
         return
     yield from _devices(found)
-    if found["cache"]["kept"] and found["cache"]["found"]:
-        yield ok("compile cache", "a program that was kept is found again")
+    program = found["cache"]
+    if program["stored"] and program["loaded"]:
+        yield ok("compile cache", "a stored program is loaded again")
         return
-    text = f"a compiled program is not {'found again' if found['cache']['kept'] else 'kept'}"
+    text = f"a compiled program is not {'loaded again' if program['stored'] else 'stored'}"
     other = "choose another folder with JAX_COMPILATION_CACHE_DIR"
     yield warning(
         "compile cache", text, f"each start compiles anew; remove {cache}, or {other}"

@@ -6,9 +6,8 @@ from pathlib import Path
 
 from .devices import devices
 from .finding import Finding, problem
-from .memory import memory
+from .machine import memory, packages, python
 from .server import server
-from .versions import packages, python
 
 
 def examine(url: str | None, token: str | None, cache: Path) -> Iterator[Finding]:

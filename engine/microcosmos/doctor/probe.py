@@ -23,14 +23,14 @@ def main(cache: Path) -> None:
 
 def _device(device: Any) -> dict[str, Any]:
     """Return the result of a small computation, and the memory of a device."""
-    told = {"platform": device.platform, "model": device.device_kind, "id": device.id}
+    record = {"platform": device.platform, "model": device.device_kind, "id": device.id}
     numbers = np.arange(64, dtype=np.float32)
     try:
         computed = float(jax.jit(lambda x: jnp.sum(x * x))(jax.device_put(numbers, device)))
     except Exception as error:  # Whatever a driver throws has to be reported.
-        return told | {"error": f"{type(error).__name__}: {error}"[:300]}
+        return record | {"error": f"{type(error).__name__}: {error}"[:300]}
     memory = device.memory_stats() or {}
-    return told | {
+    return record | {
         "right": computed == float(numbers @ numbers),
         "memory_bytes": memory.get("bytes_limit"),
         "memory_used_bytes": memory.get("bytes_in_use"),
@@ -38,7 +38,7 @@ def _device(device: Any) -> dict[str, Any]:
 
 
 def _cache(folder: Path) -> dict[str, Any]:
-    """Compile a program twice, and tell whether it was kept and found again."""
+    """Compile a program twice; return whether it was stored, and loaded again."""
     hits: list[str] = []
     jax.monitoring.register_event_listener(lambda event, **_: hits.append(event))
     with tempfile.TemporaryDirectory(prefix="doctor-", dir=folder) as place:
@@ -46,7 +46,7 @@ def _cache(folder: Path) -> dict[str, Any]:
         for _ in range(2):
             jax.clear_caches()
             jax.block_until_ready(jax.jit(lambda x: jnp.cos(x) + 1)(jnp.arange(7.0)))
-        return {"kept": bool(list(Path(place).iterdir())), "found": HIT in hits}
+        return {"stored": bool(list(Path(place).iterdir())), "loaded": HIT in hits}
 
 
 if __name__ == "__main__":

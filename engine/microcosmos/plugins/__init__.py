@@ -1,6 +1,15 @@
 """Plug-ins: fitnesses, descriptors, bodies, gaits and encodings of users; no JAX."""
 
-from .declaration import KINDS, Axis, Declaration, is_plugin
-from .declaring import body, descriptor, encoding, fitness, gait
-from .loading import Unloaded, load, load_all, load_module
+from .declaration import (
+    KINDS,
+    Axis,
+    Declaration,
+    body,
+    descriptor,
+    encoding,
+    fitness,
+    gait,
+    is_plugin,
+)
+from .loading import Unloaded, load, load_all
 from .registry import LOADED, Broken, Catalogue, Missing, Plugin, find, loaded

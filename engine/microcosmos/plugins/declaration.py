@@ -1,7 +1,10 @@
-"""Declarations of plug-ins: names, versions and settings, without code."""
+"""Declarations of plug-ins, and the decorators that make them."""
 
+import inspect
 import re
-from typing import Annotated, Any, Final, Literal, Self, get_args
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Annotated, Any, Final, Literal, Self, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
@@ -31,11 +34,16 @@ class Axis(BaseModel):
 
     @model_validator(mode="after")
     def refuse_empty(self) -> Self:
-        if self.high <= self.low:
-            raise ValueError(f"`high` must be above `low` ({self.low:g}), got {self.high:g}")
-        if self.scale == "log10" and self.low <= 0:
-            raise ValueError(f"`low` must be above 0 where `scale` is log10, got {self.low:g}")
+        refuse_empty_axis(self.low, self.high, self.scale)
         return self
+
+
+def refuse_empty_axis(low: float, high: float, scale: str = "linear") -> None:
+    """Raise `ValueError` where an axis has no length, or no logarithm."""
+    if high <= low:
+        raise ValueError(f"`high` must be above `low` ({low:g}), got {high:g}")
+    if scale == "log10" and low <= 0:
+        raise ValueError(f"`low` must be above 0 where `scale` is log10, got {low:g}")
 
 
 class Declaration(BaseModel):
@@ -60,3 +68,110 @@ class Declaration(BaseModel):
     """JSON schema of the settings, if there are any."""
     defaults: dict[str, Any] = {}
     """Default settings."""
+
+
+MARK = "__microcosmos__"
+"""The attribute that marks a declared function."""
+
+F = TypeVar("F", bound=Callable[..., Any])
+Settings = type[BaseModel] | None
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A declaration before the module is known: fields of `Declaration`, and the settings."""
+
+    fields: dict[str, Any]
+    settings: Settings
+
+
+def fitness(name: str, *, title: str, unit: str = "", settings: Settings = None):
+    """Declare a fitness: a JAX function from a `search.Motion` to one number."""
+    return _declared("fitness", name, settings, title=title, unit=unit)
+
+
+def descriptor(
+    name: str,
+    *,
+    title: str,
+    low: float,
+    high: float,
+    scale: Literal["linear", "log10"] = "linear",
+    unit: str = "",
+    settings: Settings = None,
+):
+    """Declare a descriptor: a JAX function from a `search.Motion` to one number."""
+    axis = Axis(low=low, high=high, scale=scale)
+    return _declared("descriptor", name, settings, title=title, unit=unit, axis=axis)
+
+
+def body(name: str, *, title: str, nodes: int, settings: Settings = None):
+    """Declare a body: a NumPy function that returns a `bodies.Body` of at most `nodes`."""
+    return _declared("body", name, settings, title=title, sizes={"nodes": nodes})
+
+
+def gait(name: str, *, title: str, nodes: int, settings: Settings = None):
+    """Declare a gait: a NumPy function that returns a `swimmers.Swimmer`."""
+    return _declared("gait", name, settings, title=title, sizes={"nodes": nodes})
+
+
+def encoding(
+    name: str,
+    *,
+    title: str,
+    genes: int = 0,
+    per_joint: int = 0,
+    per_edge: int = 0,
+    settings: Settings = None,
+):
+    """Declare an encoding: a JAX function from genes and a `genomes.Clock` to movements.
+
+    A body has `genes` genes, and more per joint and per edge, all from −1 to 1. The function
+    returns the control of joints (time, joint) and of edges (time, edge), from −1 to 1.
+    """
+    if genes + per_joint + per_edge < 1:
+        raise ValueError(f"`genes` of {name!r} must be at least 1, or those per joint or edge")
+    sizes = {"genes": genes, "per_joint": per_joint, "per_edge": per_edge}
+    return _declared("encoding", name, settings, title=title, sizes=sizes)
+
+
+def _declared(kind: Kind, name: str, settings: Settings, **fields: Any) -> Callable[[F], F]:
+    if not re.fullmatch(NAME, name):
+        raise ValueError(f"`name` must be of a-z, 0-9 and _, got {name!r}")
+    if settings is not None:
+        _refuse_unfit(name, settings)
+
+    def mark(function: F) -> F:
+        _refuse_arguments(kind, name, settings is not None, function)
+        setattr(function, MARK, Draft({"kind": kind, "name": name, **fields}, settings))
+        return function
+
+    return mark
+
+
+def _refuse_unfit(name: str, settings: type[BaseModel]) -> None:
+    """Raise `ValueError` unless settings refuse unknown fields and have all defaults."""
+    if not issubclass(settings, BaseModel) or settings.model_config.get("extra") != "forbid":
+        raise ValueError(f"`settings` of {name!r} must be a `microcosmos.spec.Part`")
+    needed = [field for field, one in settings.model_fields.items() if one.is_required()]
+    if needed:
+        raise ValueError(
+            f"`settings` of {name!r} must all have defaults, got none for {', '.join(needed)}"
+        )
+
+
+ARGUMENTS = {"fitness": 1, "descriptor": 1, "body": 0, "gait": 0, "encoding": 2}
+"""Number of arguments of each kind of function, without settings."""
+
+
+def _refuse_arguments(
+    kind: Kind, name: str, has_settings: bool, function: Callable[..., Any]
+) -> None:
+    needed = ARGUMENTS[kind] + has_settings
+    try:
+        inspect.signature(function).bind(*range(needed))
+    except TypeError as error:
+        settings = ", its settings the last" if has_settings else ""
+        raise ValueError(
+            f"{kind} {name!r} must take {needed} arguments{settings}: {error}"
+        ) from error

@@ -5,7 +5,6 @@ import re
 import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import partial
 from hashlib import sha256
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
@@ -13,8 +12,7 @@ from types import ModuleType
 from typing import Any
 
 from . import registry
-from .declaration import NAME, Declaration
-from .declaring import MARK, Draft
+from .declaration import MARK, NAME, Declaration, Draft
 from .registry import Plugin
 
 GROUP = "microcosmos.plugins"
@@ -42,11 +40,6 @@ def load(path: Path | str) -> tuple[Declaration, ...]:
     source = file.read_bytes()
     module = _run(path, file, source)
     return _register(module, file.stem, sha256(source).hexdigest())
-
-
-def load_module(module: ModuleType, namespace: str) -> tuple[Declaration, ...]:
-    """Register the plug-ins of a module; `namespace` precedes their names."""
-    return _register(module, namespace, digest(Path(str(module.__file__))))
 
 
 def _run(path: Path | str, file: Path, source: bytes) -> ModuleType:
@@ -92,15 +85,15 @@ def load_all(paths: Iterable[Path | str]) -> tuple[Unloaded, ...]:
 
     A failing module must not end the process.
     """
-    loaders: list[tuple[str, Callable[[], Any]]] = [
-        (str(one), partial(load, one)) for one in paths
+    entries = sorted(entry_points(group=GROUP), key=lambda one: one.name)
+    loaders: list[tuple[str, Callable[[Any], Any], Any]] = [
+        *((str(path), load, path) for path in paths),
+        *((f"{entry.name} ({entry.value})", _load_entry, entry) for entry in entries),
     ]
-    for entry in sorted(entry_points(group=GROUP), key=lambda one: one.name):
-        loaders.append((f"{entry.name} ({entry.value})", partial(_load_entry, entry)))
     unloaded = []
-    for module, load_one in loaders:
+    for module, load_one, source in loaders:
         try:
-            load_one()
+            load_one(source)
         except (Exception, SystemExit) as error:
             kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
             unloaded.append(Unloaded(module, f"{kind}{error}"))
@@ -122,11 +115,10 @@ def _load_entry(entry: EntryPoint) -> None:
     module = entry.load()
     if not isinstance(module, ModuleType):
         raise ValueError(f"the entry point must name a module, got {type(module).__name__}")
-    load_module(module, entry.name)
+    _register(module, entry.name, digest(Path(str(module.__file__))))
 
 
 def _declared(module: ModuleType) -> list[tuple[Draft, Any]]:
-    """Return the declared functions that were defined in this module, in their order."""
     found = [
         one for one in vars(module).values() if isinstance(getattr(one, MARK, None), Draft)
     ]
@@ -137,14 +129,9 @@ def _declared(module: ModuleType) -> list[tuple[Draft, Any]]:
 def _plugin(draft: Draft, function: Any, prefix: str, source: str, location: str) -> Plugin:
     model = draft.settings
     declaration = Declaration(
-        kind=draft.kind,
-        name=prefix + draft.name,
+        **draft.fields | {"name": prefix + draft.fields["name"]},
         source=source,
-        title=draft.title,
-        unit=draft.unit,
         about=" ".join((function.__doc__ or "").split("\n\n")[0].split()),
-        axis=draft.axis,
-        sizes=draft.sizes,
         settings=model.model_json_schema() if model else None,
         defaults=model().model_dump(mode="json") if model else {},
     )

@@ -1,10 +1,15 @@
 """The base class of all parts of a spec, and the declaration of their fields."""
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
-from pydantic.config import JsonDict
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field
+from pydantic_core import PydanticCustomError
+
+from ..plugins import is_plugin
+
+Digest = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+"""A SHA-256 in hexadecimal."""
 
 
 class Part(BaseModel):
@@ -19,20 +24,50 @@ class Part(BaseModel):
     )
 
 
-def unit(name: str) -> JsonDict:
-    """Return the unit of a field, for forms and the reference."""
-    return {"unit": name}
-
-
 def field(default: Any, *, unit: str = "", source: str = "", **limits: Any) -> Any:
     """Declare a field: its default, unit, the source of its method, and pydantic's limits."""
-    given = {"unit": unit, "source": source}
-    extra: JsonDict = {name: text for name, text in given.items() if text}
+    extra: Any = {name: text for name, text in (("unit", unit), ("source", source)) if text}
     return Field(default=default, json_schema_extra=extra or None, **limits)
 
 
-SELDOM = ConfigDict(json_schema_extra={"seldom": True})
-"""Marks a part that people seldom change: a form shows it closed."""
+def after(source: str, **marks: bool) -> ConfigDict:
+    """Configure a part with its source; a form shows a part with the mark `seldom` closed."""
+    return ConfigDict(json_schema_extra={**marks, "source": source})
+
+
+def name_in(field: str, default: str | None = None) -> Callable[[Any], Any]:
+    """Return a function that reads `field` of a part or of its document."""
+    return lambda part: (
+        part.get(field, default) if isinstance(part, dict) else getattr(part, field, None)
+    )
+
+
+def one_of(
+    field: str,
+    known: Sequence[str],
+    name_of: Callable[[Any], Any],
+    tags: Mapping[str, str] | None = None,
+) -> tuple[Any, ...]:
+    """Return annotations of a union whose parts have names in `field`; refuse unknown names.
+
+    The tag of a part is its name, "plugin" for the name of a plug-in, or that in `tags`.
+    """
+
+    def tag(part: Any) -> Any:
+        name = name_of(part)
+        return "plugin" if is_plugin(name) else (tags or {}).get(name, name)
+
+    def refuse_unknown(part: Any) -> Any:
+        name = name_of(part)
+        if name in known or is_plugin(name):
+            return part
+        got = f"{part if name is None else name!r:.80}"
+        context = {"field": field, "known": ", ".join(known), "got": got}
+        message = "`{field}` must be one of {known}, got {got}"
+        raise PydanticCustomError("unknown_name", message, context)
+
+    return Discriminator(tag), BeforeValidator(refuse_unknown)
+
 
 ENCODINGS = ("cppn", "direct", "weights", "cppn-body", "gait", "fold", "plugin")
 BUILDERS = ("chain", "ring", "arc", "walk", "star", "tree", "polyline", "graph")
@@ -50,10 +85,9 @@ TAGS: dict[str, tuple[str, ...]] = {
 
 def field_path(location: Sequence[str | int]) -> str:
     """Return the path of pydantic's error location as people write it, without tags."""
-    kept, owner = [], ""
+    path, owner = [], ""
     for part in location:
-        if part in TAGS.get(owner, ()):
-            continue
-        kept.append(str(part))
-        owner = part if isinstance(part, str) else owner
-    return ".".join(kept)
+        if part not in TAGS.get(owner, ()):
+            path.append(str(part))
+            owner = part if isinstance(part, str) else owner
+    return ".".join(path)

@@ -1,17 +1,17 @@
 """Bodies in a spec: builders with their sizes, and the graphs that they stand for."""
 
 from functools import lru_cache
-from typing import Annotated, Any, Literal, Self, get_args
+from typing import Annotated, Literal, Self, get_args
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Field, Tag, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
 from .. import bodies, plugins
 from ..bodies import swimmers
-from .base import BUILDERS, Part, field
+from .base import BUILDERS, Part, after, field, name_in, one_of
 from .plugins import PluginName, PluginVersion, complete_plugin
-from .sources import PAPER, RODS, after
+from .sources import PAPER, RODS
 
 SUPPORT = 4.0
 """Width of the four-point delta in cells: room that a world needs beyond a body's extent."""
@@ -157,17 +157,6 @@ class PluginBody(Part):
     complete = complete_plugin(WITH_BODY, "builder")
 
 
-def _tag(value: Any) -> Any:
-    """Return the tag of a body; one without a builder is a chain."""
-    if isinstance(value, dict):
-        name = value.get("builder", "chain")
-    else:
-        name = getattr(value, "builder", None)
-    if plugins.is_plugin(name):
-        return "plugin"
-    return "known" if name in get_args(Swimmer) else name
-
-
 Body = Annotated[
     Annotated[Chain, Tag("chain")]
     | Annotated[Ring, Tag("ring")]
@@ -179,14 +168,13 @@ Body = Annotated[
     | Annotated[Graph, Tag("graph")]
     | Annotated[SwimmerBody, Tag("known")]
     | Annotated[SkipJsonSchema[PluginBody], Tag("plugin")],
-    Discriminator(
-        _tag,
-        custom_error_type="unknown_builder",
-        custom_error_message="`builder` must be one of "
-        + ", ".join((*BUILDERS, *get_args(Swimmer))),
+    *one_of(
+        "builder",
+        (*BUILDERS, *get_args(Swimmer)),
+        name_in("builder", "chain"),
+        dict.fromkeys(get_args(Swimmer), "known"),
     ),
 ]
-"""A body, by the name of its builder."""
 
 
 def shape(body: Body) -> bodies.Body:
@@ -208,7 +196,7 @@ def estimated_shape(body: Body) -> bodies.Body:
 
 
 def is_unavailable(body: Body) -> bool:
-    """Return whether a plug-in builds the body whose version is not loaded in this process."""
+    """Return whether a plug-in builds the body, in a version not loaded in this process."""
     if not isinstance(body, PluginBody):
         return False
     try:

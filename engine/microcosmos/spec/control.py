@@ -4,8 +4,8 @@ from typing import Literal, Self
 
 from pydantic import model_validator
 
-from .base import Part, field
-from .sources import CPPN, NEAT, PAPER, after
+from .base import Part, after, field
+from .sources import CPPN, NEAT, PAPER
 
 INPUTS = {"sine-cosine": ("position", "sine", "cosine"), "linear": ("position", "time")}
 OUTPUTS = ("rest_angle", "rest_length")

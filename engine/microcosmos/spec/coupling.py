@@ -2,16 +2,16 @@
 
 from typing import Literal, Self
 
-from pydantic import model_validator
+from pydantic import ConfigDict, model_validator
 
-from .base import SELDOM, Part, field
+from .base import Part, field
 from .sources import DELTAS, FORCING, GUO, LAYERS, OURS, PBD, RODS
 
 
 class Coupling(Part):
     """Coupling of bodies and fluid."""
 
-    model_config = SELDOM
+    model_config = ConfigDict(json_schema_extra={"seldom": True})
 
     projection: Literal["none", "force", "force+torque"] = field("force+torque", source=OURS)
     """Net force and torque removed from the forcing, so that no body pushes itself."""
@@ -51,13 +51,13 @@ class Coupling(Part):
         return self
 
     def displacement_limit(self, viscosity: float) -> float | None:
-        """Cells per step, or None where limits are off."""
+        """Return the cells per step, or None where limits are off."""
         if not self.limits:
             return None
         return self.max_displacement or (0.1 if viscosity >= 0.003 else 0.05)
 
     def force_limit(self, viscosity: float) -> float | None:
-        """Cells per step, or None where limits are off."""
+        """Return the cells per step, or None where limits are off."""
         if not self.limits:
             return None
         return self.max_force or (0.1 if viscosity >= 0.003 else 0.03)

@@ -5,8 +5,8 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from .. import plugins
-from .base import NETWORK_OPERATORS, VECTOR_OPERATORS, Part, field
-from .sources import CMA_MAE, CMA_ME, CMA_MEGA, LINE, NEAT, OMG_MEGA, after
+from .base import NETWORK_OPERATORS, VECTOR_OPERATORS, Part, after, field
+from .sources import CMA_MAE, CMA_ME, CMA_MEGA, LINE, NEAT, OMG_MEGA
 
 Rate = Annotated[float, Field(ge=0.0, le=1.0)]
 

@@ -3,11 +3,12 @@
 from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Field, Tag, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
-from .. import bodies, plugins
-from .base import ENCODINGS, Part, field, unit
+from .. import bodies
+from ..plugins.declaration import refuse_empty_axis
+from .base import ENCODINGS, Part, field, name_in, one_of
 from .body import Body, is_unavailable, shape
 from .control import OUTPUTS, Actuation, Control, Genome, Sight
 from .plugins import PluginName, PluginVersion, complete_plugin
@@ -35,8 +36,7 @@ class Bounds(Part):
 
     @model_validator(mode="after")
     def refuse_empty(self) -> Self:
-        if self.high <= self.low:
-            raise ValueError(f"`high` must be above `low` ({self.low:g}), got {self.high:g}")
+        refuse_empty_axis(self.low, self.high)
         return self
 
 
@@ -64,7 +64,7 @@ class Shaping(Part):
 
     @property
     def traits(self) -> dict[str, tuple[float, float]]:
-        """Bounds of the inherited traits, by name."""
+        """Return the bounds of the inherited traits, by name."""
         found = {name: getattr(self, name) for name in TRAITS}
         return {name: (one.low, one.high) for name, one in found.items() if one is not None}
 
@@ -100,7 +100,7 @@ class Direct(Actuation, Shaping):
 
     @property
     def weights(self) -> int:
-        """Genes that control one joint or edge."""
+        """Return the number of genes that control one joint or edge."""
         return self.terms * (2 if self.waveform == "fourier" else 1)
 
     @model_validator(mode="after")
@@ -110,7 +110,7 @@ class Direct(Actuation, Shaping):
         return self
 
     def parts(self, body: bodies.Body) -> dict[str, int]:
-        """Number of genes of each trait, then of the control of angles and of lengths."""
+        """Return the genes of each trait, then of the control of angles and of lengths."""
         joints, edges = len(body.joints), len(body.edges)
         sizes = {name: joints if name in JOINT_TRAITS else edges for name in self.traits}
         if "rest_angle" in sizes:
@@ -123,7 +123,7 @@ class Weights(Sight):
 
     encoding: Literal["weights"] = "weights"
     hidden: Annotated[
-        tuple[Annotated[int, Field(ge=1, le=256, json_schema_extra=unit("nodes"))], ...],
+        tuple[Annotated[int, Field(ge=1, le=256, json_schema_extra={"unit": "nodes"})], ...],
         Field(min_length=1, max_length=8),
     ] = (8, 8)
     """Nodes of each hidden layer."""
@@ -138,7 +138,7 @@ class Weights(Sight):
 
     @property
     def sizes(self) -> tuple[int, ...]:
-        """Nodes of all layers."""
+        """Return the nodes of all layers."""
         return (len(self.inputs), *self.hidden, len(self.outputs))
 
 
@@ -171,7 +171,7 @@ class PluginControl(Actuation):
     complete = complete_plugin(("encoding",), "encoding")
 
     def genes(self, body: bodies.Body) -> int:
-        """Number of genes of a creature with such a body."""
+        """Return the number of genes of a creature with this body."""
         sizes = self.plugin.sizes
         each = {"genes": 1, "per_joint": len(body.joints), "per_edge": len(body.edges)}
         return sum(count * sizes.get(name, 0) for name, count in each.items())
@@ -181,28 +181,15 @@ MAX_GENES = 65_536
 """Most genes of a creature whose genome is a vector."""
 
 
-def encoding_tag(value: Any) -> Any:
-    """Return the tag of a controller; one without an encoding is a CPPN."""
-    if isinstance(value, dict):
-        name = value.get("encoding", "cppn")
-    else:
-        name = getattr(value, "encoding", None)
-    return "plugin" if plugins.is_plugin(name) else name
-
-
 Controller = Annotated[
     Annotated[Control, Tag("cppn")]
     | Annotated[Direct, Tag("direct")]
     | Annotated[Weights, Tag("weights")]
     | Annotated[Grown, Tag("cppn-body")]
     | Annotated[SkipJsonSchema[PluginControl], Tag("plugin")],
-    Discriminator(
-        encoding_tag,
-        custom_error_type="unknown_encoding",
-        custom_error_message="`encoding` must be one of " + ", ".join(ENCODINGS[:4]),
-    ),
+    *one_of("encoding", ENCODINGS[:4], name_in("encoding", "cppn")),
 ]
-"""A controller whose genome is inherited, by its encoding."""
+"""A controller whose genome is inherited."""
 
 
 def max_stretch(control: Controller) -> float:
@@ -216,24 +203,24 @@ def refuse_unfit(control: Controller, body: Body) -> None:
     """Raise `ValueError` where the encoding cannot control or shape the body."""
     if is_unavailable(body):  # A worker that can build it checks it.
         return
-    whole = shape(body)
+    graph = shape(body)
     if isinstance(control, Grown) and body.builder != "chain":
         raise ValueError(
             f"`body.builder` must be 'chain' where a CPPN grows the body, got {body.builder!r}"
         )
-    if isinstance(control, Grown) and control.min_nodes > len(whole.positions):
+    if isinstance(control, Grown) and control.min_nodes > len(graph.positions):
         raise ValueError(
-            f"`control.min_nodes` must be at most the body's {len(whole.positions)} nodes, got "
+            f"`control.min_nodes` must be at most the body's {len(graph.positions)} nodes, got "
             f"{control.min_nodes}"
         )
     if isinstance(control, Shaping) and {"rest_angle", "rest_length"} & set(control.traits):
         try:
-            bodies.unfolded(whole)
+            bodies.unfolded(graph)
         except ValueError as error:
             raise ValueError(
                 f"`control.rest_angle` and `rest_length` must be empty for this `body`: {error}"
             ) from error
-    if (count := gene_count(control, whole)) > MAX_GENES:
+    if (count := gene_count(control, graph)) > MAX_GENES:
         raise ValueError(f"a creature must have at most {MAX_GENES} genes, got {count}")
 
 
@@ -252,7 +239,7 @@ def refuse_cramped(control: Controller, genome: Genome) -> None:
 
 
 def gene_count(control: Controller, body: bodies.Body) -> int:
-    """Length of a vector genome; 0 where the genome is a network."""
+    """Return the length of a vector genome; 0 where the genome is a network."""
     if isinstance(control, Direct):
         return sum(control.parts(body).values())
     if isinstance(control, PluginControl):

@@ -59,15 +59,9 @@ def _(spec: Evolution) -> Estimate:
     record = 2 * (48 * search.generations + 96 * min(evaluations, 4 * spec.archive.cells))
     computed = ceil(search.batch / search.block) * search.block * search.generations
     one = simulation(spec.scene, spec.genome.max_nodes)
-    return Estimate(
-        memory_bytes=search.block * one + archive + vary + record + slopes(spec),
-        evaluations=evaluations,
-        cell_steps=(computed + GRADIENT * gradients)
-        * placements(spec.world)
-        * spec.world.width
-        * spec.world.height
-        * spec.task.steps,
-    )
+    memory = search.block * one + archive + vary + record + slopes(spec)
+    cell_steps = (computed + GRADIENT * gradients) * cell_steps_of(spec.scene)
+    return Estimate(memory, evaluations, cell_steps)
 
 
 @estimate.register
@@ -86,33 +80,21 @@ def _(spec: Folding) -> Estimate:
 def _(spec: Refinement) -> Estimate:
     file = parsed(spec.creature)
     scene = scene_of(file)
-    cells, steps = scene.world.width * scene.world.height, scene.task.steps
     nodes, _ = room(file) or (0, 0)
-    in_flight = spec.block * simulation(scene, nodes)
     return Estimate(
-        memory_bytes=in_flight + gradient(scene, spec.segment),
+        memory_bytes=spec.block * simulation(scene, nodes) + gradient(scene, spec.segment),
         evaluations=1 + spec.steps * (1 + spec.block),
-        cell_steps=cells
-        * steps
-        * placements(scene.world)
-        * (1 + spec.steps * (GRADIENT + spec.block)),
+        cell_steps=cell_steps_of(scene) * (1 + spec.steps * (GRADIENT + spec.block)),
     )
 
 
 @estimate.register
 def _(spec: Gaits) -> Estimate:
-    points = len(spec.viscosities)
-    largest = max(simulation(spec.scene(*stroke, 0.1), 0) for stroke in spec.strokes)
-    return Estimate(
-        memory_bytes=min(spec.block, points) * largest,
-        evaluations=points * len(spec.strokes),
-        cell_steps=points
-        * len(spec.strokes)
-        * spec.width
-        * spec.height
-        * spec.period
-        * spec.cycles,
-    )
+    block, points = len(spec.viscosities), len(spec.viscosities) * len(spec.strokes)
+    scenes = [spec.scene(*stroke, 0.1) for stroke in spec.strokes]
+    largest = max(simulation(scene, 0) for scene in scenes)
+    memory = min(spec.block, block) * largest
+    return Estimate(memory, points, points * cell_steps_of(scenes[0]))
 
 
 @estimate.register
@@ -128,33 +110,33 @@ def _(spec: Scaling) -> Estimate:
 
 
 def slopes(spec: Evolution) -> int:
-    """Bytes of the gradients that emitters compute at once."""
-    pairs = zip(spec.emitters, spec.gradients, strict=True)
-    return max(
-        (
-            min(asked, spec.search.block)
-            * gradient(spec.scene, getattr(emitter, "segment", None))
-            for emitter, asked in pairs
-            if asked
-        ),
-        default=0,
-    )
+    """Return the bytes of the gradients that emitters compute at once."""
+    asked = [pair for pair in zip(spec.emitters, spec.gradients, strict=True) if pair[1]]
+    segments = [(getattr(emitter, "segment", None), count) for emitter, count in asked]
+    needed = (gradient(spec.scene, one) * min(n, spec.search.block) for one, n in segments)
+    return max(needed, default=0)
 
 
 def placements(world: World) -> int:
-    """Number of worlds per creature."""
+    """Return the number of worlds per creature."""
     return world.energy.placements if world.energy else 1
 
 
+def cell_steps_of(scene: Scene) -> int:
+    """Return the fluid cells times steps of one creature."""
+    world = scene.world
+    return placements(world) * world.width * world.height * scene.task.steps
+
+
 def gradient(scene: Scene, segment: int | None) -> int:
-    """Bytes that one creature's gradient keeps."""
+    """Return the bytes that one creature's gradient keeps."""
     count = len(shape(scene.body).positions)
     step = reverse.of_step(scene.world, scene.coupling, count)
     return reverse.in_all(scene.task.steps, segment, step, reverse.of_state(scene.world, count))
 
 
 def simulation(scene: Scene, network_nodes: int) -> int:
-    """Bytes of one simulated creature."""
+    """Return the bytes of one simulated creature."""
     count = len(shape(scene.body).positions)
     # A batched choice among activations computes all of them.
     width = max(network_nodes, _width(scene.control)) + 2
@@ -166,17 +148,17 @@ def simulation(scene: Scene, network_nodes: int) -> int:
 
 
 def _width(control: Controller | Gait | Fold) -> int:
-    """Numbers per node and time of a controller without NEAT genes."""
+    """Return the numbers per node and time of a controller without NEAT genes."""
     if isinstance(control, Direct):
         return control.weights
     return max(control.sizes) if isinstance(control, Weights) else 0
 
 
 def fluid(cells: int) -> int:
-    """Bytes of the populations before, during and after a step, and of scalar fields."""
+    """Return the bytes of populations before, in and after a step, and of scalar fields."""
     return (4 * PLANES + 8) * cells * FLOAT
 
 
 def nodes(count: int) -> int:
-    """Bytes of windows, and of transfers by chunks, constraints and positions."""
+    """Return the bytes of windows, transfers by chunks, constraints and positions."""
     return (4 * WINDOW * count + 8 * WINDOW * min(count, CHUNK) + 60 * count) * FLOAT

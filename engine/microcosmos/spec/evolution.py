@@ -1,7 +1,7 @@
 """The common part of the specs of searches."""
 
 from abc import abstractmethod
-from typing import Generic, Self, TypeVar
+from typing import Any, Generic, Self, TypeVar
 
 from pydantic import model_validator
 
@@ -13,29 +13,25 @@ from .emitters import Emitter, PopulationEmitter, gradients, refuse_unfit_emitte
 from .encodings import Controller, refuse_cramped
 from .scene import Scene, refuse_misfit, refuse_senseless
 from .search import Archive, Generations, Task
-from .world import World
+from .world import Steric, World
 
 Name = TypeVar("Name", bound=str)
 How = TypeVar("How", bound=Generations)
 
+SMALL: dict[str, Any] = {
+    "world": World(width=32, height=32),
+    "body": Chain(nodes=16),
+    "control": Control(period=50, angle_scale=0.3, length_scale=0.2),
+    "task": Task(steps=100),
+}
+"""Parts of the demonstrations."""
 
-def refuse_crowd(
-    emitters: tuple[Emitter | PopulationEmitter, ...], search: Generations
-) -> None:
-    """Raise `ValueError` where a population cannot hold all initial creatures."""
-    populations = [one for one in emitters if isinstance(one, PopulationEmitter)]
-    if not search.initial or not populations:
-        return
-    if len(emitters) > 1 or populations[0].backend != "microcosmos":
-        raise ValueError(
-            "`search.initial` must be empty for a population beside other emitters or with "
-            f"another program's backend, got {len(search.initial)} creatures"
-        )
-    if len(search.initial) > search.batch:
-        raise ValueError(
-            f"`search.initial` must have at most `search.batch` ({search.batch}) creatures for "
-            f"a population, got {len(search.initial)}"
-        )
+LITERAL: dict[str, Any] = {
+    "world": World(steric=Steric()),
+    "coupling": Coupling(projection="none", theta_feedback=0, layers=2),
+    "control": Control(timer="linear", position="unit", angle_scale=0.5, length_scale=0.3),
+}
+"""Parts as in the paper."""
 
 
 class Evolution(Part, Generic[Name, How]):
@@ -65,28 +61,41 @@ class Evolution(Part, Generic[Name, How]):
         return self
 
     @model_validator(mode="after")
-    def check_initial(self) -> Self:
-        refuse_crowd(self.emitters, self.search)
+    def refuse_crowd(self) -> Self:
+        emitters, batch, initial = self.emitters, self.search.batch, len(self.search.initial)
+        populations = [one for one in emitters if isinstance(one, PopulationEmitter)]
+        if not initial or not populations:
+            return self
+        if len(emitters) > 1 or populations[0].backend != "microcosmos":
+            raise ValueError(
+                "`search.initial` must be empty for a population beside other emitters or with "
+                f"another program's backend, got {initial} creatures"
+            )
+        if initial > batch:
+            raise ValueError(
+                f"`search.initial` must have at most `search.batch` ({batch}) creatures for a "
+                f"population, got {initial}"
+            )
         return self
 
     @property
     def generations(self) -> int:
-        """Generations of the whole run."""
+        """Return the generations of the whole run."""
         return self.search.generations
 
     @property
     @abstractmethod
     def emitters(self) -> tuple[Emitter | PopulationEmitter, ...]:
-        """Sources of offspring."""
+        """Return the sources of offspring."""
 
     @property
     @abstractmethod
     def slots(self) -> tuple[int, ...]:
-        """Offspring per generation of each emitter."""
+        """Return the offspring per generation of each emitter."""
 
     @property
     def gradients(self) -> tuple[int, ...]:
-        """Gradients per generation that each emitter needs."""
+        """Return the gradients per generation that each emitter needs."""
         return tuple(map(gradients, self.emitters, self.slots))
 
     @property

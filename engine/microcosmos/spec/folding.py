@@ -1,17 +1,17 @@
 """The spec of filaments that fold into pictures, and its presets."""
 
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Field, Tag, model_validator
 
 from . import reverse
-from .base import Part, field
+from .base import Part, after, field, name_in, one_of
 from .body import Body, Walk, estimated_shape, is_unavailable, resolved
 from .coupling import Coupling
 from .scene import Fold, Scene
 from .search import Task
-from .sources import ADAM, DIGITS, PAPER, after
+from .sources import ADAM, DIGITS, PAPER
 from .targets import MAX_PIXELS, decoded, encoded
 from .targets import digit as handwritten
 from .world import World
@@ -32,7 +32,7 @@ class Digit(Part):
 
     @property
     def ink(self) -> np.ndarray:
-        """(row, column) from the top; 1 is ink."""
+        """Return the pixels (row, column) from the top; 1 is ink."""
         return handwritten(self.digit)
 
 
@@ -51,7 +51,7 @@ class Picture(Part):
 
     @property
     def ink(self) -> np.ndarray:
-        """(row, column) from the top; 1 is ink."""
+        """Return the pixels (row, column) from the top; 1 is ink."""
         return decoded(self.pixels, self.width, self.height)
 
     @model_validator(mode="after")
@@ -72,21 +72,16 @@ def picture(name: str, ink: np.ndarray) -> Picture:
     return Picture(kind="picture", name=name, width=width, height=height, pixels=pixels)
 
 
-def _kind(value: Any) -> Any:
-    if isinstance(value, dict):
-        return value.get("kind", "digit")
-    return getattr(value, "kind", None)
-
-
 Target = Annotated[
     Annotated[Digit, Tag("digit")] | Annotated[Picture, Tag("picture")],
-    Discriminator(
-        _kind,
-        custom_error_type="unknown_picture",
-        custom_error_message="`kind` must be one of digit, picture",
-    ),
+    *one_of("kind", ("digit", "picture"), name_in("kind", "digit")),
 ]
-"""A picture to fold into."""
+
+
+FORCED = Coupling(
+    projection="force", theta_feedback=0, forcing_iterations=2, constraint_iterations=4
+)
+VISCOUS = World(width=128, height=128, viscosity=1 / 6)
 
 
 class Folding(Part):
@@ -97,13 +92,11 @@ class Folding(Part):
         Digit(digit=number) for number in range(10)
     )
     """Target pictures, one filament each."""
-    world: World = World(width=128, height=128, viscosity=1 / 6, fluid=False)
+    world: World = VISCOUS.model_copy(update={"fluid": False})
     """Lattice of the pictures, with or without fluid."""
     body: Body = Walk(builder="walk")
     """Initial filament."""
-    coupling: Coupling = Coupling(
-        projection="force", theta_feedback=0, forcing_iterations=2, constraint_iterations=4
-    )
+    coupling: Coupling = FORCED
     control: Fold = Fold()
     steps: int = field(250, ge=10, le=100_000, unit="steps", source=PAPER)
     """Steps of the simulation; the density at its end is compared with the picture."""
@@ -147,32 +140,28 @@ class Folding(Part):
         return self
 
     @property
-    def step_bytes(self) -> int:
-        """Bytes that reverse mode keeps per step of a block."""
+    def reverse_bytes(self) -> tuple[int, int]:
+        """Return the bytes that reverse mode keeps per step and per state of a block."""
         nodes = len(estimated_shape(self.body).positions)
-        return self.block * reverse.of_step(self.world, self.coupling, nodes)
-
-    @property
-    def state_bytes(self) -> int:
-        """Bytes that reverse mode keeps per state of a block."""
-        nodes = len(estimated_shape(self.body).positions)
-        return self.block * reverse.of_state(self.world, nodes)
+        step = reverse.of_step(self.world, self.coupling, nodes)
+        return self.block * step, self.block * reverse.of_state(self.world, nodes)
 
     @property
     def segment(self) -> int | None:
-        """Steps kept at a time; None where all fit into `memory`."""
-        if self.steps * self.step_bytes <= self.memory * 2**30:
+        """Return the steps kept at a time, for the least memory; None if all fit."""
+        step, state = self.reverse_bytes
+        if self.steps * step <= self.memory * 2**30:
             return None
-        return reverse.shortest(self.steps, self.step_bytes, self.state_bytes)
+        return max(1, round((self.steps * state / step) ** 0.5))
 
     @property
     def gradient_bytes(self) -> int:
-        """Bytes that reverse mode keeps in all."""
-        return reverse.in_all(self.steps, self.segment, self.step_bytes, self.state_bytes)
+        """Return the bytes that reverse mode keeps in all."""
+        return reverse.in_all(self.steps, self.segment, *self.reverse_bytes)
 
     @property
     def generations(self) -> int:
-        """One per update of all filaments."""
+        """Return the updates, each of all filaments."""
         return self.updates
 
     @property
@@ -188,13 +177,7 @@ class Folding(Part):
 
 
 LITERAL = {
-    "coupling": Coupling(
-        projection="none",
-        theta_feedback=0,
-        forcing_iterations=2,
-        constraint_iterations=4,
-        layers=2,
-    ),
+    "coupling": FORCED.model_copy(update={"projection": "none", "layers": 2}),
     "control": Fold(lengths="raw"),
     "density": "raw",
 }
@@ -215,13 +198,10 @@ PRESETS = {
     "digits": ("1,000 nodes fold into ten digits without a fluid", Folding()),
     "digits-fluid": (
         "1,000 nodes fold into two digits in a viscous fluid",
-        Folding(
-            targets=(Digit(digit=1), Digit(digit=3)),
-            world=World(width=128, height=128, viscosity=1 / 6),
-        ),
+        Folding(targets=(Digit(digit=1), Digit(digit=3)), world=VISCOUS),
     ),
     "paper": (
         "As in the paper: in a fluid, density that does not saturate, lengths as they are",
-        Folding(world=World(width=128, height=128, viscosity=1 / 6), **LITERAL),
+        Folding(world=VISCOUS, **LITERAL),
     ),
 }

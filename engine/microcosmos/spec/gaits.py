@@ -6,11 +6,11 @@ from typing import Annotated, Any, Literal, Self, get_args
 from pydantic import Field, ValidationInfo, model_validator
 
 from ..plugins import is_plugin
-from .base import Part, field, unit
+from .base import Part, field
 from .body import Body, PluginBody, Swimmer, SwimmerBody, is_unavailable, resolved
 from .coupling import Coupling
 from .plugins import OR_PLUGIN, PluginVersion, PluginVersions, pinned
-from .scene import Scene, refuse_too_large
+from .scene import Gait, Scene, refuse_too_large
 from .search import Task
 from .sources import PAPER
 from .world import Steric, World
@@ -22,8 +22,10 @@ FORMS = {
 }
 """Forms of the coupling, by name."""
 
+VISCOSITIES = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
+
 Form = Literal["ours", "strong", "paper"]
-Viscosity = Annotated[float, Field(ge=1e-3, le=2.0, json_schema_extra=unit("cells²/step"))]
+Viscosity = Annotated[float, Field(ge=1e-3, le=2.0, json_schema_extra={"unit": "cells²/step"})]
 
 
 class Gaits(Part):
@@ -37,17 +39,7 @@ class Gaits(Part):
     forms: Annotated[tuple[Form, ...], Field(min_length=1)] = ("ours", "strong", "paper")
     """Forms of the coupling: ours, ours with actuators of constant strength, the paper's."""
     viscosities: Annotated[tuple[Viscosity, ...], Field(min_length=1, max_length=256)] = (
-        0.001,
-        0.002,
-        0.005,
-        0.01,
-        0.02,
-        0.05,
-        0.1,
-        0.2,
-        0.5,
-        1.0,
-        2.0,
+        VISCOSITIES
     )
     """Kinematic viscosities."""
     width: int = field(64, ge=64, le=2048, unit="cells")
@@ -90,41 +82,32 @@ class Gaits(Part):
             values = getattr(self, name)
             if len(set(values)) < len(values):
                 raise ValueError(f"`{name}` must not repeat, got {list(values)}")
+        box = World(width=self.width, height=self.height)
         for swimmer in self.swimmers:
-            place = World(width=self.width, height=self.height)
-            refuse_too_large(place, swimmer_body(swimmer, self.plugins.get(swimmer)), 0.1)
+            refuse_too_large(box, swimmer_body(swimmer, self.plugins.get(swimmer)), 0.1)
         return self
 
     @property
     def generations(self) -> int:
-        """One per form and swimmer, with all viscosities."""
+        """Return one per form and swimmer, with all viscosities."""
         return len(self.strokes)
 
     @property
     def strokes(self) -> tuple[tuple[str, str], ...]:
-        """Every form with every swimmer."""
+        """Return every form with every swimmer."""
         return tuple((form, swimmer) for form in self.forms for swimmer in self.swimmers)
 
     def scene(self, form: str, swimmer: str, viscosity: float) -> Scene:
-        """One point of the sweep."""
-        return Scene.model_validate(
-            {
-                "world": {
-                    "width": self.width,
-                    "height": self.height,
-                    "viscosity": viscosity,
-                    "steric": self.steric,
-                },
-                "body": swimmer_body(swimmer, self.plugins.get(swimmer)),
-                "coupling": self.coupling(form),
-                "control": {
-                    "swimmer": swimmer,
-                    "period": self.period,
-                    "ramp": self.ramp,
-                    "plugin": self.plugins.get(swimmer),
-                },
-                "task": Task(steps=self.period * self.cycles),
-            }
+        """Return the scene of one point of the sweep."""
+        plugin = self.plugins.get(swimmer)
+        width, height, steric = self.width, self.height, self.steric
+        gait = {"swimmer": swimmer, "period": self.period, "ramp": self.ramp, "plugin": plugin}
+        return Scene(
+            world=World(width=width, height=height, viscosity=viscosity, steric=steric),
+            body=swimmer_body(swimmer, plugin),
+            coupling=self.coupling(form),
+            control=Gait.model_validate(gait),
+            task=Task(steps=self.period * self.cycles),
         )
 
     def coupling(self, form: str) -> Coupling:

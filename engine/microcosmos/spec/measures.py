@@ -1,7 +1,7 @@
 """The measures of every evaluation, and the default axis of each."""
 
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import TYPE_CHECKING, Literal
 
 from ..naming import MeasureName as Name
 
@@ -41,5 +41,9 @@ MEASURES: dict[str, Measure] = {
     "efficiency": Measure("Efficiency", "", 1e-6, 1.0, "log10"),
     "nodes": Measure("Nodes", "", 0.0, 64.0),
 }
+"""The measures, in the order in which they are recorded."""
 
-assert tuple(MEASURES) == get_args(Name)
+if TYPE_CHECKING:
+    Name = str
+else:
+    Name = Literal[tuple(MEASURES)]

@@ -9,7 +9,7 @@ from pydantic.json_schema import SkipJsonSchema
 
 from .. import plugins
 from ..plugins import Catalogue, is_plugin
-from .base import Part
+from .base import Digest, Part
 
 CONTEXT = "plugins"
 """The key of the validation context under which `parse` passes a catalogue of plug-ins."""
@@ -18,7 +18,7 @@ CONTEXT = "plugins"
 class PluginVersion(Part):
     """The version and settings of a plug-in. All but the settings follows from its name."""
 
-    source: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+    source: Digest
     """SHA-256 of the module's source."""
     title: Annotated[str, Field(min_length=1, max_length=100)]
     """Title for people."""
@@ -63,22 +63,16 @@ def pinned(
     found = [one for kind in kinds for one in known.versions(kind, name)]
     source = (given or {}).get("source")
     declared = next((one for one in found if source in (None, one.source)), None)
-    if declared is None and source is None:
+    if declared is None and source is not None:
+        return given, None
+    if declared is None:
         reason = known.explain_unknown(kinds[0], name)
         raise ValueError(f"`{field}` must be known, got {name!r}: {reason}")
-    if declared is None:
-        return given, None
     settings = (given or {}).get("settings") or {}
     if not isinstance(settings, Mapping):
         raise ValueError(f"`plugin.settings` must be an object, got {settings!r:.80}")
-    version = {
-        "source": declared.source,
-        "title": declared.title,
-        "unit": declared.unit,
-        "sizes": dict(declared.sizes),
-        "settings": known.settings(declared, settings),
-    }
-    return version, declared
+    version = declared.model_dump(include={"source", "title", "unit", "sizes"})
+    return version | {"settings": known.settings(declared, settings)}, declared
 
 
 def completed(

@@ -4,13 +4,9 @@ from typing import Literal, Self
 
 from pydantic import model_validator
 
-from .body import Chain
-from .control import Control
-from .coupling import Coupling
 from .emitters import USING_GRADIENTS, Emitter
-from .evolution import Evolution
-from .search import Archive, Descriptor, Search, Task, refuse_flat_axes
-from .world import Steric, World
+from .evolution import LITERAL, SMALL, Evolution
+from .search import Archive, Descriptor, Search, refuse_flat_axes
 
 
 class QualityDiversity(Evolution[Literal["quality-diversity"], Search]):
@@ -35,24 +31,16 @@ class QualityDiversity(Evolution[Literal["quality-diversity"], Search]):
         return self.search.slots
 
 
+EFFORTS = ("bending_effort", "stretching_effort")
+
 DEMO = QualityDiversity(
-    world=World(width=32, height=32),
-    body=Chain(nodes=16),
-    control=Control(period=50, angle_scale=0.3, length_scale=0.2),
-    task=Task(steps=100),
-    archive=Archive(
-        descriptors=(
-            Descriptor(name="bending_effort", bins=16),
-            Descriptor(name="stretching_effort", bins=16),
-        )
-    ),
+    **SMALL,
+    archive=Archive(descriptors=tuple(Descriptor(name=name, bins=16) for name in EFFORTS)),
     search=Search(generations=400, batch=16),
 )
 
 PAPER = QualityDiversity(
-    world=World(steric=Steric()),
-    coupling=Coupling(projection="none", theta_feedback=0, layers=2),
-    control=Control(timer="linear", position="unit", angle_scale=0.5, length_scale=0.3),
+    **LITERAL,
     archive=Archive(
         descriptors=(
             Descriptor(name="bending_effort", low=0, high=0.5, scale="linear"),

@@ -5,12 +5,13 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from .base import Part, field, unit
+from .base import Part, field
 from .sources import PAPER
 from .world import Steric
 
-Nodes = Annotated[int, Field(ge=20, le=2_000_000, json_schema_extra=unit("nodes"))]
+Nodes = Annotated[int, Field(ge=20, le=2_000_000, json_schema_extra={"unit": "nodes"})]
 
+NODES = (1_000, 2_000, 4_000, 8_000, 16_000, 32_000, 64_000, 128_000, 256_000, 500_000)
 SPACING = 0.35
 """Cells between nodes, along a filament and across: 500,000 nodes fill a box of 256²."""
 
@@ -19,18 +20,7 @@ class Scaling(Part):
     """Wall time of the paper's 1,000 steps, and of each part, against the number of nodes."""
 
     experiment: Literal["scaling"] = "scaling"
-    nodes: Annotated[tuple[Nodes, ...], Field(min_length=2, max_length=64)] = (
-        1_000,
-        2_000,
-        4_000,
-        8_000,
-        16_000,
-        32_000,
-        64_000,
-        128_000,
-        256_000,
-        500_000,
-    )
+    nodes: Annotated[tuple[Nodes, ...], Field(min_length=2, max_length=64)] = NODES
     """Numbers of nodes, ascending; filaments lie at random places side by side."""
     filament: int = field(20, ge=3, le=1000, unit="nodes")
     """Nodes per filament."""
@@ -67,11 +57,11 @@ class Scaling(Part):
 
     @property
     def places(self) -> tuple[int, int]:
-        """Filaments that fit along x, and along y."""
+        """Return the filaments that fit along x, and along y."""
         return int(self.width / (self.filament * SPACING)), int(self.height / SPACING)
 
     def centres(self, nodes: int) -> np.ndarray:
-        """(filament, 2) centres in cells of the filaments that have `nodes` nodes in all."""
+        """Return the centres (filament, 2) in cells of filaments with `nodes` nodes in all."""
         columns, rows = self.places
         place = np.random.default_rng(self.seed).permutation(columns * rows)
         place = place[: nodes // self.filament]
@@ -80,7 +70,7 @@ class Scaling(Part):
 
     @property
     def generations(self) -> int:
-        """One per number of nodes."""
+        """Return the number of numbers of nodes."""
         return len(self.nodes)
 
 
@@ -88,12 +78,7 @@ PRESETS = {
     "demo": (
         "Up to 16,000 nodes in 128 × 128 cells, a minute on a laptop",
         Scaling(
-            nodes=(1_000, 2_000, 4_000, 8_000, 16_000),
-            width=128,
-            height=128,
-            steps=40,
-            part_steps=5,
-            all_pairs=4_000,
+            nodes=NODES[:5], width=128, height=128, steps=40, part_steps=5, all_pairs=4_000
         ),
     ),
     "paper": (

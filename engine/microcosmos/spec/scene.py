@@ -3,11 +3,11 @@
 from math import ceil
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Field, Tag, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
-from ..bodies.extent import extent
-from .base import Part, field
+from ..bodies import extent
+from .base import ENCODINGS, Part, field, name_in, one_of
 from .body import SUPPORT, Body, Chain, Swimmer, is_unavailable, shape
 from .control import Control, Sight
 from .coupling import Coupling
@@ -17,7 +17,6 @@ from .encodings import (
     Grown,
     PluginControl,
     Weights,
-    encoding_tag,
     max_stretch,
     refuse_unfit,
 )
@@ -49,11 +48,10 @@ class Fold(Part):
     are added, as in the paper."""
 
 
-def _kind(value: Any) -> Any:
-    """Return the tag of a controller or a gait."""
-    if isinstance(value, Gait) or (isinstance(value, dict) and "swimmer" in value):
+def _encoding(control: Any) -> Any:
+    if isinstance(control, Gait) or (isinstance(control, dict) and "swimmer" in control):
         return "gait"
-    return encoding_tag(value)
+    return name_in("encoding", "cppn")(control)
 
 
 class Scene(Part):
@@ -70,7 +68,7 @@ class Scene(Part):
         | Annotated[Gait, Tag("gait")]
         | Annotated[Fold, Tag("fold")]
         | Annotated[SkipJsonSchema[PluginControl], Tag("plugin")],
-        Discriminator(_kind),
+        *one_of("encoding", ENCODINGS[:-1], _encoding),
     ] = Control()
     task: Task = Task()
     plugins: PluginVersions = Field(default={})

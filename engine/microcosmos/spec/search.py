@@ -5,11 +5,12 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 
+from ..plugins.declaration import refuse_empty_axis
 from . import measures
-from .base import Part, field
+from .base import Digest, Part, after, field
 from .emitters import NUMBERING, WITHOUT_GRADIENT, Emitter, NeatEmitter, slots
 from .plugins import OR_PLUGIN, MaybePlugin, PluginVersion, complete_plugin, completed
-from .sources import CVT, MAP_ELITES, PAPER, REEVALUATION, after
+from .sources import CVT, MAP_ELITES, PAPER, REEVALUATION
 
 Fitness = Literal["displacement", "energy", "displacement+energy"]
 
@@ -70,10 +71,7 @@ class Descriptor(Part):
 
     @model_validator(mode="after")
     def refuse_empty(self) -> Self:
-        if self.high <= self.low:
-            raise ValueError(f"`high` must be above `low` ({self.low:g}), got {self.high:g}")
-        if self.scale == "log10" and self.low <= 0:
-            raise ValueError(f"`low` must be above 0 where `scale` is log10, got {self.low:g}")
+        refuse_empty_axis(self.low, self.high, self.scale)
         return self
 
 
@@ -99,7 +97,7 @@ class Archive(Part):
 
     @property
     def plugins(self) -> dict[str, PluginVersion]:
-        """Versions of the plug-ins among the descriptors, by name."""
+        """Return the versions of the plug-ins among the descriptors, by name."""
         return {axis.name: axis.plugin for axis in self.descriptors if axis.plugin}
 
     @property
@@ -113,14 +111,10 @@ class Archive(Part):
         return prod(self.shape)
 
     @model_validator(mode="after")
-    def refuse_repeated(self) -> Self:
+    def refuse_impossible(self) -> Self:
         names = [d.name for d in self.descriptors]
         if len(set(names)) < len(names):
             raise ValueError(f"`descriptors` must not repeat, got {names}")
-        return self
-
-    @model_validator(mode="after")
-    def refuse_too_many(self) -> Self:
         if self.cells > MAX_CELLS:
             product = " × ".join(map(str, self.shape))
             raise ValueError(
@@ -178,8 +172,6 @@ def _in_order(names: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(sorted(set(names)))
 
 
-Digest = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
-
 InitialCreatures = Annotated[
     tuple[Digest, ...], Field(max_length=MAX_INITIAL), AfterValidator(_in_order)
 ]
@@ -214,7 +206,7 @@ class Search(Generations):
 
     @property
     def slots(self) -> tuple[int, ...]:
-        """Offspring per generation of each emitter."""
+        """Return the offspring per generation of each emitter."""
         return slots(self.batch, tuple(emitter.share for emitter in self.emitters))
 
     @model_validator(mode="after")

@@ -1,8 +1,5 @@
 """Sources of the methods, for the schemas and the reference."""
 
-from pydantic import ConfigDict
-from pydantic.config import JsonDict
-
 PAPER = "Tensen et al. 2026"
 OURS = "ours: docs/physics.md"
 NEAT = "Stanley and Miikkulainen, Evol. Comput. 10, 99 (2002)"
@@ -28,14 +25,3 @@ DELTAS = (
 )
 ADAM = "Kingma and Ba, ICLR 2015, algorithm 1"
 DIGITS = "Alpaydin and Kaynak, UCI (1998), doi:10.24432/C50P49"
-
-
-def source(text: str) -> JsonDict:
-    """Return the source of a field, for its schema."""
-    return {"source": text}
-
-
-def after(text: str, *, seldom: bool = False) -> ConfigDict:
-    """Configure a part with a source; `seldom` marks one that people seldom change."""
-    extra: JsonDict = {"seldom": True} if seldom else {}
-    return ConfigDict(json_schema_extra=extra | source(text))

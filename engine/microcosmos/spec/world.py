@@ -4,8 +4,8 @@ from typing import Literal, Self
 
 from pydantic import model_validator
 
-from .base import Part, field
-from .sources import LATTICE, OURS, PAPER, TRT, after
+from .base import Part, after, field
+from .sources import LATTICE, OURS, PAPER, TRT
 
 
 class Steric(Part):

@@ -106,14 +106,3 @@ def test_their_heatmaps_draw_our_archive(archive, tmp_path):
     plt.close(figure)
     assert axes.get_xlim() == pytest.approx((0, 1) if around else (-4, 2))
     assert axes.get_ylim() == pytest.approx((0, 1))
-
-
-def test_a_missing_package_is_named_with_its_command(monkeypatch):
-    def missing(name):
-        raise ImportError(name)
-
-    monkeypatch.setattr(importlib, "import_module", missing)
-    from microcosmos.archive import dataframe
-
-    with pytest.raises(ImportError, match='pip install "pandas"'):
-        dataframe._needed("pandas")

@@ -11,6 +11,7 @@ import h5py
 import numpy as np
 import pytest
 
+from microcosmos import optional
 from microcosmos.archive import creature, creature_h5, export, file
 from microcosmos.archive.atomic import write_whole
 from microcosmos.naming import decode
@@ -180,3 +181,12 @@ def test_links_out_of_the_file_are_refused(newcomer, link):
         found["body/positions"] = link
     with pytest.raises(ValueError, match="`/body/positions` must lie in the file itself"):
         creature_h5.load(stored.getvalue())
+
+
+def test_a_missing_package_is_named_with_its_command(monkeypatch):
+    def missing(name):
+        raise ImportError(name)
+
+    monkeypatch.setattr(optional, "import_module", missing)
+    with pytest.raises(ImportError, match='pip install "pandas"'):
+        export.to_pandas(b"")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from microcosmos import bodies
-from microcosmos.bodies.extent import extent
+from microcosmos.bodies import extent
 
 pytestmark = pytest.mark.fast
 

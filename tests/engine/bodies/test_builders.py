@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from microcosmos import bodies
-from microcosmos.bodies.refine import subdivided
+from microcosmos.bodies.resolution import subdivided
 
 pytestmark = pytest.mark.fast
 
@@ -156,7 +156,7 @@ def test_a_document_is_drawn_with_its_transforms():
 
 def test_an_svg_without_its_library_says_how_to_install_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "svgpathtools", None)
-    with pytest.raises(ImportError, match=r"pip install microcosmos\[shapes\]"):
+    with pytest.raises(ImportError, match=r"pip install .microcosmos\[shapes\]"):
         bodies.svg("M 0 0 L 9 0", 1.0)
 
 

@@ -85,20 +85,3 @@ def test_crowding_is_found_exactly_where_it_is(seed):
                 bodies.graph(scale * nodes, [(0, 1)])
         else:
             bodies.graph(scale * nodes, [(0, 1)])
-
-
-def test_a_body_must_lie_inside_its_world():
-    body = bodies.placed(bodies.chain(20, 1.0), (16, 8))
-    bodies.refuse_outside(body, 32, 16)
-    with pytest.raises(ValueError, match=r"node 0 is at -3\.5, 8"):
-        bodies.refuse_outside(bodies.placed(body, (6, 8)), 32, 16)
-    with pytest.raises(ValueError, match=r"node 0 is at 16, -1\.5"):
-        bodies.refuse_outside(bodies.placed(body, (16, 8), np.pi / 2), 32, 16)
-
-
-def test_a_creature_must_not_reach_its_own_image():
-    apart = [bodies.placed(bodies.chain(8, 1.0), (x, 8)) for x in (4, 18)]
-    bodies.refuse_outside(bodies.together(apart), 23, 16)
-    wide = bodies.placed(bodies.chain(20, 1.0), (11, 8))
-    with pytest.raises(ValueError, match="creature 0 is 19 by 0"):
-        bodies.refuse_outside(wide, 22, 16)

@@ -8,7 +8,7 @@ import pytest
 from rich.console import Console
 from typer.testing import CliRunner
 
-from microcosmos.cli import app, overrides, remote
+from microcosmos.cli import app, remote, specs
 from microcosmos.client import NotFound, Run
 from microcosmos.version import VERSION
 
@@ -192,11 +192,11 @@ def test_an_id_that_may_be_a_runs_or_a_sweeps_is_refused(told, record, monkeypat
     [("3", 3), ("0.5", 0.5), ("true", True), ("null", None), ("ours", "ours"), ("[1]", [1])],
 )
 def test_values_are_json_or_text(text, value):
-    assert overrides.applied({}, [f"a.b={text}"]) == {"a": {"b": value}}
+    assert specs.applied({}, [f"a.b={text}"]) == {"a": {"b": value}}
 
 
 def test_items_of_a_list_are_set_by_number():
     spec = {"archive": {"descriptors": [{"bins": 5}, {"bins": 6}]}}
-    changed = overrides.applied(spec, ["archive.descriptors.1.bins=9"])
+    changed = specs.applied(spec, ["archive.descriptors.1.bins=9"])
     assert changed["archive"]["descriptors"] == [{"bins": 5}, {"bins": 9}]
     assert spec["archive"]["descriptors"][1]["bins"] == 6

@@ -120,7 +120,12 @@ def ipython(monkeypatch):
     shell = SimpleNamespace(kernel=None)
     library = SimpleNamespace(get_ipython=lambda: shell)
     monkeypatch.setitem(sys.modules, "IPython", library)
-    monkeypatch.setitem(sys.modules, "IPython.display", SimpleNamespace(display=display))
+
+    def html(text):
+        return SimpleNamespace(_repr_html_=lambda: text)
+
+    namespace = SimpleNamespace(display=display, HTML=html)
+    monkeypatch.setitem(sys.modules, "IPython.display", namespace)
     return shown
 
 
@@ -177,7 +182,7 @@ def test_columns_are_a_data_frame_where_pandas_is_there():
 
 def test_without_pandas_it_is_said_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(ImportError, match="pip install pandas"):
+    with pytest.raises(ImportError, match=r"pip install .pandas"):
         Columns({"a": [1]}).to_pandas()
 
 

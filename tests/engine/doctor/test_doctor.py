@@ -6,8 +6,9 @@ import subprocess
 import sys
 
 import pytest
+from packaging.specifiers import SpecifierSet
 
-from microcosmos.doctor import devices, examination, memory, server, versions
+from microcosmos.doctor import devices, examination, machine, server
 from microcosmos.doctor.finding import Finding, problem
 
 GIB = 1 << 30
@@ -22,7 +23,7 @@ def test_a_probe_finds_the_devices_and_a_cache_that_works(tmp_path):
     assert levels(found) == {"ok"}
     told = [finding.found for finding in found]
     assert any("× cpu" in text for text in told)
-    assert "a program that was kept is found again" in told
+    assert "a stored program is loaded again" in told
     assert list((tmp_path / "cache").iterdir()) == []  # It leaves nothing behind.
 
 
@@ -52,17 +53,17 @@ def test_an_error_of_jax_is_reported(tmp_path, monkeypatch):
 )
 def test_a_device_that_is_broken_is_told(tmp_path, monkeypatch, device, said):
     told = {"platform": "gpu", "model": "a model", "id": 0} | device
-    answer = {"kind": "gpu", "devices": [told], "cache": {"kept": True, "found": False}}
+    answer = {"kind": "gpu", "devices": [told], "cache": {"stored": True, "loaded": False}}
     monkeypatch.setattr(devices, "probed", lambda *_: answer)
     found = list(devices.devices(tmp_path))
     assert any(said in one.found and one.level == "problem" for one in found)
-    assert any("is not found again" in one.found for one in found)
+    assert any("is not loaded again" in one.found for one in found)
 
 
 def test_memory_of_a_gpu_is_told(tmp_path, monkeypatch):
     told = {"platform": "gpu", "model": "H", "id": 0, "right": True}
     told |= {"memory_bytes": 8 * GIB, "memory_used_bytes": 2 * GIB}
-    answer = {"kind": "gpu, H", "devices": [told], "cache": {"kept": True, "found": True}}
+    answer = {"kind": "gpu, H", "devices": [told], "cache": {"stored": True, "loaded": True}}
     monkeypatch.setattr(devices, "probed", lambda *_: answer)
     assert any("6.44 GB of 8.59 GB free" in f.found for f in devices.devices(tmp_path))
 
@@ -87,7 +88,7 @@ def test_a_cache_that_cannot_be_is_a_problem(tmp_path):
     ],
 )
 def test_versions_are_compared_as_numbers(found, needed, satisfied):
-    assert versions.satisfied(found, needed) == satisfied
+    assert machine.satisfied(found, SpecifierSet(needed)) == satisfied
 
 
 def test_packages_that_lack_or_are_old_are_named(monkeypatch):
@@ -96,24 +97,24 @@ def test_packages_that_lack_or_are_old_are_named(monkeypatch):
         "h5py>=999; python_version > '3'",
         "absent>=1; extra == 'x'",
     ]
-    monkeypatch.setattr(versions, "requires", lambda _: asked)
-    _, *found = versions.packages()
+    monkeypatch.setattr(machine, "requires", lambda _: asked)
+    _, *found = machine.packages()
     assert [one.level for one in found] == ["problem", "problem"]
     assert "nowhere-to-be-found>=1 is needed and not installed" in found[0].found
     assert "h5py>=999 is needed" in found[1].found
 
 
 def test_this_installation_is_as_it_should_be():
-    assert levels([*versions.python(), *versions.packages()]) == {"ok"}
+    assert levels([*machine.python(), *machine.packages()]) == {"ok"}
 
 
 def test_a_container_has_the_memory_that_it_is_given(tmp_path):
     meminfo, limit = tmp_path / "meminfo", tmp_path / "max"
     meminfo.write_text("MemTotal:  8388608 kB\nMemAvailable:  4194304 kB\nHugePages: 0\n")
     limit.write_text("max\n")
-    assert memory.memory_bytes(meminfo, limit) == (8 * GIB, 4 * GIB)
+    assert machine.memory_bytes(meminfo, limit) == (8 * GIB, 4 * GIB)
     limit.write_text(f"{1 << 20}\n")
-    small, *presets = memory.memory(meminfo, limit)
+    small, *presets = machine.memory(meminfo, limit)
     assert (small.level, small.found) == ("warning", "1.05 MB of 1.05 MB available")
     assert any("quality-diversity/demo needs" in one.found for one in presets)
 

@@ -78,7 +78,7 @@ HTML = {"Content-Type": "text/html"}
         ((200, HTML, b"<h1>Log in</h1>"), "answers 200 OK with a web page"),
         ((404, HTML, b"<h1>nginx</h1>"), "as no Microcosmos server does"),
         ((404, {"Content-Type": "application/json"}, b"{}"), "404 Not Found"),
-        ((302, {"Location": "https://sso.example/"}, b""), "sends on to https://sso.example/"),
+        ((302, {"Location": "https://sso.example/"}, b""), "redirects to https://sso.example/"),
         ((200, {"Content-Type": "application/json"}, b"{"), "as no Microcosmos server does"),
     ],
 )

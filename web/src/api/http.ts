@@ -7,7 +7,12 @@ import type { paths } from "./schema";
 
 export const ROOT = "/api/v1";
 
-export const client = createClient<paths>({ baseUrl: "", headers: shareHeaders });
+/** The server's paths below the root of the API. */
+type Paths = {
+  [Path in keyof paths as Path extends `${typeof ROOT}${infer Below}` ? Below : Path]: paths[Path];
+};
+
+export const client = createClient<Paths>({ baseUrl: ROOT, headers: shareHeaders });
 
 export interface Answer<T> {
   data?: T;

@@ -17,11 +17,8 @@ import "./new-run.css";
 
 export function NewRunPage({ query }: { query: URLSearchParams }) {
   const { value: experiments, error } = useExperiments();
-  return (
-    <Page error={error} loading={!experiments}>
-      {experiments && <NewRunForm experiments={experiments} query={query} />}
-    </Page>
-  );
+  if (!experiments) return <Page error={error} loading />;
+  return <NewRunForm experiments={experiments} query={query} />;
 }
 
 function NewRunForm({ experiments, query }: { experiments: Experiment[]; query: URLSearchParams }) {
@@ -41,8 +38,7 @@ function NewRunForm({ experiments, query }: { experiments: Experiment[]; query: 
   };
   const preset = current?.base.kind === "preset" ? current.base.name : null;
   return (
-    <>
-      <Header take={take} onPaste={() => show("json", true)} />
+    <Page title={text.newRun} actions={<SourceButtons take={take} onPaste={() => show("json", true)} />}>
       {draft.problem && (
         <p class="banner wrong" role="alert">
           {draft.problem}
@@ -65,14 +61,13 @@ function NewRunForm({ experiments, query }: { experiments: Experiment[]; query: 
           <Editor {...{ draft, current, view, show, take, replacing }} experiment={own} />
         </>
       )}
-    </>
+    </Page>
   );
 }
 
-function Header({ take, onPaste }: { take: Take; onPaste: () => void }) {
+function SourceButtons({ take, onPaste }: { take: Take; onPaste: () => void }) {
   return (
-    <header class="page-head">
-      <h1>{text.newRun}</h1>
+    <>
       <span class="spring" />
       <span class="quiet small wide-only">{text.dropHint}</span>
       <span class="actions">
@@ -81,6 +76,6 @@ function Header({ take, onPaste }: { take: Take; onPaste: () => void }) {
         </button>
         <OpenFileButton take={take} />
       </span>
-    </header>
+    </>
   );
 }

@@ -3,7 +3,7 @@
 import { useEffect, useMemo, useState } from "preact/hooks";
 import type { Experiment, FieldError, Spec, SweepRequest, Json } from "../api/types";
 import { words } from "../ui/format";
-import { numberError, leavesOf, typed } from "./form/document";
+import { leavesOf, numberError, typed, typedJson } from "./form/document";
 import type { Leaf, Section } from "./form/fields";
 import { text } from "./text";
 
@@ -96,27 +96,17 @@ function valuesOf(field: Leaf, text: string): Json[] | null {
 }
 
 function listOf(text: string): Json[] | null {
-  if (text === "") return [];
-  try {
-    const found = JSON.parse(text) as Json;
-    return Array.isArray(found) ? found : null;
-  } catch {
-    return null;
-  }
+  const list = text === "" ? [] : typedJson(text);
+  return Array.isArray(list) ? list : null;
 }
 
-const FLAG_WORDS: Record<string, boolean> = {
-  true: true,
-  on: true,
-  yes: true,
-  false: false,
-  off: false,
-  no: false,
-};
+const TRUE_WORDS = ["true", "on", "yes"];
+const FALSE_WORDS = ["false", "off", "no"];
 const NULL_WORDS = ["null", "none", "auto"];
 
 function valueOf(field: Leaf, word: string): Json {
-  if (field.kind === "flag") return FLAG_WORDS[word.toLowerCase()] ?? word;
+  if (field.kind === "flag" && TRUE_WORDS.includes(word.toLowerCase())) return true;
+  if (field.kind === "flag" && FALSE_WORDS.includes(word.toLowerCase())) return false;
   if ("nullable" in field && field.nullable && NULL_WORDS.includes(word)) return null;
   if (field.kind === "number") return typed(word);
   if (field.kind !== "choice") return word;

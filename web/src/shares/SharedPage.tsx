@@ -40,12 +40,10 @@ export function SharedPage({ slug, sha, query }: Props) {
   const creature = sha ?? share.creature;
   const [title, id] = headingOf(share, creature, sha !== null);
   return (
-    <Page crumbs={share.run && sha ? [[`/s/${slug}`, share.title]] : undefined}>
-      <header class="page-head">
-        <h1>
-          {title} {id && <code>{id}</code>}
-        </h1>
-      </header>
+    <Page
+      title={[title, " ", id && <code>{id}</code>]}
+      crumbs={share.run && sha ? [[`/s/${slug}`, share.title]] : undefined}
+    >
       <Terms share={share} />
       {creature && <SharedCreature key={creature} {...{ share, query }} id={creature} />}
       {share.run && !sha && <SharedArchive {...{ share, query }} id={share.run} />}

@@ -1,17 +1,6 @@
 /** The state of the page, and the functions that change it. */
 
-import type {
-  Archive,
-  ElitesEvent,
-  GenerationEvent,
-  Generations,
-  Principal,
-  ResultsEvent,
-  RewindEvent,
-  Run,
-  RunEvent,
-  RunPage,
-} from "../api/types";
+import type * as wire from "../api/types";
 import * as details from "./detail";
 import { withPoint } from "./curves";
 import type { Toast } from "./toasts";
@@ -23,8 +12,8 @@ export interface State {
   connection: Connection;
   toasts: readonly Toast[];
   /** The signed-in principal; null until it is loaded. */
-  principal: Principal | null;
-  runs: ReadonlyMap<string, Run>;
+  principal: wire.Principal | null;
+  runs: ReadonlyMap<string, wire.Run>;
   details: ReadonlyMap<string, details.Detail>;
   /** Counts changes of the results table of each run. */
   tableVersions: ReadonlyMap<string, number>;
@@ -39,7 +28,7 @@ export interface State {
   lastEvent: ReadonlyMap<string, number>;
   trustedSince: number;
   /** The last event of each run whose spec is unknown. */
-  eventsWithoutSpec: ReadonlyMap<string, RunEvent>;
+  eventsWithoutSpec: ReadonlyMap<string, wire.RunEvent>;
   /** Increases if the members or the order of the list may have changed. */
   listVersion: number;
   /** Increases if everything has to be fetched again. */
@@ -75,7 +64,7 @@ const raised = (counts: ReadonlyMap<string, number>, id: string) =>
 /** The version of a run's detail; it increases with every reset and rewind. */
 export const epochOf = ({ epoch, epochs }: State, run: string): number => epoch + (epochs.get(run) ?? 0);
 
-export const withRunEvent = (state: State, run: RunEvent): State =>
+export const withRunEvent = (state: State, run: wire.RunEvent): State =>
   applyEvent(raiseSweepVersion(state, run.sweep), run);
 
 export const withSweepEvent = (state: State, { sweep }: { sweep: string }): State => ({
@@ -90,7 +79,7 @@ function raiseSweepVersion(state: State, sweep?: string | null): State {
 
 interface Answer {
   query: string;
-  page: RunPage;
+  page: wire.RunPage;
   /** The number of events before the request. */
   sent: number;
 }
@@ -129,17 +118,17 @@ export function withSnapshot(
   state: State,
   run: string,
   epoch: number,
-  archive: Archive | null,
-  generations: Generations,
+  archive: wire.Archive | null,
+  generations: wire.Generations,
 ): State {
   if (epoch !== epochOf(state, run)) return state;
   return withDetail(state, run, (old) => details.withSnapshot(old, archive, generations));
 }
 
-export const withElitesEvent = (state: State, event: ElitesEvent): State =>
+export const withElitesEvent = (state: State, event: wire.ElitesEvent): State =>
   withDetail(state, event.run, (detail) => details.withElitesEvent(detail, event));
 
-export function withGenerationEvent(state: State, event: GenerationEvent): State {
+export function withGenerationEvent(state: State, event: wire.GenerationEvent): State {
   const next = withDetail(state, event.run, (detail) => details.withGenerationEvent(detail, event));
   const run = state.runs.get(event.run);
   if (!run || event.generation <= run.generation) return next;
@@ -151,7 +140,7 @@ export function withGenerationEvent(state: State, event: GenerationEvent): State
 }
 
 /** Tables are short: they are fetched again rather than built from events. */
-export function withResultsEvent(state: State, { run: id, generation, summary }: ResultsEvent): State {
+export function withResultsEvent(state: State, { run: id, generation, summary }: wire.ResultsEvent): State {
   const next = { ...state, tableVersions: raised(state.tableVersions, id) };
   const run = state.runs.get(id);
   if (!run || !summary || generation < run.generation) return next;
@@ -159,14 +148,14 @@ export function withResultsEvent(state: State, { run: id, generation, summary }:
 }
 
 /** The run continues from an earlier generation; its other figures follow with the next event. */
-export function withRewind(state: State, { run: id, generation }: RewindEvent): State {
+export function withRewind(state: State, { run: id, generation }: wire.RewindEvent): State {
   const run = state.runs.get(id);
   const next = { ...state, epochs: raised(state.epochs, id) };
   const rewound = run ? withRun(next, truncateRun(run, generation)) : next;
   return withDetail(rewound, id, (detail) => details.truncate(detail, generation));
 }
 
-function truncateRun(run: Run, generation: number): Run {
+function truncateRun(run: wire.Run, generation: number): wire.Run {
   if (run.generation <= generation) return run;
   const points = Math.ceil((run.sparkline.length * generation) / run.generation);
   const progress = generation / run.generations;
@@ -200,7 +189,7 @@ export function reset(state: State): State {
 }
 
 /** The state with figures of a run from an event. */
-const withRun = (state: State, run: Run): State => ({
+const withRun = (state: State, run: wire.Run): State => ({
   ...noteEvent(state, run.id),
   runs: new Map(state.runs).set(run.id, run),
 });

@@ -38,18 +38,12 @@ export function useSweep(id: string, each: boolean): Loaded<SweepDetail> {
   }, [id, throttled, each]);
 }
 
-const OUTCOMES: Record<api.RunCommand, string> = {
-  pause: text.pausing,
-  resume: text.queued,
-  cancel: text.cancellingRuns,
-};
-
 const outcome = ({ changed, skipped }: SweepChanged, done: string) =>
   text.outcome(text.runs(changed.length), done, skipped.length > 0 ? text.runs(skipped.length) : null);
 
 export async function sendSweepCommand(id: string, verb: api.RunCommand): Promise<void> {
   const answer = await attempt(api.commandSweep(id, verb));
-  if (answer) showToast({ kind: "note", text: outcome(answer, OUTCOMES[verb]) });
+  if (answer) showToast({ kind: "note", text: outcome(answer, text.outcomes[verb]) });
 }
 
 export const renameSweep = (id: string, name: string | null) => attempt(api.renameSweep(id, name));

@@ -8,9 +8,7 @@ export const text = {
   inBin: (title: string) => `${title} is in the bin.`,
   readOnly: "Your token is read-only.",
   ownerOnly: (owner: string | null) => `Only ${owner ? `${owner} or an admin` : "an admin"} can change it.`,
-  pausing: "will pause",
-  queued: "queued again",
-  cancellingRuns: "will be cancelled",
+  outcomes: { pause: "will pause", resume: "queued again", cancel: "will be cancelled" },
   deleted: "moved to the bin",
   runs: (count: number) => `${count} ${count === 1 ? "run" : "runs"}`,
   outcome: (changed: string, done: string, left: string | null) =>

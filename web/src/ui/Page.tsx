@@ -7,7 +7,7 @@ import { text } from "./text";
 
 interface PageProps {
   /** The heading; pages with a header of their own leave it out. */
-  title?: string;
+  title?: ComponentChildren;
   actions?: ComponentChildren;
   /** Links to the pages above this one. */
   crumbs?: (readonly [href: string, name: string])[];

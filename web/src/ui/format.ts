@@ -9,12 +9,9 @@ export function number(value: number | null | undefined, digits = 3): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return DASH;
   const size = Math.abs(value);
   if (size !== 0 && (size < 1e-3 || size >= 1e6)) return scientific(value, digits - 1);
-  const maximumSignificantDigits = Math.max(digits, whole(size));
+  const wholeDigits = Math.floor(Math.log10(Math.max(size, 1))) + 1;
+  const maximumSignificantDigits = Math.max(digits, wholeDigits);
   return value.toLocaleString("en", { maximumSignificantDigits }).replace("-", "−");
-}
-
-function whole(size: number): number {
-  return Math.max(1, Math.floor(Math.log10(Math.max(size, 1))) + 1);
 }
 
 const SUPERSCRIPT: Record<string, string> = Object.fromEntries(
@@ -71,14 +68,13 @@ export function words(name: string): string {
 
 /** The name of a run, or of its preset with any seed, or of its experiment. */
 export function titleOf(run: Run, experiments: Experiment[]): string {
-  if (run.name) return run.name;
+  const label = labelOf(run);
+  if (run.name || run.demonstration) return label;
   const presets = experiments.find(({ experiment }) => experiment === run.experiment)?.presets;
   const preset = presets?.find(({ spec }) => seedless(spec) === seedless(run.spec));
-  if (run.demonstration) return text.demonstration;
-  const kind = words(run.experiment.replaceAll("-", " "));
-  if (!preset) return kind;
+  if (!preset) return label;
   // Most runs are searches, for which the preset alone is enough.
-  return run.experiment === "quality-diversity" ? words(preset.name) : `${kind}, ${preset.name}`;
+  return run.experiment === "quality-diversity" ? words(preset.name) : `${label}, ${preset.name}`;
 }
 
 /** The title of a run whose spec is not known. */

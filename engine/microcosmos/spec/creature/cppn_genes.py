@@ -1,5 +1,6 @@
 """NEAT genes of a CPPN in a creature file, and their validation."""
 
+from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
 from typing import Annotated, Literal
 
@@ -75,7 +76,7 @@ def check_genes(
     if any(target < inputs for target in connections.target):
         raise ValueError("`connections.target` must not be an input")
     if not cycles:
-        _refuse_cycles(nodes.id, pairs)
+        _refuse_cycles(pairs)
 
 
 def _same_length(where: str, *columns) -> None:
@@ -89,20 +90,11 @@ def _increasing(where: str, numbers: tuple[int, ...]) -> None:
         raise ValueError(f"`{where}` must increase strictly")
 
 
-def _refuse_cycles(ids: tuple[int, ...], pairs: list[tuple[int, int]]) -> None:
-    """Kahn's algorithm: the nodes left over lie on or behind a cycle."""
-    waiting = dict.fromkeys(ids, 0)
-    targets: dict[int, list[int]] = {node: [] for node in ids}
+def _refuse_cycles(pairs: list[tuple[int, int]]) -> None:
+    sorter = TopologicalSorter()
     for source, target in pairs:
-        waiting[target] += 1
-        targets[source].append(target)
-    ready = [node for node in ids if not waiting[node]]
-    done = 0
-    while ready:
-        done += 1
-        for target in targets[ready.pop()]:
-            waiting[target] -= 1
-            if not waiting[target]:
-                ready.append(target)
-    if done < len(ids):
-        raise ValueError("`connections` must be free of cycles")
+        sorter.add(target, source)
+    try:
+        sorter.prepare()
+    except CycleError as error:
+        raise ValueError("`connections` must be free of cycles") from error

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field, StringConstraints, ValidationError, model_validator
 
 from ...naming import LICENCE, name
-from ..base import Part, field_path
+from ..base import Digest, Part, field_path
 from ..plugins import PluginVersions
 from ..scene import Scene
 from ..search import Task
@@ -16,7 +16,6 @@ from .genomes import Network
 from .identity import Identity
 
 Room = Annotated[int, Field(ge=8, le=8192)]
-Digest = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 Figures = Annotated[dict[str, float], Field(max_length=1000)]
 Name = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=200)]
 Credit = Annotated[tuple[Name, ...], Field(max_length=50)]
@@ -44,10 +43,9 @@ class Measured(Part):
     """Versions of the plug-ins among the measures."""
 
     @model_validator(mode="after")
-    def check_agreement(self) -> Self:
-        """Descriptors must equal the measures of their names."""
-        found = self.descriptors
-        if wrong := [name for name in found if found[name] != self.measures.get(name)]:
+    def refuse_disagreement(self) -> Self:
+        pairs = self.descriptors.items()
+        if wrong := [name for name, value in pairs if value != self.measures.get(name)]:
             raise ValueError(f"`measures` must hold descriptors; got other values of {wrong}")
         return self
 
@@ -74,8 +72,7 @@ class CreatureFile(Part):
     """Names to show with the creature."""
 
     @model_validator(mode="after")
-    def check_measured(self) -> Self:
-        """The measured arrays must have room for the genes; measures must give the fitness."""
+    def refuse_other_measures(self) -> Self:
         if self.measured is None:
             return self
         room_of(self.identity.genome, self.measured.room)
@@ -112,11 +109,10 @@ def check(data: Any) -> dict[str, Any]:
         named = re.match(r"`([\w.]+)`", needed)
         field = field_path(first["loc"]) or (named[1] if named else "file")
         raise CreatureError(field, needed, first["input"]) from error
-    whole = file.model_dump(mode="json")
-    expected = name(whole["identity"])
-    if expected != file.sha256:
+    document = file.model_dump(mode="json")
+    if (expected := name(document["identity"])) != file.sha256:
         raise CreatureError("sha256", f"the hash of the identity, {expected}", file.sha256)
-    return whole
+    return document
 
 
 def scene_of(file: Mapping[str, Any]) -> Scene:

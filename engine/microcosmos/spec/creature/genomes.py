@@ -15,39 +15,36 @@ from ..scene import Gait
 from .cppn_genes import Connections, Nodes, check_genes
 
 
-class CPPN(Part):
-    """The used genes of a CPPN controller, ordered by number."""
+class Network(Part):
+    """The used NEAT genes of a network, ordered by number."""
 
-    encoding: Literal["cppn"]
+    encoding: str
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    control: Control
+    control: Control | encodings.Grown
     nodes: Nodes
     connections: Connections
 
     @model_validator(mode="after")
     def check(self) -> Self:
-        _check_network(self, self.control)
-        cycles = self.control.recurrent
+        _check_ends(self, self.control)
+        cycles = getattr(self.control, "recurrent", False)
         check_genes(len(self.inputs), len(self.outputs), self.nodes, self.connections, cycles)
         return self
 
 
-class Grown(Part):
-    """The used genes of a CPPN that grows a body and controls it, ordered by number."""
+class CPPN(Network):
+    """The genes of a CPPN controller."""
+
+    encoding: Literal["cppn"]
+    control: Control
+
+
+class Grown(Network):
+    """The genes of a CPPN that grows a body and controls it."""
 
     encoding: Literal["cppn-body"]
-    inputs: tuple[str, ...]
-    outputs: tuple[str, ...]
     control: encodings.Grown
-    nodes: Nodes
-    connections: Connections
-
-    @model_validator(mode="after")
-    def check(self) -> Self:
-        _check_network(self, self.control)
-        check_genes(len(self.inputs), len(self.outputs), self.nodes, self.connections)
-        return self
 
 
 class Vector(Part):
@@ -86,7 +83,7 @@ class Weights(Vector):
 
     @model_validator(mode="after")
     def check(self) -> Self:
-        _check_network(self, self.control)
+        _check_ends(self, self.control)
         return self
 
 
@@ -116,8 +113,8 @@ class Fold(Part):
     `control.lengths` says."""
 
     def refuse_other_length(self, body: Body) -> None:
-        whole = shape(body)
-        _refuse_count(self.values, len(whole.joints) + len(whole.edges))
+        graph = shape(body)
+        _refuse_count(self.values, len(graph.joints) + len(graph.edges))
 
 
 class Stroke(Gait):
@@ -126,11 +123,7 @@ class Stroke(Gait):
     encoding: Literal["gait"]
 
 
-Network = CPPN | Grown
-"""Genomes of NEAT genes."""
-
-
-def _check_network(genome: CPPN | Grown | Weights, control: Sight) -> None:
+def _check_ends(genome: Network | Weights, control: Sight) -> None:
     for name in ("inputs", "outputs"):
         needed, found = getattr(control, name), getattr(genome, name)
         if found != needed:

@@ -1,24 +1,16 @@
 """The identity of a creature, whose SHA-256 is its name."""
 
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
-from pydantic import Discriminator, Tag, model_validator
+from pydantic import Tag, model_validator
 
-from ..base import ENCODINGS, Part
+from ..base import ENCODINGS, Part, name_in, one_of
 from ..body import Body, PluginBody
 from ..coupling import Coupling
-from ..encodings import encoding_tag
 from ..scene import Gait, Scene
 from ..search import Task
 from ..world import World
 from .genomes import CPPN, Direct, Fold, Grown, PluginGenome, Stroke, Weights
-
-
-def _kind(value: Any) -> Any:
-    """Return the tag of a genome, which must name its encoding."""
-    named = not isinstance(value, dict) or "encoding" in value
-    return encoding_tag(value) if named else None
-
 
 Genome = Annotated[
     Annotated[CPPN, Tag("cppn")]
@@ -28,11 +20,7 @@ Genome = Annotated[
     | Annotated[Stroke, Tag("gait")]
     | Annotated[Fold, Tag("fold")]
     | Annotated[PluginGenome, Tag("plugin")],
-    Discriminator(
-        _kind,
-        custom_error_type="unknown_encoding",
-        custom_error_message="`encoding` must be one of " + ", ".join(ENCODINGS[:-1]),
-    ),
+    *one_of("encoding", ENCODINGS[:-1], name_in("encoding")),
 ]
 
 

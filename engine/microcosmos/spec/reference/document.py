@@ -1,7 +1,4 @@
-"""The reference of every field of a spec, made of the schemas: `docs/spec.md`.
-
-python -m microcosmos.spec.reference > docs/spec.md
-"""
+"""The reference of every field of a spec, generated from the schemas: `docs/spec.md`."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -56,8 +53,7 @@ def _experiment(chosen: Experiment) -> Iterator[str]:
 
 def _part(part: Part) -> Iterator[str]:
     yield f"### {part.name}\n"
-    said = part.text + (f" *Source: {part.source}.*" if part.source else "")
-    yield f"{said}\n"
+    yield part.text + (f" *Source: {part.source}.*" if part.source else "") + "\n"
     yield f"Used at {', '.join(f'`{path}`' for path in part.paths)}.\n"
     yield from _table(part.fields)
 
@@ -66,8 +62,7 @@ def _table(fields: tuple[Field, ...]) -> Iterator[str]:
     yield _row(COLUMNS)
     yield _row(["---"] * len(COLUMNS))
     for field in fields:
-        values = [f"`{field.name}`", field.kind, field.unit, field.range, field.default]
-        yield _row([*values, field.text, field.source])
+        yield _row((f"`{field.name}`", *field[1:]))
     yield ""
 
 

@@ -1,15 +1,22 @@
-"""Fields of specs as people read them, taken from the JSON schemas."""
+"""Fields of specs as people read them, from the JSON schemas: types, ranges, defaults."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any, NamedTuple
 
 from ..experiments import EXPERIMENTS
-from .words import TAGS, Schema, default, items, kind, line, plain, range_of, refs, unit
+
+Schema = dict[str, Any]
+
+MAX_LENGTH = 60
+"""Maximum length of a written-out default."""
+
+TYPES = {"integer": "integer", "number": "number", "boolean": "yes or no", "string": "text"}
+TAGS = ("experiment", "builder", "encoding", "operator", "kind")
+"""Fields whose one value says which part it is."""
 
 
-@dataclass(frozen=True)
-class Field:
+class Field(NamedTuple):
     """One row of the reference."""
 
     name: str
@@ -21,9 +28,8 @@ class Field:
     source: str
 
 
-@dataclass(frozen=True)
-class Part:
-    """A part of specs, and at which paths it stands."""
+class Part(NamedTuple):
+    """A part of specs, with the paths at which it stands."""
 
     name: str
     text: str
@@ -33,13 +39,13 @@ class Part:
 
 
 def experiment(name: str) -> Part:
-    """An experiment's own fields."""
+    """Return an experiment as a part."""
     schema = _schemas()[name]
     return _part(name, schema, schema.get("$defs", {}))
 
 
 def parts() -> tuple[Part, ...]:
-    """Every part of every experiment, by name."""
+    """Return every part of every experiment, by name."""
     defined: Schema = {}
     paths: dict[str, list[str]] = {}
     for schema in _schemas().values():
@@ -58,30 +64,29 @@ def _schemas() -> dict[str, Schema]:
 
 
 def _walk(schema: Schema, defined: Schema, way: str = "") -> Iterator[tuple[str, str]]:
-    """(path, part) of every part below a schema."""
+    """Yield the path and the name of every part below a schema."""
     for name, field in schema.get("properties", {}).items():
         for part in refs(field):
-            path = f"{way}{name}" + ("[]" if items(field) else "")
+            path = f"{way}{name}" + ("[]" if is_list(field) else "")
             yield path, part
             yield from _walk(defined[part], defined, f"{path}.")
 
 
 def _part(name: str, schema: Schema, defined: Schema, paths: tuple[str, ...] = ()) -> Part:
     needed = schema.get("required", [])
-    own = schema["properties"].items()
-    rows = tuple(_field(key, field, defined, key in needed) for key, field in own)
-    text = line(schema.get("description", ""))
-    return Part(name, text, schema.get("source", ""), rows, paths)
+    fields = schema["properties"].items()
+    rows = tuple(_field(key, field, defined, key in needed) for key, field in fields)
+    return Part(name, text_of(schema), schema.get("source", ""), rows, paths)
 
 
 def _field(name: str, field: Schema, defined: Schema, required: bool) -> Field:
-    inner = plain(field)
+    inner = inner_of(field)
     parts = refs(field)
-    text = line(field.get("description", ""))
+    text = text_of(field)
     if not text and len(parts) == 1:
-        text = line(defined[parts[0]].get("description", ""))
+        text = text_of(defined[parts[0]])
     if not text and name in TAGS and "const" in field:
-        text = "Says which part this is."
+        text = f"Selects this {name}."
     return Field(
         name=name,
         kind=kind(field),
@@ -91,3 +96,126 @@ def _field(name: str, field: Schema, defined: Schema, required: bool) -> Field:
         text=text,
         source=field.get("source", ""),
     )
+
+
+def inner_of(field: Schema) -> Schema:
+    """Return the inner schema: x of `x | None`, and the entry of a list."""
+    options = [o for o in field.get("anyOf", [field]) if o.get("type") != "null"]
+    inner = options[0] if len(options) == 1 else field
+    items = inner.get("items")
+    return items if isinstance(items, dict) and "prefixItems" not in inner else inner
+
+
+def is_list(field: Schema) -> bool:
+    return any("items" in o for o in [field, *field.get("anyOf", [])])
+
+
+def refs(field: Schema) -> list[str]:
+    """Return the names of the parts that a field may hold."""
+    if "$ref" in field:
+        return [field["$ref"].rpartition("/")[2]]
+    inner = [*field.get("anyOf", []), *field.get("oneOf", [])]
+    if isinstance(field.get("items"), dict):
+        inner.append(field["items"])
+    return list(dict.fromkeys(name for one in inner for name in refs(one)))
+
+
+def kind(field: Schema) -> str:
+    if names := refs(field):
+        links = " or ".join(f"[{ref}](#{ref.lower()})" for ref in names)
+        text = f"list of {links}" if is_list(field) else links
+    else:
+        text = _plain_kind(field)
+    empty = any(o.get("type") == "null" for o in field.get("anyOf", []))
+    return f"{text} or none" if empty else text
+
+
+def _plain_kind(field: Schema) -> str:
+    options = [o for o in field.get("anyOf", []) if o.get("type") != "null"]
+    if len(options) == 1:
+        return _plain_kind(options[0])
+    if "const" in field:
+        return f"`{field['const']}`"
+    if "enum" in field:
+        return ", ".join(f"`{value}`" for value in field["enum"])
+    if field.get("type") == "array":
+        if "prefixItems" in field:
+            return f"{len(field['prefixItems'])} numbers"
+        return f"list of {_plain_kind(field['items'])}"
+    return TYPES.get(field.get("type", ""), "object")
+
+
+def unit(field: Schema, inner: Schema) -> str:
+    if "units" in field:
+        return f"that of `{field['unit_of']}`"
+    return field.get("unit") or inner.get("unit", "")
+
+
+def range_of(inner: Schema, field: Schema) -> str:
+    low = inner.get("minimum", inner.get("exclusiveMinimum"))
+    high = inner.get("maximum", inner.get("exclusiveMaximum"))
+    text = ""
+    if low is not None or high is not None:
+        left = "(" if low is None or "exclusiveMinimum" in inner else "["
+        right = ")" if high is None or "exclusiveMaximum" in inner else "]"
+        text = f"{left}{_number(low, '−∞')}, {_number(high, '∞')}{right}"
+    length = [field.get("minItems"), field.get("maxItems")]
+    if any(length):
+        counted = f"{length[0] or 0} to {length[1]:,}" if length[1] else f"at least {length[0]}"
+        text = f"{counted} of them" + (f", each {text}" if text else "")
+    if inner.get("type") == "string" and "maxLength" in inner:
+        return f"at most {inner['maxLength']:,} letters"
+    return text
+
+
+def _number(value: float | None, none: str) -> str:
+    if value is None:
+        return none
+    whole = float(value).is_integer() and abs(value) < 1e12
+    return f"{int(value):,}" if whole else f"{value:g}"
+
+
+def default(field: Schema, defined: Schema, required: bool) -> str:
+    if "default" not in field:
+        return "required" if required else "that of the measure"
+    value = field["default"]
+    if isinstance(value, dict):
+        usual = _defaults(field, value, defined)
+        other = {k: v for k, v in value.items() if v != usual.get(k)}
+        words = [_tag(value)] if len(refs(field)) > 1 else []
+        words += [f"{name} {_word(given)}" for name, given in other.items()]
+        return ", ".join(words) or "all defaults"
+    return _word(value)
+
+
+def _defaults(field: Schema, value: Schema, defined: Schema) -> Schema:
+    """Return the defaults of the part to which a default belongs."""
+    for ref in refs(field):
+        fields = defined[ref]["properties"]
+        tags = {tag: value.get(tag) for tag in TAGS if tag in fields}
+        tagged = all(fields[tag].get("const") == tags[tag] for tag in tags)
+        if set(fields) == set(value) and tagged:
+            return {name: one.get("default") for name, one in fields.items()} | tags
+    return {}
+
+
+def _word(value: Any) -> str:
+    if value is None:
+        return "none"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, list):
+        text = ", ".join(map(_word, value))
+        return text if len(text) <= MAX_LENGTH else f"{text[:MAX_LENGTH].rpartition(', ')[0]} …"
+    return _tag(value) if isinstance(value, dict) else str(value)
+
+
+def _tag(value: Schema) -> str:
+    named = next((str(value[tag]) for tag in ("digit", "name", *TAGS) if tag in value), None)
+    return named or ", ".join(f"{k} {_word(v)}" for k, v in value.items())
+
+
+def text_of(schema: Schema) -> str:
+    return " ".join(schema.get("description", "").split())

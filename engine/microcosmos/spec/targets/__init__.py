@@ -1,5 +1,4 @@
 """Pictures that filaments fold into: digits, files and words; JAX-free."""
 
-from .digits import DIGITS, digit
-from .placing import MAX_PIXELS, decoded, encoded, field, fitted
+from .pictures import DIGITS, MAX_PIXELS, decoded, digit, encoded, field, fitted
 from .sources import mnist, png, text

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ...optional import require
-from .placing import MAX_PIXELS, Ink, fitted
+from .pictures import MAX_PIXELS, Ink, fitted
 
 IMAGES = 2051
 """First word of an IDX file of images (LeCun, Cortes and Burges, The MNIST database)."""

@@ -1,4 +1,4 @@
-"""Bodies at twice the resolution."""
+"""Bodies with more nodes, for finer worlds, or with fewer, for drawings."""
 
 from dataclasses import dataclass
 
@@ -59,3 +59,39 @@ def _between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Return the middle of `a` and `b`; across a ring's end, through 1."""
     closing = (np.abs(a - b) > 0.5) & (np.abs(a - b) < 1)
     return np.where(closing, (np.maximum(a, b) + 1) / 2, (a + b) / 2)
+
+
+def thinned(body: Body, most: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions and edges of about `most` nodes: ends, branches, and some in between."""
+    every = -(-len(body.positions) // most)
+    if every == 1:
+        return body.positions, body.edges
+    chosen = np.bincount(body.edges.ravel(), minlength=len(body.positions)) != 2
+    chosen[::every] = True
+    number = np.cumsum(chosen) - 1
+    edges = [(number[a], number[b]) for a, b in _spans(body.edges, chosen)]
+    return body.positions[chosen], np.array(edges, int).reshape(-1, 2)
+
+
+def _spans(edges: np.ndarray, chosen: np.ndarray) -> list[tuple[int, int]]:
+    """Return the pairs of chosen nodes that become neighbours, each path once."""
+    incident: list[list[int]] = [[] for _ in chosen]
+    for number, ends in enumerate(edges.tolist()):
+        for node in ends:
+            incident[node].append(number)
+    visited, spans = set(), []
+    for start in np.flatnonzero(chosen).tolist():
+        for number in incident[start]:
+            if number not in visited:
+                spans.append((start, _follow(start, number, edges, incident, chosen, visited)))
+    return spans
+
+
+def _follow(node: int, edge: int, edges, incident, chosen, visited: set[int]) -> int:
+    """Return the first chosen node along a path of edges, which are marked as visited."""
+    while True:
+        visited.add(edge)
+        node = int(edges[edge].sum()) - node
+        if chosen[node]:
+            return node
+        edge = sum(incident[node]) - edge
