@@ -1,7 +1,6 @@
 """CMA-MEGA where derivatives are known: ours, QDax's and pyribs', equal budgets and cells."""
 
 import importlib
-import statistics
 import time
 from collections.abc import Callable
 from typing import Any
@@ -10,8 +9,7 @@ import jax
 import jax.numpy as jnp
 import loops
 import numpy as np
-from rich.console import Console
-from rich.table import Table
+import timing
 
 from microcosmos import genomes, search
 
@@ -26,7 +24,7 @@ AXES = tuple(search.Axis(i, 0.0, 1.0, BINS, False) for i in range(2))
 def _projected(x: jax.Array) -> jax.Array:
     """Means of the first and of the second half, 0 to 1; values beyond ±5.12 fold back.
 
-    The linear projection of Fontaine et al., GECCO 2020, section 4.
+    Linear projection: Fontaine et al., GECCO 2020, section 4.
     """
     beyond = jnp.abs(x) > LIMIT
     clipped = jnp.where(beyond, LIMIT / jnp.where(beyond, x, 1.0), x)
@@ -34,7 +32,7 @@ def _projected(x: jax.Array) -> jax.Array:
 
 
 def _scaled(value: Callable[[jax.Array], jax.Array]) -> loops.Function:
-    """Scale a function from 0 in the worst corner to 1 at the optimum, as there."""
+    """Scale a function from 0 in the worst corner to 1 at the optimum."""
     worst = value(jnp.full(GENES, -LIMIT))
     return lambda x: (1 - value(x) / worst, _projected(x))
 
@@ -51,30 +49,23 @@ FUNCTIONS = {"sphere": _scaled(_sphere), "Rastrigin": _scaled(_rastrigin)}
 
 
 def with_slopes(function: loops.Function, x: jax.Array) -> tuple[jax.Array, ...]:
-    """Value, place, and rows of derivatives."""
-    value, place = function(x)
-    by_value, by_place = jax.jacrev(function)(x)
-    return value, place, jnp.concatenate([by_value[None], by_place])
+    """Value, descriptors, and rows of derivatives."""
+    value_slope, descriptor_slopes = jax.jacrev(function)(x)
+    return *function(x), jnp.concatenate([value_slope[None], descriptor_slopes])
 
 
 def score(fitness: np.ndarray) -> tuple[float, float]:
-    """QD score and coverage in percent of what is possible."""
+    """QD score and coverage in percent of the maximum."""
     count = BINS**2
     return 100 * float(np.sum(fitness)) / count, 100 * len(fitness) / count
 
 
 def ours(function: loops.Function, seed: int) -> np.ndarray:
-    """The elites' fitness; our genes run from −1 to 1."""
+    """Return the elites' fitness; our genes run from −1 to 1."""
     emitter = search.emitters.CmaMega(BATCH, newcomer, outputs=3, step=STEP / LIMIT)
-    return loops.ours(
-        emitter,
-        lambda genes: function(LIMIT * genes),
-        search.Grid(AXES),
-        GENES,
-        GENERATIONS,
-        seed,
-        lambda genes: with_slopes(function, LIMIT * genes)[2],
-    )
+    scaled = lambda genes: function(LIMIT * genes)  # noqa: E731
+    slopes = lambda genes: with_slopes(function, LIMIT * genes)[2]  # noqa: E731
+    return loops.ours(emitter, scaled, search.Grid(AXES), GENES, GENERATIONS, seed, slopes)
 
 
 def newcomer(*, key: jax.Array) -> genomes.Vector:
@@ -83,13 +74,13 @@ def newcomer(*, key: jax.Array) -> genomes.Vector:
 
 
 def qdax(function: loops.Function, seed: int) -> np.ndarray:
-    """The elites' fitness by QDax's emitter in its own loop."""
+    """Return the elites' fitness by QDax's emitter in its own loop."""
     mega: Any = importlib.import_module("qdax.core.emitters.cma_mega_emitter")
 
     def scored(x: jax.Array, key: jax.Array) -> tuple[jax.Array, jax.Array, dict]:
-        value, place, rows = jax.vmap(lambda one: with_slopes(function, one))(x)
+        value, descriptors, rows = jax.vmap(lambda one: with_slopes(function, one))(x)
         rows = rows / jnp.maximum(jnp.linalg.norm(rows, axis=2, keepdims=True), 1e-30)
-        return value, place, {"normalized_grads": jnp.swapaxes(rows, 1, 2)}
+        return value, descriptors, {"normalized_grads": jnp.swapaxes(rows, 1, 2)}
 
     centroids = jnp.asarray(search.Grid(AXES).centres)
     emitter = mega.CMAMEGAEmitter(
@@ -108,10 +99,9 @@ def qdax(function: loops.Function, seed: int) -> np.ndarray:
 
 
 def pyribs(function: loops.Function, seed: int) -> np.ndarray:
-    """The elites' fitness by pyribs, whose authors' algorithm it is."""
-    archives: Any = importlib.import_module("ribs.archives")
-    emitters: Any = importlib.import_module("ribs.emitters")
-    schedulers: Any = importlib.import_module("ribs.schedulers")
+    """Return the elites' fitness by pyribs, whose authors invented the algorithm."""
+    names = ("archives", "emitters", "schedulers")
+    archives, emitters, schedulers = (importlib.import_module(f"ribs.{n}") for n in names)
     archive = archives.GridArchive(
         solution_dim=GENES, dims=(BINS, BINS), ranges=[(0, 1), (0, 1)], seed=seed
     )
@@ -135,7 +125,10 @@ def pyribs(function: loops.Function, seed: int) -> np.ndarray:
     return np.asarray(archive.data("objective"))
 
 
-LIBRARIES = {"microcosmos": ours, "QDax": qdax, "pyribs": pyribs}
+def measured(run: Callable, function: loops.Function, seed: int) -> tuple[float, ...]:
+    """QD score, coverage and seconds of one run."""
+    start = time.monotonic()
+    return *score(run(function, seed)), time.monotonic() - start
 
 
 def main() -> None:
@@ -143,21 +136,12 @@ def main() -> None:
         f"CMA-MEGA, {GENERATIONS:,} generations of {BATCH} in {GENES} dimensions, "
         f"{BINS} × {BINS} cells: median of {len(SEEDS)} seeds (range)"
     )
-    table = Table("", "", "QD score, %", "coverage, %", "seconds", title=title)
+    rows = []
     for name, function in FUNCTIONS.items():
-        for library, run in LIBRARIES.items():
-            found = []
-            for seed in SEEDS:
-                began = time.monotonic()
-                found.append((*score(run(function, seed)), time.monotonic() - began))
-            table.add_row(
-                name, library, *(_median(column) for column in zip(*found, strict=True))
-            )
-    Console(width=110).print(table)
-
-
-def _median(values: tuple[float, ...]) -> str:
-    return f"{statistics.median(values):.1f} ({min(values):.1f}–{max(values):.1f})"
+        for library, run in {"microcosmos": ours, "QDax": qdax, "pyribs": pyribs}.items():
+            columns = zip(*(measured(run, function, seed) for seed in SEEDS), strict=True)
+            rows.append((name, library, *map(timing.median_range, columns)))
+    timing.print_table(title, ("", "", "QD score, %", "coverage, %", "seconds"), rows)
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ ISO, LINE = 0.01, 0.1
 
 
 def arm(x: jax.Array) -> tuple[jax.Array, jax.Array]:
-    """A planar arm: small differences of its angles, 0 to 1, and where it ends.
+    """A planar arm: low spread of its angles, and the place of its end from 0 to 1.
 
     Cully et al., Nature 521, 503 (2015), in the form of fast_map_elites.
     """
@@ -39,13 +39,13 @@ LEAST = {"arm": -0.5, "rastrigin": -45.0 * GENES}
 
 @cache
 def cells(count: int = CELLS) -> search.Voronoi:
-    """Both libraries are given the same centroids."""
+    """Return the cells, the same for both libraries."""
     axes = tuple(search.Axis(i, 0.0, 1.0, 1, False) for i in range(2))
     return search.voronoi(axes, search.cvt.centroids(count, 2, seed=0))
 
 
 def ours(name: str, seed: int, generations: int = GENERATIONS, batch: int = BATCH) -> float:
-    """The QD score that our emitters and archive reach."""
+    """Return the QD score that our emitters and archive reach."""
     emitter = search.emitters.IsoLine(batch, newcomer, 2 * ISO, LINE)
 
     def function(genes: jax.Array) -> tuple[jax.Array, jax.Array]:
@@ -55,7 +55,7 @@ def ours(name: str, seed: int, generations: int = GENERATIONS, batch: int = BATC
 
 
 def theirs(name: str, seed: int, generations: int = GENERATIONS, batch: int = BATCH) -> float:
-    """The QD score that QDax reaches with the same operator, budget and centroids."""
+    """Return the QD score of QDax with the same operator, budget and centroids."""
     standard: Any = importlib.import_module("qdax.core.emitters.standard_emitters")
     operators: Any = importlib.import_module("qdax.core.emitters.mutation_operators")
     variation = partial(

@@ -1,15 +1,14 @@
 """Time of a generation besides its rollouts.
 
-The standard search and NEAT alone, as `make acceptance` runs them: children, insertion, what
-emitters learn, names and lineage, against the evaluation of a batch.
+Children, insertion, learning, names and lineage against the evaluation of a batch, in the
+standard search and in NEAT alone, as `make acceptance` runs them.
 """
 
 import statistics
 import time
 
 import jax
-from rich.console import Console
-from rich.table import Table
+import timing
 
 from microcosmos.build import build
 from microcosmos.device import prepare
@@ -32,28 +31,27 @@ SEARCHES = {
 def generations(document: dict) -> list[tuple[float, float]]:
     """Seconds of each timed generation, and of its rollouts."""
     run = build(parse(document))
-    state, found = run.init(), []
+    state, seconds = run.init(), []
     for _ in range(WARM + TIMED):
-        began = time.monotonic()
+        start = time.monotonic()
         state, report = run.advance(state)
-        whole = time.monotonic() - began
-        spent = float((report.summary or {})["device_seconds"] or 0.0)
-        found.append((whole, spent / jax.local_device_count()))
-    return found[WARM:]
+        whole = time.monotonic() - start
+        rollouts = float((report.summary or {})["device_seconds"] or 0.0)
+        seconds.append((whole, rollouts / jax.local_device_count()))
+    return seconds[WARM:]
 
 
 def main() -> None:
     prepare()
-    title = "Median seconds of a generation of 64 creatures"
-    table = Table("", "whole", "rollouts", "the rest", "share (bar 2 %)", title=title)
+    rows = []
     for name, document in SEARCHES.items():
-        found = generations(document)
-        whole, rollouts = (statistics.median(column) for column in zip(*found, strict=True))
-        rest = statistics.median(a - b for a, b in found)
-        share = statistics.median((a - b) / a for a, b in found)
-        row = (f"{whole:.3f}", f"{rollouts:.3f}", f"{rest:.4f}", f"{share:.1%}")
-        table.add_row(name, *row)
-    Console().print(table)
+        seconds = generations(document)
+        whole, rollouts = (statistics.median(column) for column in zip(*seconds, strict=True))
+        rest = statistics.median(a - b for a, b in seconds)
+        share = statistics.median((a - b) / a for a, b in seconds)
+        rows.append((name, f"{whole:.3f}", f"{rollouts:.3f}", f"{rest:.4f}", f"{share:.1%}"))
+    columns = ("", "whole", "rollouts", "the rest", "share (bar 2 %)")
+    timing.print_table("Median seconds of a generation of 64 creatures", columns, rows)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 """Time and memory of a gradient, relative to its simulation.
 
-Prints a table and asserts nothing. Programs run interleaved in one process; memory is what
-the compiled program holds beside its arguments. `autodiff` differentiates the collision
-automatically, as `fluid/adjoint.py` would otherwise be.
+Prints tables and asserts nothing. Programs run interleaved in one process; memory is what the
+compiled program holds beside its arguments. `autodiff` replaces `fluid/adjoint.py` by automatic
+differentiation of the collision.
 """
 
 import statistics
@@ -12,9 +12,7 @@ from math import isqrt
 from typing import Any
 
 import jax
-import loops
-from rich.console import Console
-from rich.table import Table
+import timing
 
 from microcosmos import build, device, fluid, search, spec
 from microcosmos.fluid import surroundings
@@ -34,13 +32,11 @@ def main() -> None:
 
 
 def compare(size: int, nodes: int) -> None:
-    """A row for the simulation and for each way to differentiate it."""
-    scene = spec.Scene.model_validate(
-        {
-            "world": {"width": size, "height": size},
-            "body": {"nodes": nodes, "spacing": 0.5},
-            "task": {"steps": STEPS},
-        }
+    """Print a row for the simulation and for each way to differentiate it."""
+    scene = spec.Scene(
+        world=spec.World(width=size, height=size),
+        body=spec.Chain(nodes=nodes, spacing=0.5),
+        task=spec.Task(steps=STEPS),
     )
     task = build.build_task(scene)
     encoding = build.build_encoding(scene, ROOM)
@@ -48,41 +44,26 @@ def compare(size: int, nodes: int) -> None:
     values = gradients.parts(task, creature, ("genes", "viscosity"))
     few = isqrt(STEPS)
 
-    def forward(values):
-        return gradients.measures(task, creature, values)
-
-    def backward(segment=None):
-        return lambda values: gradients.value_and_jacobian(
-            task, creature, values, segment=segment
-        )
-
-    ways = {
+    forward = partial(gradients.measures, task, creature)
+    backward = partial(gradients.value_and_jacobian, task, creature)
+    programs = {
         "simulation": compiled(forward, values),
-        "gradient, autodiff": compiled(backward(), values, fluid.collide),
-        "gradient": compiled(backward(), values),
-        f"gradient, segments of {few}": compiled(backward(few), values),
+        "gradient, autodiff": compiled(backward, values, fluid.collide),
+        "gradient": compiled(backward, values),
+        f"gradient, segments of {few}": compiled(partial(backward, segment=few), values),
     }
-    seconds: dict[str, list[float]] = {name: [] for name in ways}
-    for _ in range(REPEATS):
-        for name, program in ways.items():
-            seconds[name].append(loops.seconds(program, values))
-    table = Table(
-        "",
-        "ms",
-        "× the simulation",
-        "MiB",
-        title=f"{STEPS} steps of {nodes} nodes in {size} × {size} cells",
-    )
-    first = statistics.median(seconds["simulation"])
-    for name, program in ways.items():
+    calls = {name: partial(program, values) for name, program in programs.items()}
+    seconds = timing.interleaved(calls, REPEATS)
+    first, rows = statistics.median(seconds["simulation"]), []
+    for name, program in programs.items():
         median = statistics.median(seconds[name])
-        memory = program.memory_analysis().temp_size_in_bytes / 2**20
-        table.add_row(name, f"{1e3 * median:.0f}", f"{median / first:.1f}", f"{memory:.0f}")
-    Console().print(table)
+        rows.append((name, f"{1e3 * median:.0f}", f"{median / first:.1f}", mebibytes(program)))
+    title = f"{STEPS} steps of {nodes} nodes in {size} × {size} cells"
+    timing.print_table(title, ("", "ms", "× the simulation", "MiB"), rows)
 
 
 def fold() -> None:
-    """A row for an update of one filament of the presets `digits` and `digits-fluid`."""
+    """Print a row for an update of one filament of the presets `digits` and `digits-fluid`."""
     presets = {preset.name: preset.spec for preset in spec.EXPERIMENTS["folding"].presets}
     few = {"memory": 0.1, "updates": 1}
     ways = {
@@ -91,27 +72,25 @@ def fold() -> None:
         "in a fluid": (presets["digits-fluid"], {}, surroundings.collision),
         "in a fluid, in segments": (presets["digits-fluid"], few, surroundings.collision),
     }
-    table = Table("", "s", "MiB", title="One update of 1,000 nodes through 250 steps")
+    rows = []
     for name, (chosen, changes, collision) in ways.items():
         assert isinstance(chosen, spec.Folding)
         chosen = chosen.model_copy(update=changes)
         descent = build.build_descent(chosen)
         first = folding.start(descent, build.build_pictures(chosen)[:1])
-        program = compiled(
-            lambda block, d=descent: search.mapped(partial(folding.update, d), block),
-            first,
-            collision,
-        )
-        seconds = [loops.seconds(program, first) for _ in range(3)]
-        memory = program.memory_analysis().temp_size_in_bytes / 2**20
-        table.add_row(name, f"{statistics.median(seconds):.2f}", f"{memory:.0f}")
-    Console().print(table)
+        update = partial(search.mapped, partial(folding.update, descent))
+        program = compiled(update, first, collision)
+        median = statistics.median(timing.seconds(program, first) for _ in range(3))
+        rows.append((name, f"{median:.2f}", mebibytes(program)))
+    timing.print_table("One update of 1,000 nodes through 250 steps", ("", "s", "MiB"), rows)
 
 
-def compiled(
-    function: Callable, values: Any, collision: Callable = surroundings.collision
-) -> Any:
-    """The program, with such a collision."""
+def mebibytes(program: Any) -> str:
+    return f"{program.memory_analysis().temp_size_in_bytes / 2**20:.0f}"
+
+
+def compiled(function: Callable, values: Any, collision: Any = surroundings.collision) -> Any:
+    """Compile a function with this collision."""
     own, surroundings.collision = surroundings.collision, collision
     try:
         program = jax.jit(function, compiler_options=device.compiler_options())

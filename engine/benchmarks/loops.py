@@ -1,7 +1,6 @@
-"""Loops of MAP-Elites over plain functions of vectors, ours and QDax's, and a clock."""
+"""Loops of MAP-Elites over plain functions of vectors, ours and QDax's."""
 
 import importlib
-import time
 from collections.abc import Callable
 from typing import Any
 
@@ -12,14 +11,7 @@ import numpy as np
 from microcosmos import genomes, neat, search
 
 Function = Callable[[jax.Array], tuple[jax.Array, jax.Array]]
-"""A function of a vector: its fitness, and its place from 0 to 1 on each axis."""
-
-
-def seconds(program: Callable, *given: Any) -> float:
-    """Wall time of one call."""
-    began = time.perf_counter()
-    jax.block_until_ready(program(*given))
-    return time.perf_counter() - began
+"""A function of a vector: its fitness, and its descriptors from 0 to 1."""
 
 
 def ours(
@@ -31,7 +23,7 @@ def ours(
     seed: int,
     slopes: Callable[[jax.Array], jax.Array] | None = None,
 ) -> np.ndarray:
-    """The elites' fitness; `slopes` of a vector are taught once a generation."""
+    """Return the elites' fitness; the emitter learns `slopes` of a vector once a generation."""
     key = jax.random.key(seed)
 
     def generation(carry: Any, number: jax.Array) -> tuple[Any, None]:
@@ -43,11 +35,12 @@ def ours(
             rows = jax.vmap(slopes)(emitter.asks(state, children).values)
             known = search.Slopes(rows, jnp.ones(len(rows), bool))
             children, state = emitter.learn(state, children, known)
-        fitness, places = jax.vmap(function)(children.genotypes.values)  # pyright: ignore
+        genotypes: Any = children.genotypes
+        fitness, descriptors = jax.vmap(function)(genotypes.values)
         feasible = jnp.ones(len(fitness), bool)
-        found = search.candidates(number, children.genotypes, fitness, places, feasible)
-        archive, inserted = search.insert(archive, found, cells)
-        outcome = search.emitters.outcome(found, inserted)
+        rows = search.candidates(number, genotypes, fitness, descriptors, feasible)
+        archive, inserted = search.insert(archive, rows, cells)
+        outcome = search.emitters.outcome(rows, inserted)
         return (archive, emitter.tell(state, outcome)), None
 
     empty = search.no_elites(cells.count, 2, genomes.Vector(jnp.zeros(genes)))
@@ -64,7 +57,7 @@ def qdax(
     generations: int,
     seed: int,
 ) -> np.ndarray:
-    """The elites' fitness in QDax's loop; `first` makes the first vectors from a key."""
+    """Return the elites' fitness in QDax's loop; `first` makes the first vectors from a key."""
     loop: Any = importlib.import_module("qdax.core.map_elites")
     search_of = loop.MAPElites(scored, emitter, lambda repertoire: {})
     first_key, init_key, key = jax.random.split(jax.random.PRNGKey(seed), 3)

@@ -33,27 +33,7 @@ activation_mutate_rate = 0.1
 aggregation_default = sum
 aggregation_options = sum
 aggregation_mutate_rate = 0.0
-bias_init_mean = 0.0
-bias_init_stdev = 1.0
-bias_replace_rate = 0.015
-bias_mutate_rate = 0.2
-bias_mutate_power = 0.15
-bias_max_value = 5.0
-bias_min_value = -5.0
-response_init_mean = 1.0
-response_init_stdev = 0.0
-response_replace_rate = 0.0
-response_mutate_rate = 0.0
-response_mutate_power = 0.0
-response_max_value = 5.0
-response_min_value = -5.0
-weight_init_mean = 0.0
-weight_init_stdev = 1.0
-weight_replace_rate = 0.015
-weight_mutate_rate = 0.2
-weight_mutate_power = 0.15
-weight_max_value = 5.0
-weight_min_value = -5.0
+{genes}
 enabled_default = True
 enabled_mutate_rate = 0.0
 [DefaultSpeciesSet]
@@ -67,44 +47,46 @@ elitism = 2
 survival_threshold = 0.1
 min_species_size = 1
 """
-"""TensorNEAT's defaults, as far as neat-python has them: what ours is given too."""
+"""TensorNEAT's defaults as far as neat-python has them, which ours use too."""
+
+LIMITS = {"max_value": 5.0, "min_value": -5.0}
+VARIED = {"init_mean": 0.0, "init_stdev": 1.0, "replace_rate": 0.015, "mutate_rate": 0.2}
+VARIED |= {"mutate_power": 0.15} | LIMITS
+FIXED = dict.fromkeys(VARIED, 0.0) | {"init_mean": 1.0} | LIMITS
+GENES = {"bias": VARIED, "weight": VARIED, "response": FIXED}
 
 
 class Theirs:
-    """A population of neat-python's that takes one generation after the other."""
+    """A population of neat-python's that advances by generations."""
 
     def __init__(self, peer: Any, size: int, hidden: int) -> None:
         with tempfile.NamedTemporaryFile("w", suffix=".cfg") as file:
-            file.write(CONFIG.format(size=size))
+            lines = (f"{gene}_{k} = {v}" for gene, own in GENES.items() for k, v in own.items())
+            file.write(CONFIG.format(size=size, genes="\n".join(lines)))
             file.flush()
-            self.config = peer.Config(
-                peer.DefaultGenome,
-                peer.DefaultReproduction,
-                peer.DefaultSpeciesSet,
-                peer.DefaultStagnation,
-                file.name,
-            )
+            names = ("Genome", "Reproduction", "SpeciesSet", "Stagnation")
+            self.config = peer.Config(*(getattr(peer, f"Default{n}") for n in names), file.name)
         random.seed(0)
         self.population = peer.Population(self.config)
         self._grow(hidden)
 
     def _grow(self, hidden: int) -> None:
-        """As `grown`: each network a copy of one of few ancestors, then varied."""
-        settings, people = self.config.genome_config, self.population.population
-        ancestors = list(people.values())[:LINES]
+        """Grow as `grown` does: copy a few ancestors, then vary each copy."""
+        settings, networks = self.config.genome_config, self.population.population
+        ancestors = list(networks.values())[:LINES]
         for one in ancestors:
             for _ in range(2 * hidden - STEPS_APART):
                 self._vary(one, settings)
-        for place, one in enumerate(people.values()):
+        for place, one in enumerate(networks.values()):
             if place >= LINES:
                 ancestor = ancestors[place % LINES]
                 one.nodes = {k: gene.copy() for k, gene in ancestor.nodes.items()}
                 one.connections = {k: gene.copy() for k, gene in ancestor.connections.items()}
-        for one in people.values():
+        for one in networks.values():
             for _ in range(STEPS_APART):
                 self._vary(one, settings)
         self.population.species.species.clear()
-        self.population.species.speciate(self.config, people, 0)
+        self.population.species.speciate(self.config, networks, 0)
 
     def _vary(self, network: Any, settings: Any) -> None:
         if random.random() < GROWTH.add_connection:
@@ -113,22 +95,22 @@ class Theirs:
             network.mutate_add_node(settings)
 
     def advance(self) -> float:
-        """The seconds of one generation."""
+        """Advance by one generation; return its seconds."""
         it, config = self.population, self.config
         for network in it.population.values():
             network.fitness = random.random()
-        began = time.perf_counter()
+        start = time.perf_counter()
         it.population = it.reproduction.reproduce(
             config, it.species, config.pop_size, it.generation
         )
         it.species.speciate(config, it.population, it.generation)
-        seconds = time.perf_counter() - began
+        seconds = time.perf_counter() - start
         it.generation += 1
         return seconds
 
     def sizes(self) -> tuple[float, float, int]:
         """Mean hidden nodes and connections, and the number of species."""
-        people = list(self.population.population.values())
-        nodes = statistics.mean(len(one.nodes) for one in people) - OUTPUTS
-        connections = statistics.mean(len(one.connections) for one in people)
+        networks = list(self.population.population.values())
+        nodes = statistics.mean(len(one.nodes) for one in networks) - OUTPUTS
+        connections = statistics.mean(len(one.connections) for one in networks)
         return nodes, connections, len(self.population.species.species)

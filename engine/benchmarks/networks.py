@@ -1,17 +1,18 @@
 """Time of a NEAT generation, relative to neat-python's, and of evaluating networks.
 
-Prints tables and asserts nothing. neat-python is compared with where it is installed: `make
-peers`. Both run interleaved in one process; compilation is printed and not counted.
+Prints tables and asserts nothing. `make peers` installs neat-python. Both libraries run
+interleaved in one process; the time of compilation is printed apart.
 """
 
 import importlib
-import importlib.util
 import statistics
+from functools import partial
 from types import ModuleType
+from typing import Any
 
 import jax
-import loops
 import neat_python
+import timing
 from populations import INPUTS, OUTPUTS, Ours, grown
 
 from microcosmos import device, genomes, search
@@ -19,13 +20,13 @@ from microcosmos import device, genomes, search
 POINTS = 64
 HIDDEN = (10, 30)
 SIZES = ((1_000, 11, 3), (10_000, 5, 1))
-"""Networks, and how often ours and neat-python are timed, which is slow."""
+"""Networks, and repeats of ours and of neat-python, which is slow."""
 FORWARD = 1_000
 
 
 def main() -> None:
     device.prepare()
-    peer = installed()
+    peer = importlib.import_module("neat") if timing.installed("neat") else None
     for size, *repeats in SIZES:
         for hidden in HIDDEN:
             compare(peer, size, hidden, *repeats)
@@ -33,52 +34,36 @@ def main() -> None:
         forward(hidden)
 
 
-def installed() -> ModuleType | None:
-    """neat-python, or None if it is not installed."""
-    if importlib.util.find_spec("neat"):
-        return importlib.import_module("neat")
-    print("neat-python is not installed: make peers\n")
-    return None
-
-
 def compare(peer: ModuleType | None, size: int, hidden: int, repeats: int, slow: int) -> None:
-    """A row each: the median time of a generation, and its ratio."""
+    """Print a row for each library: the median time of a generation, and its ratio."""
     ours = Ours(size, hidden)
-    theirs = neat_python.Theirs(peer, size, hidden) if peer else None
-    seconds: dict[str, list[float]] = {"ours": [], "neat-python": []}
+    libraries: dict[str, tuple[Any, int]] = {"ours": (ours, repeats)}
+    if peer:
+        libraries["neat-python"] = (neat_python.Theirs(peer, size, hidden), slow)
+    seconds: dict[str, list[float]] = {name: [] for name in libraries}
     for repeat in range(repeats):
-        seconds["ours"].append(ours.advance())
-        if theirs and repeat < slow:
-            seconds["neat-python"].append(theirs.advance())
-    print(f"next generation of {size:,} networks, {repeats} and {slow} repeats, interleaved")
-    for name, population in (("ours", ours), ("neat-python", theirs)):
-        if population:
-            nodes, connections, species = population.sizes()
-            print(
-                f"  {name:12} {1e3 * statistics.median(seconds[name]):9.1f} ms"
-                f"   hidden {nodes:5.1f}  connections {connections:5.1f}  species {species}"
-            )
-    if theirs:
-        ratio = statistics.median(seconds["neat-python"]) / statistics.median(seconds["ours"])
-        print(
-            f"  neat-python takes {ratio:.1f} times as long; compilation {ours.compiling:.1f} s"
-        )
-    print(flush=True)
+        for name, (population, count) in libraries.items():
+            if repeat < count:
+                seconds[name].append(population.advance())
+    rows, first = [], statistics.median(seconds["ours"])
+    for name, (population, _) in libraries.items():
+        nodes, connections, species = population.sizes()
+        median = statistics.median(seconds[name])
+        sizes = (f"{nodes:.1f}", f"{connections:.1f}", f"{species}")
+        rows.append((name, f"{1e3 * median:.1f}", f"{median / first:.1f}", *sizes))
+    title = f"Next generation of {size:,} networks, {repeats} and {slow} repeats, interleaved"
+    columns = ("", "ms", "× ours", "hidden nodes", "connections", "species")
+    timing.print_table(f"{title}; compilation {ours.compilation:.1f} s", columns, rows)
 
 
 def forward(hidden: int) -> None:
-    """Networks a second on a batch of points, as creatures are evaluated."""
+    """Print the networks per second on a batch of points, evaluated as creatures are."""
     networks, _ = grown(FORWARD, hidden)
     points = jax.random.normal(jax.random.key(1), (INPUTS, POINTS))
-    program = jax.jit(
-        lambda networks: search.mapped(
-            lambda n: genomes.evaluate(n, points, OUTPUTS), networks
-        ),
-        compiler_options=device.compiler_options(),
-    )
+    evaluate = partial(search.mapped, lambda n: genomes.evaluate(n, points, OUTPUTS))
+    program = jax.jit(evaluate, compiler_options=device.compiler_options())
     jax.block_until_ready(program(networks))
-    seconds = [loops.seconds(program, networks) for _ in range(11)]
-    rate = FORWARD / statistics.median(seconds)
+    rate = FORWARD / statistics.median(timing.seconds(program, networks) for _ in range(11))
     print(f"forward, {hidden} hidden nodes: {rate:,.0f} networks × {POINTS} points a second")
 
 

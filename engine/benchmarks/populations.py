@@ -1,7 +1,8 @@
-"""Populations of networks, grown to a size, that take one generation after the other."""
+"""Populations of networks, grown to a size, that advance by generations."""
 
 import time
 from dataclasses import replace
+from functools import partial
 
 import jax
 import jax.numpy as jnp
@@ -11,58 +12,36 @@ from microcosmos import genomes, neat
 
 INPUTS, OUTPUTS, NODES, CONNECTIONS = 4, 2, 50, 100
 LINES, STEPS_APART = 8, 3
-"""Networks descend from so many ancestors, and vary on their own so often since."""
+"""The number of ancestors, and of variations since their copies diverged."""
 SETTINGS = neat.PRESETS["tensorneat"]
 GROWTH = replace(SETTINGS.rates, add_node=0.5, add_connection=0.3, blind=False)
 GROWTH = replace(GROWTH, delete_node=0.0, delete_connection=0.0)
 
 
-@jax.jit
-def divide(networks):
-    return neat.first_species(networks, SETTINGS)
-
-
-@jax.jit
-def follow(networks, fitness, species, counters, generation):
-    return neat.next_generation(
-        networks,
-        fitness,
-        species,
-        counters,
-        SETTINGS,
-        inputs=INPUTS,
-        outputs=OUTPUTS,
-        key=jax.random.key(1),
-        generation=generation,
-    )
+first_species = jax.jit(partial(neat.first_species, settings=SETTINGS))
+next_generation = jax.jit(
+    partial(neat.next_generation, settings=SETTINGS, inputs=INPUTS, outputs=OUTPUTS)
+)
 
 
 class Ours:
-    """A population of ours that takes one generation after the other."""
+    """A population of ours that advances by generations."""
 
     def __init__(self, size: int, hidden: int) -> None:
         self.networks, self.counters = grown(size, hidden)
-        self.species = divide(self.networks)
+        self.species = first_species(self.networks)
         self.generation = 0
         self.random = np.random.default_rng(0)
-        began = time.perf_counter()
-        self.advance()
-        self.compiling = time.perf_counter() - began
+        self.compilation = self.advance()
 
     def advance(self) -> float:
-        """The seconds of one generation."""
+        """Advance by one generation; return its seconds."""
         fitness = jnp.float32(self.random.random(len(self.networks.weight)))
-        began = time.perf_counter()
-        after = jax.block_until_ready(
-            follow(
-                self.networks,
-                fitness,
-                self.species,
-                self.counters,
-                jnp.asarray(self.generation),
-            )
-        )
-        seconds = time.perf_counter() - began
+        now = (self.networks, fitness, self.species, self.counters)
+        clock = {"key": jax.random.key(1), "generation": jnp.asarray(self.generation)}
+        start = time.perf_counter()
+        after = jax.block_until_ready(next_generation(*now, **clock))
+        seconds = time.perf_counter() - start
         self.networks, self.species, self.counters = after[:3]
         self.generation += 1
         return seconds
@@ -75,7 +54,7 @@ class Ours:
 
 
 def grown(size: int, hidden: int) -> tuple[genomes.CPPN, neat.Counters]:
-    """Networks of about so many hidden nodes, from a few ancestors."""
+    """Grow networks of about `hidden` hidden nodes from a few ancestors."""
     minimal = jax.vmap(lambda k: neat.minimal(k, INPUTS, OUTPUTS, NODES, CONNECTIONS))
     networks = minimal(jax.random.split(jax.random.key(0), size))
     counters = neat.first_counters(INPUTS, OUTPUTS)

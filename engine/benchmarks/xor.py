@@ -1,7 +1,7 @@
-"""XOR by NEAT as in the paper that brought it: how often, and after how many evaluations.
+"""XOR by NEAT as in the original paper: success rate, and evaluations until the solution.
 
 Stanley and Miikkulainen, Evolutionary Computation 10, 99 (2002), section 4.1. Prints a table
-and asserts nothing; an argument says how many seeds.
+and asserts nothing; an argument is the number of seeds.
 """
 
 import sys
@@ -11,6 +11,7 @@ from functools import partial
 import jax
 import jax.numpy as jnp
 import numpy as np
+import timing
 
 from microcosmos import device, genomes, neat
 
@@ -21,9 +22,9 @@ ROOM = (16, 40)
 STEEPNESS = 4.9
 """Slope of the paper's sigmoid; here weights and biases are multiplied by it."""
 GENERATIONS = 90
-"""As many as the paper's slowest run took."""
+"""The generations of the paper's slowest run."""
 FIRST_SEED = 1000
-"""Settings were chosen with smaller ones."""
+"""Smaller seeds served to choose the settings."""
 
 
 def main() -> None:
@@ -35,32 +36,29 @@ def xor(seeds: int) -> None:
     keys = jax.vmap(jax.random.key)(FIRST_SEED + jnp.arange(seeds))
     results = np.stack(jax.device_get(jax.jit(partial(jax.lax.map, solve))(keys)), 1)
     done = results[:, 0] > 0
-    evaluations, hidden = XOR.population * results[done, 1], results[done, 2]
-    print(f"XOR: solved with {done.sum()} of {seeds} seeds in {GENERATIONS} generations")
-    print("  evaluations           median     mean    worst   hidden nodes")
-    print(
-        f"  ours              {np.median(evaluations):10,.0f} {evaluations.mean():8,.0f}"
-        f" {evaluations.max():8,.0f}   {hidden.mean():.2f}"
-    )
-    print("  paper, 100 runs            –    4,755   13,459   2.35")
+    evaluations, hidden = XOR.population * results[done, 1], results[done, 2].mean()
+    figures = (np.median(evaluations), evaluations.mean(), evaluations.max())
+    rows = [
+        ("ours", *(f"{figure:,.0f}" for figure in figures), f"{hidden:.2f}"),
+        ("paper, 100 runs", "–", "4,755", "13,459", "2.35"),
+    ]
+    title = f"XOR: solved with {done.sum()} of {seeds} seeds in {GENERATIONS} generations"
+    columns = ("evaluations", "median", "mean", "worst", "hidden nodes")
+    timing.print_table(title, columns, rows)
 
 
 def solve(key: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:
     """Success, generations evaluated, and hidden nodes of the solution."""
     step = partial(neat.next_generation, settings=XOR, inputs=INPUTS, outputs=1, key=key)
-    networks = jax.vmap(beginner)(jax.random.split(key, XOR.population))
-    start = (
-        networks,
-        neat.first_species(networks, XOR),
-        neat.first_counters(INPUTS, 1),
-        jnp.asarray(0),
-        jnp.asarray(False),
-        jnp.asarray(0),
-    )
+    minimal = jax.vmap(lambda k: neat.minimal(k, INPUTS, 1, *ROOM, XOR.rates.palette))
+    networks = minimal(jax.random.split(key, XOR.population))
+    species, counters = neat.first_species(networks, XOR), neat.first_counters(INPUTS, 1)
+    zero = jnp.asarray(0)
+    start = (networks, species, counters, zero, jnp.asarray(False), zero)
 
     def advance(state):
         networks, species, counters, generation, _, _ = state
-        fitness, right = jax.vmap(judge)(networks)
+        fitness, right = jax.vmap(score)(networks)
         hidden = jnp.sum(networks.node_used[jnp.argmax(right)]) - INPUTS - 1
         after = step(networks, fitness, species, counters, generation=generation)
         return (*after[:3], generation + 1, jnp.any(right), hidden)
@@ -69,13 +67,8 @@ def solve(key: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:
     return end[4], end[3], end[5]
 
 
-def beginner(key: jax.Array) -> genomes.CPPN:
-    """A minimal network of sigmoids."""
-    return neat.minimal(key, INPUTS, 1, *ROOM, XOR.rates.palette)
-
-
-def judge(network: genomes.CPPN) -> tuple[jax.Array, jax.Array]:
-    """The paper's fitness, (4 − Σ|error|)², and whether all four answers are right."""
+def score(network: genomes.CPPN) -> tuple[jax.Array, jax.Array]:
+    """Return the paper's fitness, (4 − Σ|error|)², and if all four outputs are right."""
     steep = replace(network, weight=STEEPNESS * network.weight, bias=STEEPNESS * network.bias)
     out = genomes.evaluate(steep, jnp.float32(CORNERS), 1)[0]
     expected = jnp.float32(EXPECTED)

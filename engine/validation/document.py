@@ -1,4 +1,4 @@
-"""The document of the checks: text, tables and figures."""
+"""The validation document: text, tables and figures."""
 
 import textwrap
 from pathlib import Path
@@ -7,7 +7,7 @@ import jax
 import numpy as np
 from matplotlib.figure import Figure
 
-from .rows import Found, Plot, Row
+from .rows import Plot, Result, Row
 from .suite import Section
 
 HEAD = """# Validation
@@ -18,14 +18,14 @@ them reduced. All values are in lattice units, and in float32 unless stated. A l
 """
 
 
-def document(found: list[tuple[Section, Found]], pictures: str) -> str:
-    """The whole text; figures lie in the folder `pictures` as seen from it."""
-    rows = [row for _, one in found for row in one.rows]
-    missed = [row for row in rows if not row.passed]
-    verdict = "all pass" if not missed else f"**{len(missed)} FAIL**"
+def document(results: list[tuple[Section, Result]], pictures: str) -> str:
+    """Return the whole text; `pictures` is the figures' folder relative to it."""
+    rows = [row for _, result in results for row in result.rows]
+    failed = sum(not row.passed for row in rows)
+    verdict = f"**{failed} FAIL**" if failed else "all pass"
     machine = f"jax {jax.__version__}, {jax.default_backend()}"
     parts = [HEAD, f"{len(rows)} lines, {verdict}. {machine}.\n"]
-    parts += [_section(section, one, pictures) for section, one in found]
+    parts += [_section(section, result, pictures) for section, result in results]
     return "\n".join(parts)
 
 
@@ -33,11 +33,11 @@ def figure_name(plot: str) -> str:
     return f"validation-{plot}.png"
 
 
-def _section(section: Section, found: Found, pictures: str) -> str:
+def _section(section: Section, result: Result, pictures: str) -> str:
     lines = [f"## {section.title}\n", textwrap.fill(section.text, 100), ""]
     lines += ["| quantity | reference | here | bar | |", "|---|---|---|---|---|"]
-    lines += [_line(row) for row in found.rows]
-    for plot in found.plots:
+    lines += [_line(row) for row in result.rows]
+    for plot in result.plots:
         path = Path(pictures) / figure_name(plot.name)
         lines.append(f"\n![{section.title}: {plot.y} against {plot.x}]({path.as_posix()})")
     return "\n".join(lines) + "\n"
@@ -48,7 +48,7 @@ def _line(row: Row) -> str:
     if row.reference is not None:
         reference = f"{row.reference:.4g} ({row.source})"
     verdict = "pass" if row.passed else "**FAIL**"
-    return f"| {row.quantity} | {reference} | {row.here:.4g} | {row.bar} | {verdict} |"
+    return f"| {row.quantity} | {reference} | {row.value:.4g} | {row.bar} | {verdict} |"
 
 
 def save(plot: Plot, path: Path) -> None:
@@ -57,9 +57,7 @@ def save(plot: Plot, path: Path) -> None:
     axes = figure.add_subplot(xlabel=plot.x, ylabel=plot.y)
     if plot.image is not None:
         reach = float(np.percentile(np.abs(plot.image), 99.5))
-        axes.imshow(
-            plot.image.T, origin="lower", cmap="RdBu_r", vmin=-reach, vmax=reach, aspect="equal"
-        )
+        axes.imshow(plot.image.T, origin="lower", cmap="RdBu_r", vmin=-reach, vmax=reach)
     for line in plot.lines:
         axes.plot(line.x, line.y, line.style, label=line.name or None)
     if "x" in plot.logarithmic:

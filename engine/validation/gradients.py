@@ -1,50 +1,36 @@
 """Gradients through coupled steps against central differences."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 
-from microcosmos import bodies, fields, filaments, world
+from microcosmos import fields, filaments, world
 
 from . import scenes
-from .rows import Found, at_least, at_most, holds, precision
+from .rows import Result, Row, at_least, at_most, holds
 
 H = 1e-5
-"""Step of the differences: larger, their own error shows; smaller, rounding does."""
+"""Step of the differences: a larger one has a larger error, a smaller one more rounding."""
 
 SOURCE = "central differences"
-
-
-@dataclass(frozen=True)
-class Setting:
-    """A scene of two chains side by side."""
-
-    name: str
-    fields: bool
-    """Steric repulsion and energy, which diffuses and is consumed."""
-
-
-PLAIN = Setting("plain", False)
-FIELDS = Setting("with steric and energy", True)
+PLAIN, FIELDS = "plain", "with steric and energy"
+"""Scenes of two chains side by side; energy diffuses and is consumed."""
 INACTIVE, ACTIVE = (1e3, 1e3), (0.01, 0.005)
 """Limits of displacement and force."""
 
 
-def scene(setting: Setting, steps: int, dtype: Any):
-    """The function to differentiate, and its inputs: joint amplitudes and viscosity.
+def scene(setting: str, steps: int, dtype: Any):
+    """Return the function to differentiate, and its inputs: joint amplitudes and viscosity.
 
-    It also takes limits, and returns the share of nodes at a limit beside its value.
+    The function also takes limits; it returns a value and the share of nodes at a limit.
     """
-    size = (48, 48)
-    one = bodies.chain(16, 1.0)
-    pair = bodies.together([bodies.placed(one, (0.0, y)) for y in (-1.0, 1.0)])
+    size, pair = (48, 48), scenes.parallel_chains(16, 2.0)
     options: dict[str, Any] = {}
-    if setting.fields:
-        strength, limit = (jnp.asarray(x, dtype) for x in (0.2, 0.1))
-        options["steric"] = fields.Steric(strength, limit, fields.gaussian)
+    if setting == FIELDS:
+        options["steric"] = scenes.steric(0.2, dtype)
         packets = fields.packets(size, fields.Packets(6, 4.0, 1.0, 0))
         rates = (jnp.asarray(x, dtype) for x in (0.05, 0.1))
         options["energy"] = fields.Energy(jnp.asarray(packets, dtype), *rates)
@@ -67,8 +53,9 @@ def scene(setting: Setting, steps: int, dtype: Any):
     return outcome, (jnp.full(len(pair.joints), 0.15, dtype), box.viscosity)
 
 
-def compare(setting: Setting, steps: int, dtype: Any) -> Found:
+def compare(setting: str, steps: int) -> list[Row]:
     """Slopes along a direction, for each kind of input, and gradients where limits act."""
+    dtype = jnp.dtype("float64")
     outcome, inputs = scene(setting, steps, dtype)
     inactive, active = (
         tuple(jnp.asarray(x, dtype) for x in limits) for limits in (INACTIVE, ACTIVE)
@@ -76,7 +63,7 @@ def compare(setting: Setting, steps: int, dtype: Any) -> Found:
     value, slopes = jax.jit(outcome), jax.jit(jax.grad(outcome, has_aux=True))
     gradient, _ = slopes(inputs, inactive)
     direction = jnp.asarray(np.random.default_rng(1).normal(size=inputs[0].shape), dtype)
-    rows, over = [], f"{setting.name}, {steps} steps"
+    rows, over = [], f"{setting}, {steps} steps"
     for name, along in {
         "angles": (direction, jnp.zeros((), dtype)),
         "viscosity": (jnp.zeros_like(direction), jnp.asarray(0.1, dtype)),
@@ -93,12 +80,9 @@ def compare(setting: Setting, steps: int, dtype: Any) -> Found:
     rows.append(holds(f"gradients are finite with limits, {over}", fact, "definition"))
     share = "share of nodes and steps at a limit then"
     rows.append(at_least(share, float(held), 0.1, 1.0, "if always"))
-    return Found(rows)
+    return rows
 
 
-def check(steps: int = 200, settings: tuple[Setting, ...] = (PLAIN, FIELDS)) -> Found:
-    rows = []
-    for setting in settings:
-        with precision("float64") as dtype:
-            rows += compare(setting, steps, dtype).rows
-    return Found(rows)
+def check(steps: int = 200, settings: tuple[str, ...] = (PLAIN, FIELDS)) -> Result:
+    with jax.enable_x64(True):
+        return Result([row for setting in settings for row in compare(setting, steps)])

@@ -2,21 +2,10 @@
 
 from collections.abc import Callable
 
-import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from microcosmos import coupling, fluid, groups
-
-
-class Answer(eqx.Module):
-    """The fluid after a step, and the motion and force of the nodes."""
-
-    populations: fluid.Populations
-    velocity: Float[Array, "node 2"]
-    """Velocity of the nodes: the target without the part that the projection removed."""
-    given: Float[Array, "2"]
-    """The momentum that the fluid received from all nodes."""
 
 
 def step(
@@ -27,9 +16,12 @@ def step(
     *,
     surroundings: fluid.Surroundings,
     projection: Callable,
-    iterations: int,
-) -> Answer:
-    """One step of the fluid with nodes at `positions` that are to move with `target`."""
+) -> tuple[fluid.Populations, Float[Array, "node 2"], Float[Array, "2"]]:
+    """Carry out one step with nodes at `positions` that are to move with `target`.
+
+    Return the fluid, the nodes' velocity (the target without the part that the projection
+    removes), and the momentum that the fluid receives from all nodes.
+    """
     rho, momentum = fluid.density(f), fluid.momentum(f)
     at = coupling.windows(positions, rho.shape)
     forced = coupling.multi_direct_forcing(
@@ -39,13 +31,13 @@ def step(
         rho,
         at,
         groups=groups.one(len(positions)),
-        iterations=iterations,
+        iterations=5,
         projection=projection,
         limit=None,
     )
     force = 2.0 * coupling.spread(forced.forcing, at, rho.shape)
     f = fluid.advance(f, rho, momentum, force, rates, surroundings)
-    return Answer(f, forced.target, 2.0 * jnp.sum(forced.forcing, 0))
+    return f, forced.target, 2.0 * jnp.sum(forced.forcing, 0)
 
 
 def circle(radius: float, centre: tuple[float, float], dtype) -> Float[Array, "node 2"]:

@@ -1,31 +1,18 @@
-"""Rows and plots of the document, and the precision of a check."""
+"""Rows and plots of the validation document."""
 
 import math
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
 
-import jax
-import jax.numpy as jnp
 import numpy as np
-
-Precision = Literal["float32", "float64"]
-
-
-@contextmanager
-def precision(name: Precision) -> Iterator[Any]:
-    """Let JAX compute with numbers of this type, which is yielded."""
-    with jax.enable_x64(name == "float64"):
-        yield jnp.dtype(name)
 
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the table; it passes where `here` lies between `low` and `high`."""
+    """One line of the table; it passes if `value` lies between `low` and `high`."""
 
     quantity: str
-    here: float
+    value: float
     low: float
     high: float
     bar: str
@@ -34,42 +21,28 @@ class Row:
 
     @property
     def passed(self) -> bool:
-        return math.isfinite(self.here) and self.low <= self.here <= self.high
+        return math.isfinite(self.value) and self.low <= self.value <= self.high
 
 
-def at_most(quantity: str, here: float, bar: float, source: str) -> Row:
+def at_most(quantity: str, value: float, bar: float, source: str) -> Row:
     """An error, whose reference is zero."""
-    return Row(quantity, float(here), 0.0, bar, f"≤ {bar:g}", 0.0, source)
+    return Row(quantity, float(value), 0.0, bar, f"≤ {bar:g}", 0.0, source)
 
 
-def at_least(quantity: str, here: float, bar: float, reference: float, source: str) -> Row:
+def at_least(quantity: str, value: float, bar: float, reference: float, source: str) -> Row:
     """A number with a lower bound."""
-    return Row(quantity, float(here), bar, math.inf, f"≥ {bar:g}", reference, source)
+    return Row(quantity, float(value), bar, math.inf, f"≥ {bar:g}", reference, source)
 
 
-def close(quantity: str, here: float, reference: float, share: float, source: str) -> Row:
+def close(quantity: str, value: float, reference: float, share: float, source: str) -> Row:
     """A number within a share of a published or exact one."""
-    reach = abs(reference) * share
+    reach, bar = abs(reference) * share, f"± {100 * share:g} %"
     low, high = reference - reach, reference + reach
-    bar = f"± {100 * share:g} %"
-    return Row(quantity, float(here), low, high, bar, float(reference), source)
-
-
-def between(
-    quantity: str,
-    here: float,
-    low: float,
-    high: float,
-    reference: float,
-    source: str,
-) -> Row:
-    """A number within uneven bounds around the reference."""
-    bar = f"{low:g} to {high:g}"
-    return Row(quantity, float(here), low, high, bar, float(reference), source)
+    return Row(quantity, float(value), low, high, bar, float(reference), source)
 
 
 def holds(quantity: str, fact: bool, source: str) -> Row:
-    """A fact, as 1 or 0."""
+    """A statement: 1 if it is true, else 0."""
     return Row(quantity, float(fact), 1.0, 1.0, "yes", 1.0, source)
 
 
@@ -97,12 +70,12 @@ class Plot:
 
 
 @dataclass(frozen=True)
-class Found:
+class Result:
     """The rows and plots of a check."""
 
     rows: list[Row]
     plots: list[Plot] = field(default_factory=list)
 
     @property
-    def missed(self) -> list[Row]:
+    def failed(self) -> list[Row]:
         return [row for row in self.rows if not row.passed]

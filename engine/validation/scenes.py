@@ -6,12 +6,22 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from microcosmos import bodies, coupling, filaments, groups, world
+from microcosmos import bodies, coupling, fields, filaments, groups, world
 from microcosmos.bodies import swimmers
 from microcosmos.build import build_rods
 
 LITERAL = world.Form(projection=coupling.unprojected, theta_feedback=0.0, forcing_iterations=1)
 """The paper's literal form: a body can push itself and ignore the flow."""
+
+
+def parallel_chains(nodes: int, gap: float) -> bodies.Body:
+    """Two straight chains, one above the other."""
+    one = bodies.chain(nodes, 1.0)
+    return bodies.together([bodies.placed(one, (0.0, y)) for y in (-gap / 2, gap / 2)])
+
+
+def steric(strength: float, dtype: Any, gradient: Any = fields.gaussian) -> fields.Steric:
+    return fields.Steric(jnp.asarray(strength, dtype), jnp.asarray(0.1, dtype), gradient)
 
 
 def immersed(
@@ -79,16 +89,10 @@ def _positions(box, start, shapes):
 
 def recorded(box: world.World, start: world.State, shapes: filaments.Rest) -> np.ndarray:
     """Positions at the start and after every step, in float64."""
-    seen = _positions(box, start, shapes)
-    return np.concatenate([np.asarray(start.positions)[None], seen]).astype(float)
+    later = _positions(box, start, shapes)
+    return np.concatenate([np.asarray(start.positions)[None], later]).astype(float)
 
 
 def displacement(positions: np.ndarray) -> np.ndarray:
     """Displacement of the mean position, from the first to the last."""
     return positions[-1].mean(0) - positions[0].mean(0)
-
-
-def mean_path(positions: np.ndarray) -> float:
-    """Mean length of the nodes' paths."""
-    moves = np.diff(positions, axis=0)
-    return float(np.mean(np.sum(np.hypot(moves[..., 0], moves[..., 1]), 0)))

@@ -11,7 +11,7 @@ from microcosmos import bodies, filaments
 from microcosmos.bodies import swimmers
 from microcosmos.build import build_rods
 
-from .rows import Found, at_most, precision
+from .rows import Result, at_most
 
 REST = "rest shape"
 
@@ -19,11 +19,10 @@ REST = "rest shape"
 def projected(
     body: bodies.Body, positions: np.ndarray, iterations: int, dtype: Any
 ) -> np.ndarray:
-    """Positions after so many sweeps from `positions` towards the rest shape."""
+    """Return the positions after some sweeps towards the rest shape."""
     rods = build_rods(body, dtype)
-    rest = filaments.Rest(
-        jnp.asarray(body.rest_angle, dtype), jnp.asarray(body.rest_length, dtype)
-    )
+    shape = (body.rest_angle, body.rest_length)
+    rest = filaments.Rest(*(jnp.asarray(values, dtype) for values in shape))
     start = jnp.asarray(positions, dtype)
     project = jax.jit(filaments.project, static_argnames="iterations")
     angles = filaments.edge_angles(start, rods)
@@ -54,16 +53,14 @@ def branched(noise: float, iterations: int, dtype: Any, seed: int = 0) -> tuple[
     return errors(body, projected(body, body.positions + noise * moved, iterations, dtype))
 
 
-def check(nodes: int = 32, iterations: int = 1000) -> Found:
-    with precision("float32") as dtype:
-        bend, _ = circle(nodes, iterations, dtype)
-    with precision("float64") as dtype:
-        angles, lengths = branched(0.3, iterations, dtype)
+def check(nodes: int = 32, iterations: int = 1000) -> Result:
+    bend, _ = circle(nodes, iterations, "float32")
+    with jax.enable_x64(True):
+        angles, lengths = branched(0.3, iterations, "float64")
     sweeps = f"after {iterations:,} sweeps"
-    return Found(
-        [
-            at_most(f"chain to circle, {sweeps}: joint error (rad)", bend, 2e-3, REST),
-            at_most(f"ring with branches, {sweeps}: angles (rad)", angles, 1e-5, REST),
-            at_most(f"ring with branches, {sweeps}: lengths", lengths, 1e-5, REST),
-        ]
-    )
+    rows = [
+        at_most(f"chain to circle, {sweeps}: joint error (rad)", bend, 2e-3, REST),
+        at_most(f"ring with branches, {sweeps}: angles (rad)", angles, 1e-5, REST),
+        at_most(f"ring with branches, {sweeps}: lengths", lengths, 1e-5, REST),
+    ]
+    return Result(rows)

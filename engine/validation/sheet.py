@@ -1,7 +1,7 @@
 """Taylor's swimming sheet: a transverse wave that travels along a sheet drives it.
 
-G. I. Taylor, Proc. R. Soc. A 209, 447 (1951): to fourth order in the amplitude, without
-inertia. E. O. Tuck, J. Fluid Mech. 31, 305 (1968): how inertia lowers the second order.
+To fourth order in the amplitude, without inertia: G. I. Taylor, Proc. R. Soc. A 209, 447
+(1951). Inertia lowers the second order: E. O. Tuck, J. Fluid Mech. 31, 305 (1968).
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ import numpy as np
 from microcosmos import coupling, fluid
 
 from . import immersed
-from .rows import Found, Line, Plot, at_least, holds
+from .rows import Line, Plot, Result, at_least, holds
 
 SOURCE = "Taylor 1951, Tuck 1968"
 
@@ -48,16 +48,17 @@ def theory(sheet: Sheet) -> float:
 
 
 def speed(sheet: Sheet, periods: int) -> float:
-    """The same of a force-free sheet of nodes, over the last period.
+    """Measure the speed of a force-free sheet of nodes over the last period.
 
-    The wave is prescribed in the sheet's own frame; what the projection takes from the
-    nodes' velocity to make the sheet free of force moves it.
+    The wave is prescribed in the sheet's own frame. To make the sheet free of force, the
+    projection subtracts a velocity from the nodes, which moves the sheet.
     """
     dtype, nodes = jnp.dtype("float32"), sheet.wavelength
     period = round(2 * np.pi / sheet.frequency)
     rates = fluid.rates(jnp.asarray(sheet.viscosity, dtype), fluid.fixed_magic)
     along = jnp.arange(nodes, dtype=dtype)
     middle = jnp.asarray([0.0, sheet.height // 2], dtype)
+    options = {"surroundings": fluid.Surroundings(), "projection": coupling.force_free}
 
     def shape(time):
         turn = 2 * jnp.pi * (along / nodes - time / period)
@@ -67,45 +68,33 @@ def speed(sheet: Sheet, periods: int) -> float:
         f, place = carry
         here = shape(time)
         wanted = shape(time + 1) - here
-        answer = immersed.step(
-            f,
-            here + place[None],
-            wanted,
-            rates,
-            surroundings=fluid.Surroundings(),
-            projection=coupling.force_free,
-            iterations=5,
-        )
-        moved = jnp.mean(answer.velocity - wanted, 0)
-        far = jnp.mean(fluid.momentum(answer.populations)[0][:, 0])
-        return (answer.populations, place + moved), far - moved[0]
+        f, velocity, _ = immersed.step(f, here + place[None], wanted, rates, **options)
+        moved = jnp.mean(velocity - wanted, 0)
+        far = jnp.mean(fluid.momentum(f)[0][:, 0])
+        return (f, place + moved), far - moved[0]
 
     still = tuple(jnp.zeros((sheet.wavelength, sheet.height), dtype) for _ in range(9))
     times = jnp.arange(periods * period) % period
-    _, seen = jax.jit(lambda carry: jax.lax.scan(step, carry, times.astype(dtype)))(
-        (still, middle)
-    )
-    return float(np.mean(np.asarray(seen[-period:], float)))
+    program = jax.jit(lambda carry: jax.lax.scan(step, carry, times.astype(dtype)))
+    _, speeds = program((still, middle))
+    return float(np.mean(np.asarray(speeds[-period:], float)))
 
 
 SHEETS = (Sheet(32, 64, 1.0), Sheet(64, 128, 2.0), Sheet(128, 256, 4.0))
 BARS = {32: 0.65, 64: 0.83, 128: 0.92}
 
 
-def check(sheets: tuple[Sheet, ...] = SHEETS, periods: int = 2) -> Found:
+def check(sheets: tuple[Sheet, ...] = SHEETS, periods: int = 2) -> Result:
     """The delta thickens the sheet, an error that falls with the wavelength in cells."""
     ratios = [speed(sheet, periods) / theory(sheet) for sheet in sheets]
     lengths = [sheet.wavelength for sheet in sheets]
+    what = "swimming sheet, wavelength {}: speed over theory"
     rows = [
-        at_least(
-            f"swimming sheet, wavelength {n}: speed over theory", ratio, BARS[n], 1.0, SOURCE
-        )
+        at_least(what.format(n), ratio, BARS[n], 1.0, SOURCE)
         for n, ratio in zip(lengths, ratios, strict=True)
     ]
-    rows.append(
-        holds("the sheet's speed rises with the wavelength", ratios == sorted(ratios), SOURCE)
-    )
+    rises = ratios == sorted(ratios)
+    rows.append(holds("the sheet's speed rises with the wavelength", rises, SOURCE))
     lines = (Line("here", lengths, ratios, "o-"), Line("theory", lengths, [1.0] * len(ratios)))
-    return Found(
-        rows, [Plot("sheet", "wavelength in cells", "speed / theory", lines, None, "x")]
-    )
+    plot = Plot("sheet", "wavelength in cells", "speed / theory", lines, None, "x")
+    return Result(rows, [plot])

@@ -4,16 +4,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from . import bodies, cylinder, flows, gradients, shapes, sheet, sweep, swimmers
-from .rows import Found
+from .rows import Result
 
 
 @dataclass(frozen=True)
 class Section:
-    """A subject of the document: what is said about it, and what is measured."""
+    """A section of the document: its title, its text and its checks."""
 
     title: str
     text: str
-    checks: tuple[Callable[[], Found], ...]
+    checks: tuple[Callable[[], Result], ...]
 
 
 SECTIONS = (

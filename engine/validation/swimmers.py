@@ -1,11 +1,10 @@
 """Swimmers against Stokes flow, the scallop theorem and Newton's third law.
 
-Stokes flow in the same periodic box is solved independently by Fourier series. The nodes act on
-it through the same delta; neither viscosity nor time matters: a body goes where its sequence
-of shapes leads it.
+Fourier series solve Stokes flow in the same periodic box independently. The nodes act on it
+through the same delta. Neither viscosity nor time matters: the sequence of shapes alone
+determines the motion.
 """
 
-from functools import partial
 from typing import Any
 
 import jax
@@ -16,30 +15,27 @@ from microcosmos import coupling, filaments, fluid, world
 from microcosmos.bodies import swimmers
 
 from . import scenes
-from .rows import Found, Precision, at_most, close, precision
+from .rows import Result, at_most, close
 
 PURCELL = "scallop theorem, Purcell 1977"
+SIZE = (64, 64)
 
 
-def worm_against_stokes(
-    viscosity: float, period: int, dtype: Any, *, samples: int = 50
-) -> tuple[float, float]:
-    """Cells in the second cycle of a worm, and in Stokes flow by the same shapes."""
-    swimmer, size = swimmers.worm(), (64, 64)
-    box, start = scenes.immersed(swimmer.body, viscosity, dtype, size=size)
+def second_cycle(
+    swimmer: swimmers.Swimmer, viscosity: float, period: int, dtype: Any, **options: Any
+) -> np.ndarray:
+    """Positions from the start of a swimmer's second cycle to its end."""
+    box, start = scenes.immersed(swimmer.body, viscosity, dtype, **options)
     gait = scenes.stroke(swimmer, period, 2, dtype)
-    cycle = scenes.recorded(box, start, gait)[-period - 1 :]
-    expected = stokes_displacement(cycle, size, samples)
-    return float(scenes.displacement(cycle)[0]), float(expected[0])
+    return scenes.recorded(box, start, gait)[-period - 1 :]
 
 
-def scallop_share(dtype: Any, *, period: int = 400, **options: Any) -> float:
+def scallop_share(dtype: Any, **options: Any) -> float:
     """Displacement over path in the second cycle of a reciprocal swimmer at ν = 2."""
-    swimmer = swimmers.ray()
-    box, start = scenes.immersed(swimmer.body, 2.0, dtype, **options)
-    gait = scenes.stroke(swimmer, period, 2, dtype)
-    cycle = scenes.recorded(box, start, gait)[-period - 1 :]
-    return float(np.hypot(*scenes.displacement(cycle)) / scenes.mean_path(cycle))
+    cycle = second_cycle(swimmers.ray(), 2.0, 400, dtype, **options)
+    moves = np.diff(cycle, axis=0)
+    path = np.mean(np.sum(np.hypot(moves[..., 0], moves[..., 1]), 0))
+    return float(np.hypot(*scenes.displacement(cycle)) / path)
 
 
 @jax.jit
@@ -51,97 +47,87 @@ def _momenta(box, start, shapes):
 
 
 def largest_impulse(box: world.World, start: world.State, shapes: filaments.Rest) -> float:
-    """The largest sum of forces, accumulated over time, that bodies gave the fluid.
-
-    Not a number if the bodies did not stay finite.
-    """
-    end, given = _momenta(box, start, shapes)
-    largest = np.sqrt(np.max(np.sum(np.asarray(given, float) ** 2, 1)))
+    """The largest impulse that bodies give the fluid; NaN if they do not stay finite."""
+    end, impulses = _momenta(box, start, shapes)
+    largest = np.sqrt(np.max(np.sum(np.asarray(impulses, float) ** 2, 1)))
     return float(largest) if np.all(np.isfinite(end.positions)) else float("nan")
 
 
 def check_worm(
     cases: tuple[tuple[float, int, float], ...] = ((0.5, 2000, 0.05), (2.0, 2000, 0.08)),
     samples: int = 50,
-    name: Precision = "float32",
-) -> Found:
-    """Each case is a viscosity, a period in steps and a bar."""
+) -> Result:
+    """The worm's second cycle against Stokes flow; cases are viscosity, period and bar."""
     rows = []
     for viscosity, period, share in cases:
-        with precision(name) as dtype:
-            here, expected = worm_against_stokes(viscosity, period, dtype, samples=samples)
+        cycle = second_cycle(swimmers.worm(), viscosity, period, "float32", size=SIZE)
+        far, expected = scenes.displacement(cycle)[0], stokes_displacement(cycle, samples)[0]
         what = f"worm, ν {viscosity:g}, {period} steps a cycle: cells a cycle"
-        rows.append(close(what, here, expected, share, "spectral Stokes flow, same shapes"))
-    return Found(rows)
+        rows.append(close(what, far, expected, share, "spectral Stokes flow, same shapes"))
+    return Result(rows)
 
 
-def check_scallop(name: Precision = "float32") -> Found:
-    with precision(name) as dtype:
-        share = scallop_share(dtype)
-    return Found(
-        [at_most("reciprocal swimmer, ν 2: displacement / path", share, 0.015, PURCELL)]
-    )
+def check_scallop(dtype: Any = "float32") -> Result:
+    what = "reciprocal swimmer, ν 2: displacement / path"
+    return Result([at_most(what, scallop_share(dtype), 0.015, PURCELL)])
 
 
 def check_impulse(
     names: tuple[str, ...] = tuple(swimmers.SWIMMERS),
     viscosities: tuple[float, ...] = (0.05, 2.0),
     period: int = 600,
-    name: Precision = "float32",
+    dtype: Any = "float32",
     limits: bool = True,
-) -> Found:
+) -> Result:
     """Over two cycles, with or without the limits that creatures live with."""
     rows = []
     for swimmer in (swimmers.SWIMMERS[one]() for one in names):
         for viscosity in viscosities:
-            with precision(name) as dtype:
-                limit = scenes.limits(viscosity, dtype) if limits else world.Limits()
-                box, start = scenes.immersed(swimmer.body, viscosity, dtype, limits=limit)
-                impulse = largest_impulse(box, start, scenes.stroke(swimmer, period, 2, dtype))
+            limit = scenes.limits(viscosity, dtype) if limits else world.Limits()
+            box, start = scenes.immersed(swimmer.body, viscosity, dtype, limits=limit)
+            impulse = largest_impulse(box, start, scenes.stroke(swimmer, period, 2, dtype))
             what = f"{swimmer.name}, ν {viscosity:g}: largest net impulse"
             rows.append(at_most(what, impulse, 1e-4, "Newton's third law"))
-    return Found(rows)
+    return Result(rows)
 
 
-def stokes_displacement(
-    positions: np.ndarray, size: tuple[int, int], samples: int
-) -> np.ndarray:
-    """How far the body would go by the shapes that it went through.
+def stokes_displacement(positions: np.ndarray, samples: int) -> np.ndarray:
+    """The displacement of a body in Stokes flow by the same sequence of shapes.
 
-    At some of the times, the forces are found that make the fluid follow the nodes but for
-    a rigid motion, without net force and torque.
+    At `samples` times, forces without net force and torque make the fluid follow the nodes
+    up to a rigid motion.
     """
     every = (len(positions) - 1) // samples
     with jax.enable_x64(True):
         velocities = [
-            _free_velocity(positions[t], positions[t + 1] - positions[t], size)
+            _free_velocity(positions[t], positions[t + 1] - positions[t])
             for t in range(0, len(positions) - 1, every)
         ]
     return every * np.sum(velocities, 0)
 
 
-def _free_velocity(x: np.ndarray, change: np.ndarray, size: tuple[int, int]) -> np.ndarray:
+def _free_velocity(x: np.ndarray, change: np.ndarray) -> np.ndarray:
     nodes, arm = len(x), x - x.mean(0)
     one, none = np.ones(nodes), np.zeros(nodes)
     rigid = np.block([[one, none], [none, one], [-arm[:, 1], arm[:, 0]]]).T
-    system = np.block([[mobility(x, size), -rigid], [rigid.T, np.zeros((3, 3))]])
+    system = np.block([[mobility(x), -rigid], [rigid.T, np.zeros((3, 3))]])
     known = np.concatenate([change[:, 0], change[:, 1], np.zeros(3)])
     return change.mean(0) + np.linalg.solve(system, known)[-3:-1]
 
 
-@partial(jax.jit, static_argnames="size")
-def _deltas(positions, size: tuple[int, int]):
+@jax.jit
+def _deltas(positions):
     """The density that each node alone spreads on the grid."""
-    at = coupling.windows(positions, size)
+    at = coupling.windows(positions, SIZE)
     alone = jnp.eye(len(positions))[:, :, None]
-    return jax.vmap(lambda one: coupling.spread(one, at, size)[0])(alone)
+    return jax.vmap(lambda one: coupling.spread(one, at, SIZE)[0])(alone)
 
 
-def mobility(positions: np.ndarray, size: tuple[int, int]) -> np.ndarray:
+def mobility(positions: np.ndarray) -> np.ndarray:
     """Velocities at nodes by forces there, x before y, for a viscosity of 1."""
     nodes = len(positions)
-    deltas = np.asarray(_deltas(jnp.asarray(positions), size))
-    kx, ky = (2 * np.pi * np.fft.fftfreq(n) for n in size)
+    deltas = np.asarray(_deltas(jnp.asarray(positions)))
+    kx, ky = (2 * np.pi * np.fft.fftfreq(n) for n in SIZE)
     k = np.stack(np.meshgrid(kx, ky, indexing="ij"))
     square = np.sum(k**2, 0)
     square[0, 0] = np.inf

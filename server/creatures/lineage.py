@@ -11,7 +11,7 @@ from .schemas import Ancestors, Children, Relative
 MAX_RELATIVES = 200
 """Relatives in one answer."""
 UNKNOWN: Any = {
-    "kept": False,
+    "stored": False,
     "parents": [],
     "operator": None,
     "generation": None,
@@ -27,13 +27,13 @@ def ancestors(session: Session, row: Creature, depth: int) -> Ancestors:
         names = new[: MAX_RELATIVES - len(found)]
         if not names:
             break
-        kept = _relatives(session, names, distance)
+        stored = _relatives(session, names, distance)
         found += [
-            kept.get(name) or Relative(creature=name, distance=distance, **UNKNOWN)
+            stored.get(name) or Relative(creature=name, distance=distance, **UNKNOWN)
             for name in names
         ]
         known.update(names)
-        older = [parent for name in names if name in kept for parent in kept[name].parents]
+        older = [parent for name in names if name in stored for parent in stored[name].parents]
         nearest = new[len(names) :] + older
     more = any(name not in known for name in nearest)
     return Ancestors(parents=row.parents, items=found, more=more)
@@ -51,8 +51,8 @@ def children(session: Session, row: Creature, limit: int) -> Children:
         .limit(limit)
     )
     names = list(session.scalars(ordered))
-    kept = _relatives(session, names, 1)
-    return Children(total=total, items=[kept[name] for name in names])
+    stored = _relatives(session, names, 1)
+    return Children(total=total, items=[stored[name] for name in names])
 
 
 def _relatives(session: Session, names: list[str], distance: int) -> dict[str, Relative]:
@@ -62,7 +62,7 @@ def _relatives(session: Session, names: list[str], distance: int) -> dict[str, R
         row.sha256: Relative(
             creature=row.sha256,
             distance=distance,
-            kept=True,
+            stored=True,
             parents=row.parents,
             operator=row.operator,
             generation=(row.provenance or {}).get("generation"),

@@ -11,7 +11,7 @@ class Relative(Wire):
     creature: str
     distance: int
     """Generations between the two."""
-    kept: bool
+    stored: bool
     """False if it never was an elite; then only its name is known."""
     parents: list[str]
     operator: str | None

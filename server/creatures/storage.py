@@ -99,7 +99,7 @@ def document(row: Creature) -> dict[str, Any]:
 def with_ancestors(session: Session, row: Creature) -> dict[str, Any]:
     """Return the creature file with the files of its ancestors, nearest first."""
     found = lineage.ancestors(session, row, MAX_DEPTH).items
-    names = [relative.creature for relative in found if relative.kept]
+    names = [relative.creature for relative in found if relative.stored]
     rows = session.scalars(select(Creature).where(Creature.sha256.in_(names)))
     by_name = {row.sha256: row for row in rows}
     ancestors, room = [], ANCESTRY_BYTES

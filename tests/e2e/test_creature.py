@@ -28,7 +28,7 @@ def child_and_parent(product: Installation, run: str) -> tuple[str, str]:
     """An elite and a parent of it that is kept."""
     for sha in product.get(f"runs/{run}/archive")["creature"]:
         found = product.get(f"creatures/{sha}/ancestors")["items"]
-        if found and found[0]["kept"]:
+        if found and found[0]["stored"]:
             return sha, found[0]["creature"]
     raise AssertionError("no elite has a parent that is kept")
 

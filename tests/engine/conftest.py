@@ -47,20 +47,9 @@ jax.config.update("jax_compilation_cache_dir", os.environ[CACHE])
 jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
 jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
 
-SHAPED = (
-    "bodies",
-    "coupling",
-    "fields",
-    "filaments",
-    "fluid",
-    "groups",
-    "world",
-    "genomes",
-    "neat",
-    "search",
-)
-
-install_import_hook([f"microcosmos.{name}" for name in SHAPED], "beartype.beartype")
+SHAPED = "bodies coupling fields filaments fluid genomes groups neat search world"
+CHECKED = [f"microcosmos.{name}" for name in SHAPED.split()]
+install_import_hook(CHECKED, "beartype.beartype")
 jax.config.update("jax_numpy_rank_promotion", "raise")
 
 from typer.testing import CliRunner  # noqa: E402
@@ -144,19 +133,37 @@ def network_of():
 
 
 @pytest.fixture(scope="session")
-def newcomer():
-    chosen = spec.parse(
-        {
-            "experiment": "quality-diversity",
-            "world": {"width": 32, "height": 32},
-            "body": {"nodes": 8},
-            "control": {"period": 20},
-            "task": {"steps": 40},
-            "search": {"generations": 1, "batch": 2, "block": 2},
-        }
-    )
-    experiment = build(chosen)
-    return creature.parse(experiment.best(experiment.advance(experiment.init())[0]))
+def best_of():
+    """A function that gives the best creature of one generation of a search."""
+
+    def find(batch, **parts):
+        search = {"generations": 1, "batch": batch, "block": batch}
+        document = {"experiment": "quality-diversity", "search": search, **parts}
+        experiment = build(spec.parse(document))
+        return experiment.best(experiment.advance(experiment.init())[0])
+
+    return find
+
+
+@pytest.fixture(scope="session")
+def newcomer(best_of):
+    parts = {"world": {"width": 32, "height": 32}, "body": {"nodes": 8}}
+    return creature.parse(best_of(2, **parts, control={"period": 20}, task={"steps": 40}))
+
+
+@pytest.fixture(scope="session")
+def carry_out():
+    """A function that gives states and reports of a whole run, the initial state first."""
+
+    def run(experiment):
+        states, reports = [experiment.init()], []
+        while not experiment.done(states[-1]):
+            state, report = experiment.advance(states[-1])
+            states.append(state)
+            reports.append(report)
+        return states, reports
+
+    return run
 
 
 @pytest.fixture(scope="session")

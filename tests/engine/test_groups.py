@@ -17,20 +17,13 @@ def three():
     return groups.Groups(jnp.asarray(MEMBER), 3)
 
 
-def test_the_total_is_the_sum_over_each_body(three):
-    expected = [VALUES[body == MEMBER].sum(0) for body in range(3)]
-    np.testing.assert_allclose(three.total(jnp.asarray(VALUES)), expected, rtol=1e-6)
-
-
-def test_the_largest_is_found_in_each_body(three):
-    expected = [VALUES[body == MEMBER, 0].max() for body in range(3)]
-    np.testing.assert_array_equal(three.largest(jnp.asarray(VALUES[:, 0])), expected)
-
-
-def test_every_node_has_the_value_of_its_body(three):
+def test_sums_maxima_and_values_are_those_of_each_body(three):
+    values = [VALUES[body == MEMBER] for body in range(3)]
+    sums, maxima = [own.sum(0) for own in values], [own[:, 0].max() for own in values]
+    np.testing.assert_allclose(three.total(jnp.asarray(VALUES)), sums, rtol=1e-6)
+    np.testing.assert_array_equal(three.largest(jnp.asarray(VALUES[:, 0])), maxima)
     found = three.each(jnp.asarray([[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]]))
-    expected = np.stack([2 * MEMBER + 1, 2 * MEMBER + 2], 1)
-    np.testing.assert_array_equal(found, expected)
+    np.testing.assert_array_equal(found, np.stack([2 * MEMBER + 1, 2 * MEMBER + 2], 1))
 
 
 def test_one_body_has_the_sums_of_all_nodes():

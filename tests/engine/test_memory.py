@@ -1,4 +1,4 @@
-"""The memory that a spec is said to need is at least what its compiled programs take."""
+"""The estimated memory of a spec is an upper bound for its compiled programs."""
 
 import jax
 import jax.numpy as jnp

@@ -45,9 +45,8 @@ def test_the_relaxation_time_is_the_one_of_the_projection(joints, bend, float64)
     settled = int(5 * expected) + 2
 
     def after(sweeps):
-        _, found = filaments.project(
-            jnp.asarray(body.positions), angles, rods, rest, iterations=sweeps
-        )
+        given = (jnp.asarray(body.positions), angles, rods, rest)
+        _, found = filaments.project(*given, iterations=sweeps)
         return float(jnp.max(jnp.abs(jnp.diff(found))))
 
     ahead = max(2, round(expected))
@@ -56,12 +55,8 @@ def test_the_relaxation_time_is_the_one_of_the_projection(joints, bend, float64)
 
 
 @pytest.mark.fast
-def test_more_sweeps_relax_as_much_faster():
+def test_more_sweeps_relax_as_much_faster_and_a_soft_long_chain_by_diffusion():
     assert units.relaxation(30, 0.5, 10) == pytest.approx(units.relaxation(30, 0.5, 1) / 10)
-
-
-@pytest.mark.fast
-def test_a_soft_long_chain_relaxes_by_diffusion():
     # A sweep with small k is a step of C' = k/2 C'': the mode decays by k/2 (π/(J + 1))².
     joints, bend = 1000, 1e-3
     diffusive = 2 / (bend * (np.pi / (joints + 1)) ** 2)
@@ -83,7 +78,7 @@ def test_the_sperm_number_is_the_fourth_root_of_frequency_times_relaxation():
 
 @pytest.mark.fast
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "expected"),
     [
         ({}, []),
         ({"mach": 0.2}, ["Mach 0.20 is above 0.17"]),
@@ -92,7 +87,7 @@ def test_the_sperm_number_is_the_fourth_root_of_frequency_times_relaxation():
         ({"mach": 0.3, "spacing": 3.0}, ["Mach", "cells apart"]),
     ],
 )
-def test_warnings_name_what_left_its_range(change, said):
+def test_warnings_name_what_left_its_range(change, expected):
     found = units.warnings(**{"mach": 0.1, "limited": 0.0, "spacing": 1.0} | change)
-    assert len(found) == len(said)
-    assert all(words in text for words, text in zip(said, found, strict=True))
+    assert len(found) == len(expected)
+    assert all(words in text for words, text in zip(expected, found, strict=True))

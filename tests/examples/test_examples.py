@@ -9,6 +9,7 @@ from hashlib import sha256
 from pathlib import Path
 
 import h5py
+import jax
 import nbformat
 import numpy as np
 import pytest
@@ -18,13 +19,12 @@ from microcosmos.audit.reproducibility import check
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TINY = {"body": {"nodes": 8}, "task": {"steps": 20}}
+SEARCH = {"generations": 2, "batch": 4, "block": 4}
 
 
 @pytest.fixture(autouse=True)
 def lenient():
-    """QDax broadcasts silently; other tests of this process may have forbidden it."""
-    import jax
-
+    """QDax relies on rank promotion, which other tests of this process forbid."""
     with jax.numpy_rank_promotion("allow"):
         yield
 
@@ -64,8 +64,7 @@ def test_their_emitters_work_in_our_search(tmp_path):
 
 @pytest.mark.filterwarnings("ignore")
 def test_pyribs_draws_our_archive(tmp_path):
-    search = {"generations": 2, "batch": 4, "block": 4}
-    picture = example("ribs_heatmap", "ribs").main(tmp_path, **TINY, search=search)
+    picture = example("ribs_heatmap", "ribs").main(tmp_path, **TINY, search=SEARCH)
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
@@ -79,8 +78,8 @@ def test_a_stiffness_is_recovered_within_a_hundredth_from_how_a_filament_straigh
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.long
 def test_a_gait_is_designed_for_a_path():
-    found = example("path").main(steps=40, updates=6)
-    assert found[-1] < found[0]
+    losses = example("path").main(steps=40, updates=6)
+    assert losses[-1] < losses[0]
 
 
 @pytest.mark.filterwarnings("ignore")
@@ -93,8 +92,7 @@ def test_a_rest_shape_is_designed_for_a_viscosity():
 @pytest.mark.filterwarnings("ignore")
 def test_a_plugin_task_evolves_and_its_file_names_the_version(tmp_path):
     module = example("plugin_task")
-    search = {"generations": 2, "batch": 4, "block": 4}
-    path = module.main(tmp_path / "plugin.h5", task={"steps": 20}, search=search)
+    path = module.main(tmp_path / "plugin.h5", task={"steps": 20}, search=SEARCH)
     source = sha256((EXAMPLES / "plugin_task.py").read_bytes()).hexdigest()
     with h5py.File(path) as file:  # Without the module.
         spec, names = (json.loads(bytes(file.attrs[name])) for name in ("spec", "measures"))
@@ -155,12 +153,12 @@ def test_a_notebook_runs_to_its_end_without_a_warning(path, tiny, tmp_path):
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_a_notebook_is_kept_without_outputs(path):
+def test_a_notebook_is_committed_without_outputs(path):
     notebook = nbformat.read(path, as_version=4)
     nbformat.validate(notebook)
     code = [cell for cell in notebook.cells if cell.cell_type == "code"]
     assert all(cell.outputs == [] and cell.execution_count is None for cell in code)
 
 
-def test_there_are_three():
+def test_the_three_notebooks_exist():
     assert [path.stem for path in NOTEBOOKS] == ["archive", "folding", "swimmer"]

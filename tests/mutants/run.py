@@ -1,10 +1,10 @@
-"""Break the code on purpose, one defect at a time, and report whether the tests notice.
+"""Mutation tests: break the code one defect at a time and check that tests fail.
 
-`make mutants` tries all, `make mutants NAMES="auth gradient-wrap"` those whose names begin so.
-Each mutant is a file beside this one: the source file, a text that it holds exactly once, the
-replacement, and the tests of `make test` that have to fail: the package's folder, or a file of
-it if the folder takes more than a minute. Without a defect, the tests named must pass. All
-happens in a copy of the repository, so nothing is left broken.
+`make mutants` tries all, `make mutants NAMES="auth gradient-wrap"` those with these prefixes.
+Each mutant is a file beside this one: the source file, a text that occurs there exactly once,
+its replacement, and the tests of `make test` that have to fail (the package's folder, or a file
+of it if the folder takes more than a minute). These tests must pass without the defect. Mutants
+change a copy of the repository only.
 """
 
 import os
@@ -35,8 +35,8 @@ class Mutant(NamedTuple):
     def of_page(self) -> bool:
         return self.file.startswith("web/")
 
-    def broken(self, source: str) -> str:
-        """The source with the defect; `ValueError` unless it holds the text exactly once."""
+    def mutate(self, source: str) -> str:
+        """Insert the defect; raise `ValueError` unless the source has the text exactly once."""
         if (found := source.count(self.text)) != 1:
             raise ValueError(
                 f"mutants/{self.name}.toml: {self.file} must hold {self.text!r} exactly once, "
@@ -46,13 +46,13 @@ class Mutant(NamedTuple):
 
 
 def mutants() -> list[Mutant]:
-    """All of them, by name."""
+    """Read all mutants, sorted by name."""
     files = sorted(Path(__file__).parent.glob("*.toml"))
     return [Mutant(name=file.stem, **tomllib.loads(file.read_text())) for file in files]
 
 
 def copy_repository(to: Path) -> None:
-    """Copy what git knows or would add; what is installed is linked."""
+    """Copy the files that git tracks or would add; link installed packages and builds."""
     listed = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
     names = subprocess.run(listed, cwd=ROOT, check=True, capture_output=True, text=True).stdout
     for name in filter(None, names.split("\0")):
@@ -65,7 +65,7 @@ def copy_repository(to: Path) -> None:
 
 
 def environment(copy: Path) -> Mapping[str, str]:
-    """The copy's own packages go before those that are installed."""
+    """Return an environment that imports the copy's packages before installed ones."""
     path = os.pathsep.join([str(copy / ".venv" / "bin"), os.environ["PATH"]])
     here = {"PYTHONPATH": f"{copy}:{copy / 'engine'}", "PATH": path, "NO_COLOR": "1"}
     return os.environ | here
@@ -98,27 +98,27 @@ def refuse_failing_tests(chosen: list[Mutant], copy: Path) -> None:
 
 
 def caught_by(mutant: Mutant, copy: Path) -> str | None:
-    """The test that fails with the defect in the copy, which is restored afterwards."""
+    """Return the test that fails with the defect; restore the copy afterwards."""
     file = copy / mutant.file
     source = file.read_text()
-    file.write_text(mutant.broken(source))
+    file.write_text(mutant.mutate(source))
     try:
         return failure(mutant.of_page, mutant.tests, copy)
     finally:
         file.write_text(source)
 
 
-def main(beginnings: list[str]) -> int:
-    chosen = [one for one in mutants() if one.name.startswith(tuple(beginnings or [""]))]
+def main(prefixes: list[str]) -> int:
+    chosen = [one for one in mutants() if one.name.startswith(tuple(prefixes or [""]))]
     missed = 0
     with tempfile.TemporaryDirectory() as folder:
         copy_repository(Path(folder))
         refuse_failing_tests(chosen, Path(folder))
         for mutant in chosen:
-            began = time.monotonic()
+            start = time.monotonic()
             failed = caught_by(mutant, Path(folder))
             missed += failed is None
-            seconds = time.monotonic() - began
+            seconds = time.monotonic() - start
             word = "caught" if failed else "MISSED"
             print(f"{word}  {seconds:4.0f} s  {mutant.name}: {mutant.about}")
             print(f"                {failed or 'all tests pass'}", flush=True)

@@ -1,4 +1,4 @@
-"""Every mutant can still be made: its text is there once, and so are its tests."""
+"""Every mutant applies to the sources: its text occurs once and its tests exist."""
 
 import pytest
 from run import ROOT, Mutant, mutants
@@ -7,7 +7,7 @@ from run import ROOT, Mutant, mutants
 @pytest.mark.parametrize("mutant", mutants(), ids=lambda mutant: mutant.name)
 def test_a_mutant_changes_one_place_and_names_tests(mutant: Mutant):
     source = (ROOT / mutant.file).read_text()
-    assert mutant.broken(source) != source
+    assert mutant.mutate(source) != source
     folder = ROOT / "web" if mutant.of_page else ROOT
     assert [path for path in mutant.tests if not (folder / path).exists()] == []
 

@@ -258,10 +258,8 @@ def test_images_run_as_an_unprivileged_user_with_locked_packages():
         installs = [rest for word, rest in words if word == "RUN" and "pip install" in rest]
         assert len(installs) == 1
         assert "--require-hashes" in installs[0]
-        versions = [
-            rest for word, rest in words if word == "FROM" and rest.startswith("python")
-        ]
-        assert re.match(r"python:([\d.]+)", versions[0])[1] in SpecifierSet(python)
+        base = next(r for word, r in words if word == "FROM" and r.startswith("python"))
+        assert re.match(r"python:([\d.]+)", base)[1] in SpecifierSet(python)
     server = (ROOT / "docker" / "server.Dockerfile").read_text()
     assert "npm ci" in server
     assert re.findall(r"requirements\S*\.lock", server)[0] == "requirements-server.lock"

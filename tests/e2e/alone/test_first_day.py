@@ -141,7 +141,7 @@ def travel(laptop: Laptop, elsewhere: Client, client: Client, sha: str) -> None:
     laptop.run("import", "swimmer.json", "--url", elsewhere.url)
     there = elsewhere.creature(sha)
     assert there.identity == client.creature(sha).identity
-    kept = {one["creature"] for one in there.ancestors(32)["items"] if one["kept"]}
+    kept = {one["creature"] for one in there.ancestors(32)["items"] if one["stored"]}
     assert {one["sha256"] for one in whole["ancestors"]} <= kept
 
 
@@ -175,7 +175,7 @@ def delete_for_good(client: Client, laptop: Laptop, product: Installation, run: 
 
 def find_the_ancestors(client: Client, sha: str) -> None:
     """The ancestors of the fork are still there, although their run is not."""
-    kept = [one for one in client.creature(sha).ancestors(32)["items"] if one["kept"]]
+    kept = [one for one in client.creature(sha).ancestors(32)["items"] if one["stored"]]
     assert kept
     for one in kept:
         assert client.creature(one["creature"]).identity

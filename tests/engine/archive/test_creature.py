@@ -2,6 +2,8 @@
 
 import copy
 import json
+from functools import reduce
+from operator import getitem
 
 import numpy as np
 import pytest
@@ -42,20 +44,22 @@ IDENTITY = {
 
 @pytest.fixture
 def file():
-    """A sound creature file, all defaults written out."""
+    """A valid creature file, all defaults written out."""
     parsed = creature.Identity.model_validate(IDENTITY)
     return creature.document(parsed.model_dump(mode="json"), None, None)
 
 
-def refused(file, change) -> creature.CreatureError:
+def refused(file, *changes) -> creature.CreatureError:
+    """The error of a file after changes: the path of a field and its new value."""
     changed = copy.deepcopy(file)
-    change(changed)
+    for (*path, last), value in changes:
+        reduce(getitem, path, changed)[last] = value
     with pytest.raises(creature.CreatureError) as caught:
         creature.parse(changed)
     return caught.value
 
 
-def test_a_sound_file_comes_back_as_it_was(file):
+def test_a_valid_file_comes_back_as_it_was(file):
     assert creature.parse(json.dumps(file)) == file
 
 
@@ -65,16 +69,14 @@ def test_the_name_does_not_depend_on_how_the_json_is_written(file):
     assert creature.name(other) == file["sha256"]
 
 
-def test_a_changed_gene_is_noticed(file):
-    def change(f):
-        f["identity"]["genome"]["connections"]["weight"] = encode([1, -2, 0.25, 4])
+GENES = ("identity", "genome")
+LINKS = (*GENES, "connections")
 
-    error = refused(file, change)
+
+def test_a_changed_gene_is_noticed(file):
+    error = refused(file, ((*LINKS, "weight"), encode([1, -2, 0.25, 4])))
     assert error.field == "sha256"
     assert error.got == file["sha256"]
-
-
-GENES = ("identity", "genome")
 
 
 @pytest.mark.parametrize(
@@ -85,10 +87,10 @@ GENES = ("identity", "genome")
         ((*GENES, "nodes", "bias"), "not base64!", "bias"),
         ((*GENES, "nodes", "bias"), encode([0, 0, 0, float("nan"), 0, 0]), "bias"),
         ((*GENES, "nodes", "id"), [0, 1, 2, 3, 9, 4], "genome"),
-        ((*GENES, "connections", "source"), [0, 1, 2, 77], "genome"),
-        ((*GENES, "connections", "target"), [3, 4, 9, 0], "genome"),
-        ((*GENES, "connections", "target"), [3, 4, 9, 9], "genome"),
-        ((*GENES, "connections", "innovation"), [0, 4, 4, 8], "genome"),
+        ((*LINKS, "source"), [0, 1, 2, 77], "genome"),
+        ((*LINKS, "target"), [3, 4, 9, 0], "genome"),
+        ((*LINKS, "target"), [3, 4, 9, 9], "genome"),
+        ((*LINKS, "innovation"), [0, 4, 4, 8], "genome"),
         ((*GENES, "inputs"), ["position", "time"], "genome"),
         ((*GENES, "outputs"), ["rest_length", "rest_angle"], "genome"),
         ((*GENES, "nodes", "bias"), encode([1, 0, 0, 0.5, -1, 2]), "genome"),
@@ -100,22 +102,13 @@ GENES = ("identity", "genome")
         (("extra",), 1, "extra"),
     ],
 )
-def test_a_file_that_is_not_sound_is_refused_by_its_field(file, field, value, where):
-    def change(f):
-        *path, last = field
-        for part in path:
-            f = f[part]
-        f[last] = value
-
-    assert where in refused(file, change).field
+def test_a_malformed_file_is_refused_by_its_field(file, field, value, where):
+    assert where in refused(file, (field, value)).field
 
 
 def test_a_cycle_is_refused(file):
-    def change(f):
-        connections = f["identity"]["genome"]["connections"]
-        connections["source"], connections["target"] = [0, 4, 9, 3], [3, 9, 4, 9]
-
-    assert "free of cycles" in str(refused(file, change))
+    cycle = ((*LINKS, "source"), [0, 4, 9, 3]), ((*LINKS, "target"), [3, 9, 4, 9])
+    assert "free of cycles" in str(refused(file, *cycle))
 
 
 def test_text_that_is_no_json_is_a_value_error():
@@ -124,16 +117,9 @@ def test_text_that_is_no_json_is_a_value_error():
 
 
 def measured(**changes):
-    measures = {"displacement": 2.0, "bending_effort": 0.5}
-    whole = {
-        "fitness": 2.0,
-        "descriptors": {"bending_effort": 0.5},
-        "measures": measures,
-        "block": 16,
-        "room": [8, 16],
-        "device": "cpu",
-    }
-    return whole | changes
+    figures = {"fitness": 2.0, "descriptors": {"bending_effort": 0.5}}
+    figures["measures"] = {"displacement": 2.0, "bending_effort": 0.5}
+    return figures | {"block": 16, "room": [8, 16], "device": "cpu"} | changes
 
 
 def test_a_measurement_is_kept(file):
@@ -152,7 +138,7 @@ def test_a_measurement_is_kept(file):
     ],
 )
 def test_a_measurement_that_contradicts_itself_is_refused(file, changes):
-    assert "measured" in refused(file | {"measured": measured(**changes)}, dict).field
+    assert "measured" in refused(file | {"measured": measured(**changes)}).field
 
 
 def test_room_for_fewer_genes_than_there_are_is_refused(file):
@@ -162,9 +148,8 @@ def test_room_for_fewer_genes_than_there_are_is_refused(file):
     nodes["bias"] = encode([0] * 9)
     file["sha256"] = creature.name(file["identity"])
     assert creature.parse(file)
-    assert "`measured.room` must be at least" in str(
-        refused(file | {"measured": measured()}, dict)
-    )
+    error = refused(file | {"measured": measured()})
+    assert "`measured.room` must be at least" in str(error)
 
 
 GENOME = IDENTITY["genome"]
@@ -172,16 +157,18 @@ CYCLE = {"source": [0, 1, 9, 9], "enabled": [True] * 4}
 NETWORK = {"nodes": GENOME["nodes"], "connections": GENOME["connections"] | CYCLE}
 
 
+CHAIN = spec.Chain(nodes=6)
+
+
 def document(control, genes):
-    scene = spec.Scene(body=spec.Chain(nodes=6), control=control)
-    whole = frame(scene)
-    whole["genome"] |= genes
-    return creature.document(whole, None, None)
+    identity = frame(spec.Scene(body=CHAIN, control=control))
+    identity["genome"] |= genes
+    return creature.document(identity, None, None)
 
 
-def values(control):
-    count = spec.gene_count(control, spec.shape(spec.Chain(nodes=6)))
-    return {"values": encode(np.linspace(-1, 1, count))}
+def values(control, largest=1):
+    count = spec.gene_count(control, spec.shape(CHAIN))
+    return {"values": encode(np.linspace(-largest, largest, count))}
 
 
 VECTORS = [spec.Direct(bend=spec.Bounds(low=0.1, high=0.9)), spec.Weights(hidden=(4,))]
@@ -200,12 +187,9 @@ def test_vectors_of_another_length_or_beyond_one_are_refused(control):
     short = document(control, {"values": encode(np.zeros(3))})
     with pytest.raises(creature.CreatureError, match=r"must hold \d+ numbers, got 3"):
         creature.parse(short)
-    wide = values(control)
-    wide["values"] = encode(
-        np.full(spec.gene_count(control, spec.shape(spec.Chain(nodes=6))), 1.5)
-    )
+    wide = document(control, values(control, 1.5))
     with pytest.raises(creature.CreatureError, match="-1 to 1") as caught:
-        creature.parse(document(control, wide))
+        creature.parse(wide)
     assert caught.value.field == "identity.genome.values"
 
 
@@ -218,17 +202,12 @@ def test_only_recurrent_networks_have_cycles():
 
 def test_a_network_that_grows_has_outputs_for_what_is_free():
     control = spec.Grown(stretch=None, shear=None, bend=None)
-    genes = copy.deepcopy(NETWORK)
-    genes["nodes"]["id"] = [0, 1, 2, 3, 4, 5, 6, 7]
-    genes["nodes"]["activation"] = ["identity"] * 3 + ["sin"] * 5
-    genes["nodes"]["bias"] = encode(np.zeros(8))
-    genes["connections"] |= {"source": [0, 1, 2, 1], "target": [3, 4, 7, 5]}
-    file = document(control, genes)
-    assert file["identity"]["genome"]["outputs"][2:] == [
-        "body_rest_angle",
-        "body_rest_length",
-        "growth",
-    ]
+    activation = ["identity"] * 3 + ["sin"] * 5
+    nodes = {"id": list(range(8)), "activation": activation, "bias": encode(np.zeros(8))}
+    links = NETWORK["connections"] | {"source": [0, 1, 2, 1], "target": [3, 4, 7, 5]}
+    file = document(control, {"nodes": nodes, "connections": links})
+    free = ["body_rest_angle", "body_rest_length", "growth"]
+    assert file["identity"]["genome"]["outputs"][2:] == free
     assert creature.parse(file) == file
     assert creature.room(file) == (8, 8)
     file["identity"]["genome"]["outputs"].pop()
@@ -236,31 +215,20 @@ def test_a_network_that_grows_has_outputs_for_what_is_free():
         creature.parse(file)
 
 
-def one(number, *parents):
-    sweep = next(p.spec for p in EXPERIMENTS["gaits"].presets)
-    scene = sweep.scene("ours", "worm", 0.5)
-    written = scene.model_dump(mode="json")
-    control = written["control"] | {"period": number}
-    whole = {
-        "format": creature.FORMAT,
-        "genome": {"encoding": "gait", **control},
-        "world": {**written["world"], "coupling": written["coupling"]},
-        "body": written["body"],
-        "task": written["task"],
-    }
+def one(period, *parents):
+    identity = frame(EXPERIMENTS["gaits"].presets[0].spec.scene("ours", "worm", 0.5))
+    identity["genome"]["period"] = period
     names = [parent["sha256"] for parent in parents]
     origin = {"operator": "hand-made", "generation": 0, "seed": 0, "version": "0"}
-    return creature.parse(creature.document(whole, None, {"parents": names, **origin}))
+    return creature.parse(creature.document(identity, None, {"parents": names, **origin}))
 
 
 def test_a_family_is_taken_apart_as_it_was_put_together():
     oldest = one(40) | {"credit": ["Ada"], "licence": "CC0-1.0"}
     parent = one(60, oldest)
     young = one(80, parent, oldest)
-    assert pedigree.split(pedigree.document(young, [parent, oldest])) == (
-        young,
-        [parent, oldest],
-    )
+    family = (young, [parent, oldest])
+    assert pedigree.split(pedigree.document(*family)) == family
     assert pedigree.split(young) == (young, [])
 
 

@@ -48,8 +48,8 @@ def archive(request):
     }
     if request.param == "cvt":
         tree["centroids"] = AROUND
-    told = {"archive": {"descriptors": AXES, "centroids": None}}
-    attributes = {"format": file.FORMAT, "spec": json.dumps(told), "measures": '["a", "b"]'}
+    spec = json.dumps({"archive": {"descriptors": AXES, "centroids": None}})
+    attributes = {"format": file.FORMAT, "spec": spec, "measures": '["a", "b"]'}
     return file.dump({"archive": tree}, attributes)
 
 
@@ -82,7 +82,7 @@ def test_the_table_of_the_csv_is_what_their_frame_takes(archive):
     assert frame.get_field("index").tolist() == [1, 6, 11]
 
 
-def test_repeated_evaluations_are_told(archive):
+def test_the_table_shows_repeated_evaluations(archive):
     frame = microcosmos.to_pandas(archive)
     assert frame["repeats"].tolist() == [4, 1, 0]
     np.testing.assert_allclose(frame["repeats_mean"], [1.0, np.nan, np.nan])

@@ -17,9 +17,8 @@ PARTS = [
 
 
 def world():
-    return bodies.together(
-        [bodies.placed(part, (20.0 * i, 7.0), 0.3 * i) for i, part in enumerate(PARTS)]
-    )
+    placed = [bodies.placed(part, (20.0 * i, 7.0), 0.3 * i) for i, part in enumerate(PARTS)]
+    return bodies.together(placed)
 
 
 def errors(body):
@@ -61,9 +60,8 @@ def test_bodies_together_keep_their_own_edges_joints_and_stiffness():
 
 def test_groups_of_creatures_are_numbered_on():
     pair = bodies.together([PARTS[0], bodies.placed(PARTS[1], (20, 0))])
-    body = bodies.together(
-        [pair, bodies.placed(PARTS[2], (40, 0)), bodies.placed(pair, (70, 0))]
-    )
+    third, fourth = bodies.placed(PARTS[2], (40, 0)), bodies.placed(pair, (70, 0))
+    body = bodies.together([pair, third, fourth])
     sizes = [len(PARTS[i].positions) for i in (0, 1, 2, 0, 1)]
     np.testing.assert_array_equal(body.member, np.repeat(np.arange(5), sizes))
 
@@ -88,9 +86,8 @@ def test_a_subdivided_body_has_the_same_shape_twice_as_large():
 def test_joints_of_a_subdivided_body_are_the_original_ones_and_straight_new_ones():
     body = world()
     fine = bodies.subdivided(body)
-    np.testing.assert_array_equal(
-        fine.body.joint_nodes[fine.joints], fine.nodes[body.joint_nodes]
-    )
+    nodes = fine.body.joint_nodes[fine.joints]
+    np.testing.assert_array_equal(nodes, fine.nodes[body.joint_nodes])
     np.testing.assert_array_equal(fine.edges[fine.body.joints[fine.joints]], body.joints)
     np.testing.assert_array_equal(fine.body.rest_angle[fine.joints], body.rest_angle)
     np.testing.assert_array_equal(fine.body.bend[fine.joints], body.bend)
@@ -107,14 +104,11 @@ def test_the_arc_of_a_subdivided_filament_is_even(closed):
     np.testing.assert_allclose(arc, np.arange(len(arc)) / (18 if closed else 16))
 
 
-def test_a_small_body_stays_as_it_is():
+def test_a_thinned_chain_keeps_its_ends_and_its_order_and_a_small_one_all_nodes():
     body = bodies.chain(8, 1.0)
     positions, edges = bodies.thinned(body, 8)
     np.testing.assert_array_equal(positions, body.positions)
     np.testing.assert_array_equal(edges, body.edges)
-
-
-def test_a_thinned_chain_keeps_its_ends_and_its_order():
     positions, edges = bodies.thinned(bodies.chain(1001, 1.0), 100)
     assert len(positions) <= 102
     assert np.ptp(positions[:, 0]) == pytest.approx(1000)

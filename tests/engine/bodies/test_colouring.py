@@ -34,14 +34,13 @@ def random_body(seed):
 
 
 def world(*parts):
-    return bodies.together(
-        [bodies.placed(part, (30.0 * i, 0.0)) for i, part in enumerate(parts)]
-    )
+    placed = [bodies.placed(part, (30.0 * i, 0.0)) for i, part in enumerate(parts)]
+    return bodies.together(placed)
 
 
 def require_colouring(colours, pairs):
     """Every pair is in one colour, and no two of a colour share a member."""
-    seen = []
+    coloured = []
     for colour in colours:
         first = np.flatnonzero(colour.sign == 1)
         second, chosen = colour.partner[first], colour.constraint[first]
@@ -52,8 +51,13 @@ def require_colouring(colours, pairs):
         alone = colour.sign == 0
         np.testing.assert_array_equal(colour.partner[alone], np.flatnonzero(alone))
         assert len(np.unique(pairs[chosen])) == 2 * len(chosen) == np.sum(~alone)
-        seen.extend(chosen.tolist())
-    assert sorted(seen) == list(range(len(pairs)))
+        coloured.extend(chosen.tolist())
+    assert sorted(coloured) == list(range(len(pairs)))
+
+
+def require_colourings(body):
+    require_colouring(body.edge_colours, body.edges)
+    require_colouring(body.joint_colours, body.joints)
 
 
 @pytest.mark.parametrize(
@@ -69,23 +73,19 @@ def test_every_constraint_of_a_graph_has_one_colour(pairs, members):
 def test_every_constraint_of_a_random_body_has_one_colour(seed):
     body = random_body(seed)
     assert len(body.edges) >= len(body.positions)
-    require_colouring(body.edge_colours, body.edges)
-    require_colouring(body.joint_colours, body.joints)
+    require_colourings(body)
 
 
 def test_every_constraint_of_different_creatures_has_one_colour():
-    body = world(random_body(0), bodies.ring(9, 1.0), random_body(0), bodies.chain(2, 1.0))
-    require_colouring(body.edge_colours, body.edges)
-    require_colouring(body.joint_colours, body.joints)
+    parts = (random_body(0), bodies.ring(9, 1.0), random_body(0), bodies.chain(2, 1.0))
+    require_colourings(world(*parts))
 
 
 def test_equal_creatures_have_equal_colours_and_need_no_more_of_them():
     one = random_body(3)
     many = world(*[one] * 5)
-    for alone, colours in (
-        (one.edge_colours, many.edge_colours),
-        (one.joint_colours, many.joint_colours),
-    ):
+    for name in ("edge_colours", "joint_colours"):
+        alone, colours = getattr(one, name), getattr(many, name)
         assert len(colours) == len(alone)
         for single, repeated in zip(alone, colours, strict=True):
             np.testing.assert_array_equal(repeated.sign, np.tile(single.sign, 5))
@@ -97,9 +97,8 @@ def test_a_chain_needs_two_colours_and_an_odd_ring_three():
 
 
 def test_a_ring_with_branches_needs_few_colours():
-    body = bodies.svg(
-        "M 6 0 A 6 6 0 0 1 -6 0 A 6 6 0 0 1 6 0 Z M 0 6 L 0 12 M 0 -6 L 0 -12", 1.0
-    )
+    circle, lines = "M 6 0 A 6 6 0 0 1 -6 0 A 6 6 0 0 1 6 0 Z", "M 0 6 L 0 12 M 0 -6 L 0 -12"
+    body = bodies.svg(f"{circle} {lines}", 1.0)
     assert np.bincount(body.joint_nodes).max() == 3
     assert len(body.edge_colours) <= 5
     assert len(body.joint_colours) <= 5

@@ -34,17 +34,10 @@ def run(tmp_path):
     cache = os.environ["MICROCOSMOS_TEST_COMPILED"]
     environment = os.environ | {"JAX_COMPILATION_CACHE_DIR": cache}
 
-    def start(*arguments, **options):
+    def start(*arguments):
         command = [sys.executable, "-m", "microcosmos.cli", *arguments]
-        return subprocess.Popen(
-            command,
-            cwd=tmp_path,
-            env=environment,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            **options,
-        )
+        pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+        return subprocess.Popen(command, cwd=tmp_path, env=environment, **pipes)
 
     return start
 
@@ -107,14 +100,8 @@ def test_evolve_sets_fields_and_makes_the_folder_of_its_file(invoke, tmp_path, m
 
 @pytest.mark.long
 def test_a_sweep_is_carried_out_drawn_and_its_table_read(run, tmp_path):
-    spec = {
-        "experiment": "gaits",
-        "swimmers": ["worm"],
-        "forms": ["ours"],
-        "viscosities": [0.5, 2.0],
-        "period": 40,
-        "cycles": 2,
-    }
+    spec = {"experiment": "gaits", "swimmers": ["worm"], "forms": ["ours"]}
+    spec |= {"viscosities": [0.5, 2.0], "period": 40, "cycles": 2}
     (tmp_path / "sweep.json").write_text(json.dumps(spec))
     assert "Done" in finished(run("evolve", "sweep.json"))
     assert "sweep.svg" in finished(run("figure", "sweep.h5", "sweep.svg"))
@@ -127,29 +114,22 @@ def test_a_sweep_is_carried_out_drawn_and_its_table_read(run, tmp_path):
 def test_a_filament_folds_into_a_packed_picture_and_is_drawn(run, tmp_path):
     packed = json.loads(finished(run("picture", "--text", "o", "--name", "a ring")))
     assert packed["name"] == "a ring"
-    spec = {
-        "experiment": "folding",
-        "targets": [packed],
-        "world": {"width": 24, "height": 24, "fluid": False},
-        "body": {"builder": "walk", "nodes": 24},
-        "steps": 10,
-        "size": 16,
-        "updates": 3,
-    }
+    spec = {"experiment": "folding", "targets": [packed], "steps": 10, "size": 16, "updates": 3}
+    spec["world"] = {"width": 24, "height": 24, "fluid": False}
+    spec["body"] = {"builder": "walk", "nodes": 24}
     (tmp_path / "ring.json").write_text(json.dumps(spec))
     assert "Done" in finished(run("evolve", "ring.json"))
     assert "ring.svg" in finished(run("figure", "ring.h5", "ring.svg"))
     assert "a ring" in (tmp_path / "ring.svg").read_text()
     assert json.loads((tmp_path / "ring.best.json").read_text())["measured"] is None
-    text = finished(run("picture"), code=2)
-    assert "FILE or --text" in text
+    assert "FILE or --text" in finished(run("picture"), code=2)
 
 
 def test_mnist_is_fetched_once_and_verified(invoke, tmp_path, monkeypatch):
-    served, asked = {"a": b"images", "b": b"broken"}, []
+    served, requested = {"a": b"images", "b": b"broken"}, []
 
     def get(url, **_):
-        asked.append(url)
+        requested.append(url)
         return httpx.Response(200, content=served[url[-1]], request=httpx.Request("GET", url))
 
     monkeypatch.setattr(httpx, "get", get)
@@ -157,7 +137,7 @@ def test_mnist_is_fetched_once_and_verified(invoke, tmp_path, monkeypatch):
     monkeypatch.setattr(pictures, "MNIST_FILES", {"a": digest})
     for _ in range(2):
         invoke("data", "mnist", "mnist")
-    assert asked == [pictures.MNIST + "a"]
+    assert requested == [pictures.MNIST + "a"]
     assert (tmp_path / "mnist" / "a").read_bytes() == b"images"
     monkeypatch.setattr(pictures, "MNIST_FILES", {"b": digest})
     invoke("data", "mnist", "mnist", code=2)

@@ -1,4 +1,4 @@
-"""A server that is none: it notes what it is asked, and answers as it is told."""
+"""A fake server that records requests and returns prepared answers."""
 
 import json
 from collections.abc import Callable
@@ -7,12 +7,12 @@ from typing import Any, NamedTuple
 import httpx
 import pytest
 
-from microcosmos.client import Client
+from microcosmos.client import Client, Run
 
 RUN = "0f3c1a2b-0000-4000-8000-000000000001"
 
 
-class Asked(NamedTuple):
+class Request(NamedTuple):
     method: str
     path: str
     document: Any
@@ -22,11 +22,14 @@ class Asked(NamedTuple):
 
 class Fake(NamedTuple):
     connect: Callable[[], Client]
-    asked: list[Asked]
+    requests: list[Request]
 
     @property
     def client(self) -> Client:
         return self.connect()
+
+    def run(self, record: dict[str, Any]) -> Run:
+        return Run(self.client.connection, record)
 
 
 @pytest.fixture
@@ -38,7 +41,7 @@ def record() -> dict[str, Any]:
         "tags": [],
         "note": None,
         "status": "running",
-        "wish": None,
+        "requested_state": None,
         "waiting_reason": None,
         "spec": {"experiment": "quality-diversity", "seed": 4},
         "progress": 0.5,
@@ -59,19 +62,17 @@ def record() -> dict[str, Any]:
 @pytest.fixture
 def fake() -> Callable[..., Fake]:
     def make(answers: dict[tuple[str, str], Any]) -> Fake:
-        asked: list[Asked] = []
+        requests: list[Request] = []
 
         def answer(request: httpx.Request) -> httpx.Response:
             path = request.url.path.removeprefix("/api/v1/")
             sent = json.loads(request.content) if request.content else None
             key = request.headers.get("idempotency-key")
-            asked.append(Asked(request.method, path, sent, key, dict(request.url.params)))
-            found = answers[request.method, path]
-            return (
-                found if isinstance(found, httpx.Response) else httpx.Response(200, json=found)
-            )
+            requests.append(Request(request.method, path, sent, key, dict(request.url.params)))
+            body = answers[request.method, path]
+            return body if isinstance(body, httpx.Response) else httpx.Response(200, json=body)
 
         transport = httpx.MockTransport(answer)
-        return Fake(lambda: Client("http://fake", "secret", transport=transport), asked)
+        return Fake(lambda: Client("http://fake", "secret", transport=transport), requests)
 
     return make

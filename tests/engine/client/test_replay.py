@@ -1,4 +1,4 @@
-"""A replay in a notebook holds all it needs, and not more than it may."""
+"""A replay in a notebook is self-contained and of limited size."""
 
 import json
 import re
@@ -58,9 +58,11 @@ def test_a_large_one_is_thinned_with_a_note(recording):
     assert kept[0, 1, 2] == round(mean)
 
 
-def test_a_notebook_keeps_it_in_a_frame_of_its_own(recording):
+def test_a_notebook_shows_it_in_a_frame_of_its_own_and_saves_it(tmp_path, recording):
     data, _, _ = recording(3, 4, (16, 8))
     replay = Replay(data)
+    assert replay.save(tmp_path / "one.replay").read_bytes() == data
+    assert replay.save(tmp_path / "one.html").read_text() == replay.html
     bundle = replay._repr_mimebundle_()
     assert bundle["text/plain"] == repr(replay)
     assert "10 steps in 16 × 8 cells" in repr(replay)
@@ -68,15 +70,8 @@ def test_a_notebook_keeps_it_in_a_frame_of_its_own(recording):
     (inside,) = re.findall(r'srcdoc="([^"]*)"', html)
     assert unescape(inside) == replay.html
     assert 'sandbox="allow-scripts"' in html
-    assert html.count("<b>") == 0  # What a file says of itself is no markup.
+    assert html.count("<b>") == 0  # The file's own names are no markup.
     assert not re.search(r"https?://|src=|@import|fetch\(", replay.html)  # No network.
-
-
-def test_a_replay_is_saved_as_a_page_or_as_its_bytes(tmp_path, recording):
-    data, _, _ = recording(3, 4, (16, 8))
-    replay = Replay(data)
-    assert replay.save(tmp_path / "one.replay").read_bytes() == data
-    assert replay.save(tmp_path / "one.html").read_text() == replay.html
 
 
 def test_bytes_that_hold_no_replay_are_refused():

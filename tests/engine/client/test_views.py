@@ -8,16 +8,9 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from microcosmos.client import (
-    NoAnswer,
-    drawing,
-    formatting,
-    notebook,
-    polling,
-    terminal,
-    views,
-)
+from microcosmos.client import NoAnswer, drawing, notebook, polling, terminal, views
 from microcosmos.client.columns import Columns, array
+from microcosmos.client.formatting import duration
 from microcosmos.client.polling import RunState
 
 CURVES = {
@@ -30,28 +23,29 @@ CURVES = {
 
 def dots(lines):
     """(column, row from below) of every dot that is set."""
-    found = set()
-    for line, text in enumerate(lines):
-        for sign, letter in enumerate(text):
-            for x in (0, 1):
-                for y in range(4):
-                    if (ord(letter) - 0x2800) & drawing.DOTS[x][y]:
-                        found.add((2 * sign + x, 4 * (len(lines) - line) - 1 - y))
-    return found
+    return {
+        (2 * sign + x, 4 * (len(lines) - line) - 1 - y)
+        for line, text in enumerate(lines)
+        for sign, letter in enumerate(text)
+        for x, y in np.ndindex(2, 4)
+        if (ord(letter) - 0x2800) & drawing.DOTS[x][y]
+    }
 
 
-def test_a_straight_line_is_drawn_straight():
-    assert dots(drawing.braille(np.arange(8.0).tolist(), 4, 2)) == {(i, i) for i in range(8)}
+@pytest.mark.parametrize(
+    ("values", "size", "expected"),
+    [
+        (np.arange(8.0).tolist(), (4, 2), {(i, i) for i in range(8)}),
+        ([0.0, 0.0, 1.0, 1.0], (2, 1), {(0, 0), (1, 0), (2, 1), (2, 2), (2, 3), (3, 3)}),
+        ([2.0, None, 2.0, 2.0], (2, 1), {(0, 0), (2, 0), (3, 0)}),
+    ],
+    ids=["a line is straight", "a step has no gap", "unknown values are gaps"],
+)
+def test_braille_dots_are_those_of_the_curve(values, size, expected):
+    assert dots(drawing.braille(values, *size)) == expected
 
 
-def test_a_step_is_drawn_without_a_gap():
-    assert dots(drawing.braille([0.0, 0.0, 1.0, 1.0], 2, 1)) == {
-        (0, 0), (1, 0), (2, 1), (2, 2), (2, 3), (3, 3)
-    }  # fmt: skip
-
-
-def test_unknown_values_are_gaps_and_constants_a_line():
-    assert dots(drawing.braille([2.0, None, 2.0, 2.0], 2, 1)) == {(0, 0), (2, 0), (3, 0)}
+def test_unknown_values_alone_draw_nothing():
     assert drawing.braille([None], 3, 1) == ["⠀⠀⠀"]
     assert drawing.polyline([None, 1.0, 3.0], 10, 4) == "5.0,4.0 10.0,0.0"
     assert drawing.polyline([], 10, 4) == ""
@@ -63,29 +57,27 @@ def shown(state, width=100):
     return console.export_text()
 
 
-def test_a_terminal_shows_how_it_stands(record):
+def test_a_terminal_shows_the_state_within_its_width(record):
     text = shown(RunState(record, CURVES))
-    for part in ("“mine”", "0f3c1a2b", "50 %", "5/10 generations", "1 min 15 s left"):
-        assert part in text
-    for part in ("12.5 evaluations/s", "QD score 3.25", "coverage 12.5 %", "best 1.5"):
+    progress = ("“mine”", "0f3c1a2b", "50 %", "5/10 generations", "1 min 15 s left")
+    for part in (
+        *progress,
+        "12.5 evaluations/s",
+        "QD score 3.25",
+        "coverage 12.5 %",
+        "best 1.5",
+    ):
         assert part in text
     assert any(letter > "\u2800" for letter in text)
     narrow = shown(RunState(record, CURVES), 40)
     assert max(map(len, narrow.splitlines())) <= 40
-
-
-def test_progress_and_time_left_share_a_line_of_80_columns(record):
     (line,) = (one for one in shown(RunState(record), 80).splitlines() if "50 %" in one)
     assert "1 min 15 s left" in line
 
 
 def test_trouble_and_reasons_are_shown(record):
-    waits = record | {
-        "status": "queued",
-        "waiting_reason": "no worker is free",
-        "eta_seconds": None,
-    }
-    text = shown(RunState(waits, {}, "No server answers."))
+    waits = {"status": "queued", "waiting_reason": "no worker is free", "eta_seconds": None}
+    text = shown(RunState(record | waits, {}, "No server answers."))
     assert "queued: no worker is free" in text
     assert "No server answers." in text
     assert "evaluations/s" not in text
@@ -160,9 +152,8 @@ def test_columns_are_arrays_with_gaps_as_nan():
 
 def test_a_map_has_its_cells_where_they_are():
     axes = [{"name": "turning", "bins": 4}, {"name": "<b>", "bins": 2}]
-    picture = drawing.archive_map(
-        axes, np.array([0, 3, 6]), np.array([1.0, 2.0, 3.0]), "a caption"
-    )
+    cells, fitness = np.array([0, 3, 6]), np.array([1.0, 2.0, 3.0])
+    picture = drawing.archive_map(axes, cells, fitness, "a caption")
     squares = re.findall(r'x="([\d.]+)" y="([\d.]+)" .*? fill="(#\w+)"', picture)
     assert squares == [
         ("0.00", "160.00", "#440154"),
@@ -173,50 +164,38 @@ def test_a_map_has_its_cells_where_they_are():
     assert "<rect" not in drawing.archive_map(axes, np.array([]), np.array([]), "")
 
 
-def test_columns_are_a_data_frame_where_pandas_is_there():
+def test_columns_are_a_data_frame_if_pandas_is_installed(monkeypatch):
     pytest.importorskip("pandas")
     found = Columns({"a": [1, 2], "b": [None, 0.5]}).to_pandas()
     assert list(found.columns) == ["a", "b"]
     assert found["a"].tolist() == [1, 2]
-
-
-def test_without_pandas_it_is_said_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
     with pytest.raises(ImportError, match=r"pip install .pandas"):
         Columns({"a": [1]}).to_pandas()
 
 
 @pytest.mark.parametrize(
-    ("seconds", "words_"),
+    ("seconds", "words"),
     [(0.4, "0 s"), (75, "1 min 15 s"), (3720, "1 h 2 min"), (90000, "1 d 1 h"), (None, "")],
 )
-def test_durations_have_two_units(seconds, words_):
-    assert formatting.duration(seconds) == words_
+def test_durations_have_two_units(seconds, words):
+    assert duration(seconds) == words
 
 
 def test_a_sweep_is_watched_through_an_outage(fake, monkeypatch):
-    """As a run is: laptops sleep, servers start again."""
     monkeypatch.setattr(polling, "POLL", 0.0)
     sweep = {"id": "5eed", "name": None, "total": 2}
-    states = [
-        {"queued": 2},
-        {"running": 1, "failed": 1},
-        None,
-        None,
-        {"finished": 1, "failed": 1},
-    ]
-    left = list(states)
+    states = [{"queued": 2}, {"running": 1, "failed": 1}, None, None]
+    answers = iter([*states, {"finished": 1, "failed": 1}])
 
     def read(path):
-        if (counts := left.pop(0)) is None:
+        if (counts := next(answers)) is None:
             raise NoAnswer("No server answers.")
         return sweep | {"status_counts": counts}
 
     connection = fake({}).client.connection
     monkeypatch.setattr(connection, "read", read)
-    shown = [
-        (state.record["status"], state.problem)
-        for state in polling.follow_sweep(connection, "5eed")
-    ]
+    states = polling.follow_sweep(connection, "5eed")
+    shown = [(state.record["status"], state.problem) for state in states]
     lost = ("running", "No server answers.")
     assert shown == [("queued", None), ("running", None), lost, lost, ("failed", None)]

@@ -30,30 +30,21 @@ def interpolate(plane, at):
     return coupling.interpolate(plane[None], at)[:, 0]
 
 
-def test_even_and_odd_cells_have_half_of_the_delta_each(samples):
+def test_peskins_delta_has_half_on_even_and_odd_cells_and_squares_of_three_eighths(samples):
     delta = coupling.peskin(samples)
     np.testing.assert_allclose(delta[:, 0] + delta[:, 2], 0.5, rtol=1e-14)
+    np.testing.assert_allclose(jnp.sum(delta**2, 1), 3 / 8, rtol=1e-14)
 
 
-def test_the_sum_of_the_squared_delta_is_three_eighths(samples):
-    np.testing.assert_allclose(jnp.sum(coupling.peskin(samples) ** 2, 1), 3 / 8, rtol=1e-14)
-
-
-def test_interpolation_is_the_transpose_of_spreading(nodes):
+def test_interpolation_is_the_transpose_of_spreading_which_keeps_the_sum(nodes):
     random = np.random.default_rng(1)
     at = coupling.windows(nodes, SIZE)
     field = jnp.asarray(random.normal(size=(2, *SIZE)))
     values = jnp.asarray(random.normal(size=nodes.shape))
     interpolated = jnp.stack([interpolate(plane, at) for plane in field], 1)
     spread = coupling.spread(values, at, SIZE)
-    np.testing.assert_allclose(
-        jnp.sum(spread * field), jnp.sum(values * interpolated), rtol=1e-12
-    )
-
-
-def test_spreading_keeps_the_sum(nodes):
-    values = jnp.asarray(np.random.default_rng(1).normal(size=nodes.shape))
-    spread = coupling.spread(values, coupling.windows(nodes, SIZE), SIZE)
+    there, back = jnp.sum(spread * field), jnp.sum(values * interpolated)
+    np.testing.assert_allclose(there, back, rtol=1e-12)
     np.testing.assert_allclose(jnp.sum(spread, (1, 2)), jnp.sum(values, 0), atol=1e-12)
 
 
@@ -103,14 +94,9 @@ def around(points):
 
 
 @KERNELS
-def test_weights_sum_to_one_wherever_the_point_is(kernel, float64):
-    weights = kernel.weight(around(kernel.points))
-    np.testing.assert_allclose(jnp.sum(weights, 1), 1, rtol=1e-14)
-
-
-@KERNELS
-def test_weights_have_no_first_moment(kernel, float64):
+def test_weights_sum_to_one_and_have_no_first_moment(kernel, float64):
     r = around(kernel.points)
+    np.testing.assert_allclose(jnp.sum(kernel.weight(r), 1), 1, rtol=1e-14)
     np.testing.assert_allclose(jnp.sum(r * kernel.weight(r), 1), 0, atol=1e-14)
 
 
@@ -189,37 +175,18 @@ def written_out(points):
     return np.einsum("px,py->pxy", *weights)
 
 
-def test_more_points_than_a_chunk_are_worked_on_in_chunks(many):
-    at = coupling.windows(many[0], SIZE)
-    assert at.cells.shape[:2] == (-(-len(many[0]) // 10), 10)
-
-
-def test_spreading_by_chunks_is_the_plain_sum(many):
+def test_transfers_by_chunks_are_plain_sums_and_transposes(many, field):
     points, values = many
-    found = jax.jit(lambda x, q: coupling.spread(q, coupling.windows(x, SIZE), SIZE))(
-        points, values
-    )
-    expected = np.einsum("pxy,pc->cxy", written_out(points), values)
+    at, weights = coupling.windows(points, SIZE), written_out(points)
+    assert at.cells.shape[:2] == (-(-len(points) // 10), 10)
+    found = jax.jit(lambda q, at: coupling.spread(q, at, SIZE))(values, at)
+    expected = np.einsum("pxy,pc->cxy", weights, values)
     np.testing.assert_allclose(found, expected, atol=1e-13)
-
-
-def test_interpolation_by_chunks_is_the_plain_sum(many, field):
-    points, _ = many
-    found = coupling.interpolate(field, coupling.windows(points, SIZE))
-    expected = np.einsum("pxy,cxy->pc", written_out(points), field)
-    np.testing.assert_allclose(found, expected, rtol=1e-12)
-
-
-def test_windows_by_chunks_can_be_divided_by_a_plane(many, field):
-    points, _ = many
-    at = coupling.divided(coupling.windows(points, SIZE), field[1])
-    expected = np.einsum("pxy,xy->p", written_out(points), field[0] / field[1])
-    np.testing.assert_allclose(coupling.interpolate(field[:1], at)[:, 0], expected, rtol=1e-12)
-
-
-def test_transfers_by_chunks_are_transposes(many, field):
-    points, values = many
-    at = coupling.windows(points, SIZE)
+    expected = np.einsum("pxy,cxy->pc", weights, field)
+    np.testing.assert_allclose(coupling.interpolate(field, at), expected, rtol=1e-12)
+    divided = coupling.interpolate(field[:1], coupling.divided(at, field[1]))[:, 0]
+    expected = np.einsum("pxy,xy->p", weights, field[0] / field[1])
+    np.testing.assert_allclose(divided, expected, rtol=1e-12)
     there = jnp.sum(coupling.spread(values[:, :2], at, SIZE) * field)
     back = jnp.sum(coupling.interpolate(field, at) * values[:, :2])
     np.testing.assert_allclose(there, back, rtol=1e-12)
@@ -227,10 +194,8 @@ def test_transfers_by_chunks_are_transposes(many, field):
 
 def test_transfers_by_chunks_have_the_gradient_of_the_plain_ones(field, monkeypatch):
     random = np.random.default_rng(0)
-    given = (
-        jnp.asarray(random.uniform(-20, 20, (29, 2))),
-        jnp.asarray(random.normal(size=(29, 1))),
-    )
+    points, values = random.uniform(-20, 20, (29, 2)), random.normal(size=(29, 1))
+    given = (jnp.asarray(points), jnp.asarray(values))
 
     def slope(chunk):
         monkeypatch.setattr(delta, "CHUNK", chunk)

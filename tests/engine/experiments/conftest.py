@@ -1,4 +1,4 @@
-"""The smallest run of every experiment, each carried out once a process."""
+"""The smallest run of every experiment, each carried out once per process."""
 
 import importlib.util
 import json
@@ -29,19 +29,15 @@ NEUROEVOLUTION = SMALL | {
     "genome": {"max_nodes": 10, "max_connections": 16},
     "search": {"generations": 5, "batch": 16, "block": 8, "reevaluation": {"every": 3}},
 }
-TINY = {
-    "experiment": "quality-diversity",
-    "seed": 2,
-    "world": {"width": 32, "height": 32},
-    "body": {"nodes": 8},
-    "task": {"steps": 20},
-}
+TINY = SMALL | {"seed": 2, "body": {"nodes": 8}, "task": {"steps": 20}}
 NUMBERS = {"encoding": "direct", "period": 20}
 
 
+LEARNING = {"generations": 5, "batch": 8, "block": 4}
+
+
 def learner(control, **emitter):
-    search = {"generations": 5, "batch": 8, "block": 4, "emitters": [emitter]}
-    return TINY | {"control": control, "search": search}
+    return TINY | {"control": control, "search": LEARNING | {"emitters": [emitter]}}
 
 
 SPECS = {
@@ -52,42 +48,20 @@ SPECS = {
         "targets": [{"digit": 1}, {"digit": 3}],
         "world": {"width": 32, "height": 32, "fluid": False},
         "body": {"builder": "walk", "nodes": 64, "spacing": 0.5, "deviation": 0.6, "seed": 4},
-        "steps": 60,
-        "size": 20,
-        "width": 1.0,
-        "updates": 20,
-    },
+    }
+    | {"steps": 60, "size": 20, "width": 1.0, "updates": 20},
     "refinement": {"experiment": "refinement", "steps": 4, "block": 4},
-    "gaits": {
-        "experiment": "gaits",
-        "swimmers": ["ray"],
-        "forms": ["ours", "paper"],
-        "viscosities": [0.05, 0.5, 2.0],
-        "period": 30,
-        "cycles": 2,
-        "block": 2,
-    },
-    "scaling": {
-        "experiment": "scaling",
-        "nodes": [40, 80],
-        "filament": 20,
-        "width": 32,
-        "height": 32,
-        "steps": 10,
-        "part_steps": 2,
-        "all_pairs": 40,
-    },
+    "gaits": {"experiment": "gaits", "swimmers": ["ray"], "period": 30, "cycles": 2, "block": 2}
+    | {"forms": ["ours", "paper"], "viscosities": [0.05, 0.5, 2.0]},
+    "scaling": {"experiment": "scaling", "nodes": [40, 80], "filament": 20, "all_pairs": 40}
+    | {"width": 32, "height": 32, "steps": 10, "part_steps": 2},
     "cma-mae": learner(NUMBERS, operator="cma-mae"),
     "cma-mega": learner(NUMBERS, operator="cma-mega"),
     "lamarckian": learner({"period": 20}, operator="lamarckian", lessons=1),
     "cma-me": learner(NUMBERS, operator="cma-me", emitters=2),
     "tensorneat": TINY
-    | {
-        "experiment": "neuroevolution",
-        "control": {"period": 20},
-        "search": {"generations": 5, "batch": 8, "block": 4},
-        "neat": {"backend": "tensorneat", "preset": "tensorneat"},
-    },
+    | {"experiment": "neuroevolution", "control": {"period": 20}, "search": LEARNING}
+    | {"neat": {"backend": "tensorneat", "preset": "tensorneat"}},
 }
 PACKAGES = {"cma-me": "qdax", "tensorneat": "tensorneat"}
 """Optional packages that some runs need."""
@@ -146,21 +120,6 @@ def small():
 
 
 @pytest.fixture(scope="session")
-def carry_out():
-    """A function that gives states and reports of a whole run, the initial state first."""
-
-    def run(experiment):
-        states, reports = [experiment.init()], []
-        while not experiment.done(states[-1]):
-            state, report = experiment.advance(states[-1])
-            states.append(state)
-            reports.append(report)
-        return states, reports
-
-    return run
-
-
-@pytest.fixture(scope="session")
 def finish():
     def run(experiment, state):
         while not experiment.done(state):
@@ -172,13 +131,14 @@ def finish():
 
 @pytest.fixture(scope="session")
 def lasting():
+    """A function that changes the number of generations of a run."""
+
     def change(experiment, generations):
         spec = json.loads(experiment.plan.spec)
         spec["search"]["generations"] = generations
         text = json.dumps(spec, sort_keys=True)
-        return replace(
-            experiment, plan=replace(experiment.plan, generations=generations, spec=text)
-        )
+        plan = replace(experiment.plan, generations=generations, spec=text)
+        return replace(experiment, plan=plan)
 
     return change
 

@@ -44,7 +44,7 @@ def course(request, course_of):
 
 
 def without_times(report):
-    summary = {name: told for name, told in report.summary.items() if "seconds" not in name}
+    summary = {name: value for name, value in report.summary.items() if "seconds" not in name}
     return replace(report, summary=summary)
 
 
@@ -117,16 +117,11 @@ def test_generations_are_counted_from_one(course):
 def test_the_file_of_another_spec_is_refused(course):
     states, _, experiment, spec = course
     document = spec.model_dump(mode="json")
-    other = build(parse(document | _merged(document, OTHER[spec.experiment])))
+    for name, change in OTHER[spec.experiment].items():
+        document[name] = document[name] | change if isinstance(change, dict) else change
+    other = build(parse(document))
     with pytest.raises(ValueError, match="`spec` in the file must be the run's own"):
         other.restore(experiment.save(states[1]))
-
-
-def _merged(document, change):
-    return {
-        name: {**document[name], **part} if isinstance(part, dict) else part
-        for name, part in change.items()
-    }
 
 
 def test_a_file_without_a_part_is_refused(course):
@@ -139,22 +134,16 @@ def test_a_file_without_a_part_is_refused(course):
 
 def test_another_device_needs_leave_and_is_recorded(course):
     states, _, experiment, _ = course
-    data, here = experiment.save(states[1]), states_devices(experiment, states[1])
-    elsewhere = on(experiment, "abacus")
+    data = experiment.save(states[1])
+    change = {"device": "abacus"}
+    if hasattr(experiment, "plan"):
+        change = {"plan": replace(experiment.plan, **change)}
+    elsewhere = replace(experiment, **change)
     with pytest.raises(OtherDevice, match=r"`device` must be .*got 'abacus'"):
         elsewhere.restore(data)
-    restored = elsewhere.restore(data, other_device=True)
-    assert states_devices(elsewhere, restored) == [*here, "abacus"]
-
-
-def states_devices(experiment, state):
-    return json.loads(file.load(experiment.save(state))[1]["device"])
-
-
-def on(experiment, device):
-    if hasattr(experiment, "plan"):
-        return replace(experiment, plan=replace(experiment.plan, device=device))
-    return replace(experiment, device=device)
+    saved = elsewhere.save(elsewhere.restore(data, other_device=True))
+    here, both = (json.loads(file.load(one)[1]["device"]) for one in (data, saved))
+    assert both == [*here, "abacus"]
 
 
 def test_its_best_creature_is_a_sound_file_and_there_is_none_at_first(course):

@@ -1,4 +1,4 @@
-"""A NEAT run keeps whole lineages, tells of its species, and ends when it was asked to."""
+"""A NEAT run: crossover, reevaluation, limits, and initial creatures."""
 
 import json
 
@@ -14,23 +14,24 @@ EXPERIMENT = "neuroevolution"
 
 @pytest.fixture(scope="module")
 def searching(specs):
+    """A function that changes the run's search."""
+
     def change(**parts):
         document = specs["neuroevolution"]
-        return parse({**document, "search": {**document["search"], **parts}})
+        return parse(document | {"search": document["search"] | parts})
 
     return change
 
 
-def test_every_forebear_that_is_named_was_recorded_before(course):
-    born, related = {}, 0
-    for report in course[1]:
-        for elite in report.elites:
-            for parent in elite.parents:
-                related += 1
-                assert born[parent] < report.generation
-        for elite in report.elites:
-            born.setdefault(elite.creature, report.generation)
-    assert related > 10
+@pytest.fixture(scope="module")
+def limited(searching, experiment):
+    """A function that stops the run at a limit; the programs stay the same."""
+
+    def stopped(**stop):
+        built = build(searching(stop=stop, reevaluation=None))
+        return type(built)(built.plan, experiment.programs)
+
+    return stopped
 
 
 def test_crossed_creatures_name_two_forebears(course):
@@ -59,27 +60,22 @@ def test_elites_are_evaluated_again_on_schedule_and_at_the_end(experiment, cours
 @pytest.mark.parametrize(
     ("stop", "reason"), [({"evaluations": 30}, "evaluations"), ({"fitness": 1e-6}, "fitness")]
 )
-def test_a_limit_ends_a_run_and_is_recorded(stop, reason, experiment, searching):
-    limited = build(searching(stop=stop, reevaluation=None))
-    # The same programs, so that only the limit differs.
-    limited = type(limited)(limited.plan, experiment.programs)
-    state = limited.init()
+def test_a_limit_ends_a_run_and_is_recorded(stop, reason, limited, carry_out):
+    run = limited(**stop)
+    states, reports = carry_out(run)
     generations = 2 if reason == "evaluations" else 1
-    while not limited.done(state):
-        state, report = limited.advance(state)
-    assert state.generation == generations
-    assert report.summary["ended"] == f"{reason} after generation {generations}"
-    data = limited.save(state)
+    assert states[-1].generation == generations
+    assert reports[-1].summary["ended"] == f"{reason} after generation {generations}"
+    data = run.save(states[-1])
     _, attributes = file.load(data)
     assert json.loads(attributes["ended"]) == {"reason": reason, "generation": generations}
-    assert limited.done(limited.restore(data))
+    assert run.done(run.restore(data))
 
 
-def test_no_clock_is_in_a_file_unless_it_decides(experiment, course, searching):
+def test_no_clock_is_in_a_file_unless_it_decides(experiment, course, limited):
     tree, _ = file.load(experiment.save(course[0][-1]))
     assert "device_seconds" not in tree["loop"]
-    timed = build(searching(stop={"device_hours": 1e-9}, reevaluation=None))
-    timed = type(timed)(timed.plan, experiment.programs)
+    timed = limited(device_hours=1e-9)
     state, report = timed.advance(timed.init())
     assert timed.done(state)
     assert report.summary["ended"].startswith("device_hours")

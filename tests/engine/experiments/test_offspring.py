@@ -58,13 +58,13 @@ def test_initial_creatures_are_evaluated_first_each_once(forked, forking, files)
 
 
 def test_later_creatures_descend_from_the_initial_ones(forking, files):
-    born, initial = set(), set(names_of(files))
+    recorded, initial = set(), set(names_of(files))
     for report in forking[1]:
         for elite in report.elites:
             assert elite.operator in ("fork", "neat")
             assert elite.parents
-            assert set(elite.parents) <= born | initial
-        born |= {elite.creature for elite in report.elites}
+            assert set(elite.parents) <= recorded | initial
+        recorded |= {elite.creature for elite in report.elites}
 
 
 def test_a_fork_taken_up_from_any_generation_ends_the_same(forked, forking, finish, lasting):
@@ -112,19 +112,15 @@ def test_numbers_of_one_run_stay_and_those_of_another_do_not_mix(files):
     stranger = json.loads(json.dumps(foreign))
     ends = stranger["connections"]
     ends["source"][-1], ends["target"][-1] = 1, 4
-    assert (ends["source"][-1], ends["target"][-1]) != (
-        genes["source"][-1],
-        genes["target"][-1],
-    )
+    assert (genes["source"][-1], genes["target"][-1]) != (1, 4)
     kept, moved = renumbered([foreign, stranger], 3, 2)
     assert kept == foreign
     numbers = moved["connections"]["innovation"]
     assert numbers == sorted(numbers)
     assert numbers[-1] > 90
     assert numbers[:6] == list(range(6)), "newcomers' genes mean the same to all"
-    assert decode(moved["connections"]["weight"]).tolist() == pytest.approx(
-        decode(ends["weight"]).tolist()
-    )
+    weights = (decode(one["weight"]) for one in (moved["connections"], ends))
+    np.testing.assert_allclose(*weights, rtol=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -173,34 +169,31 @@ def test_strategies_do_not_learn_from_what_is_not_theirs(small, finish, forked_f
     first = build(small(control=direct, search=search))
     state, _ = first.advance(first.init())
     best = creature.parse(first.best(state))
-    chosen = small(
-        control=direct, search=search | {"initial": [best["sha256"]], "generations": 3}
-    )
+    longer = search | {"initial": [best["sha256"]], "generations": 3}
+    chosen = small(control=direct, search=longer)
     fork = forked_from(first, chosen, [best])
     before = fork.init()
     after, report = fork.advance(before)
-    assert str(after.emitters[0]) == str(before.emitters[0]), "it neither asked nor was told"
+    assert str(after.emitters[0]) == str(before.emitters[0]), "it neither emitted nor learned"
     offspring = next_offspring(fork.plan, fork.programs, before, never)
     assert OPERATORS[offspring.children.operator[0]] == "fork"
-    np.testing.assert_array_equal(
-        offspring.children.genotypes.values[0], fork.plan.initial.genotypes.values[0]
-    )
+    first, initial = offspring.children.genotypes, fork.plan.initial.genotypes
+    np.testing.assert_array_equal(first.values[0], initial.values[0])
     assert any(e.parents == (best["sha256"],) for e in report.elites)
     assert finish(fork, fork.restore(fork.save(after))) == finish(fork, fork.init())
 
 
 def test_the_order_in_which_creatures_are_named_changes_nothing(small):
     names = [letter * 64 for letter in "cab"]
-    one, other = (
-        small(search={"initial": order}) for order in (names, [*names[::-1], names[0]])
-    )
+    orders = (names, [*names[::-1], names[0]])
+    one, other = (small(search={"initial": order}) for order in orders)
     assert one == other
     assert one.search.initial == tuple(sorted(names))
     with pytest.raises(ValueError, match="initial"):
         small(search={"initial": ["nonsense"]})
 
 
-def test_a_population_holds_all_that_it_begins_from():
+def test_a_population_holds_all_its_initial_creatures():
     names = [f"{number:064x}" for number in range(5)]
     spec = {"experiment": "neuroevolution", "search": {"batch": 4, "initial": names}}
     with pytest.raises(ValueError, match=r"`search.initial` must have at most `search.batch`"):

@@ -23,25 +23,25 @@ def spec(course):
     return course.spec
 
 
-def test_refinement_never_lowers_the_fitness(course):
-    fitness = [row.values["fitness"] for row in course[0][-1].table.rows]
-    assert len(fitness) == 1 + course.spec.steps
+@pytest.fixture
+def rows(course):
+    return course[0][-1].table.rows
+
+
+def test_refinement_never_lowers_the_fitness(spec, rows):
+    fitness = [row.values["fitness"] for row in rows]
+    assert len(fitness) == 1 + spec.steps
     assert all(b >= a for a, b in itertools.pairwise(fitness))
     assert fitness[-1] > fitness[0]
+    # The first row is the creature as its search has measured it.
+    assert rows[0].creature == spec.creature["sha256"]
+    assert rows[0].provenance == spec.creature["provenance"]
+    assert fitness[0] == pytest.approx(spec.creature["measured"]["fitness"], rel=1e-4)
 
 
-def test_the_first_row_is_the_creature_as_it_was_measured_in_its_search(spec, course):
-    first = course[0][-1].table.rows[0]
-    assert first.creature == spec.creature["sha256"]
-    assert first.provenance == spec.creature["provenance"]
-    assert first.values["fitness"] == pytest.approx(
-        spec.creature["measured"]["fitness"], rel=1e-4
-    )
-
-
-def test_refinement_stays_in_the_cell(spec, course):
+def test_refinement_stays_in_the_cell(spec, rows):
     cells = build_cells(spec.archive)
-    measures = [row.measured["measures"] for row in course[0][-1].table.rows]
+    measures = [row.measured["measures"] for row in rows]
     places = np.array([[one[name] for name in MEASURES] for one in measures], np.float32)
     assert len(set(cells.of(jnp.asarray(places)).tolist())) == 1
 
@@ -56,24 +56,20 @@ def test_a_refined_creature_repeats_bit_for_bit_and_has_a_parent(spec, course):
     assert check(best).exact
 
 
-def test_the_record_says_how_far_the_gradient_can_be_trusted(course):
-    rows = [row.values for row in course[0][-1].table.rows]
-    assert rows[0]["slope"] is None
-    assert all(row["slope"] > 0 for row in rows[1:])
+def test_rows_and_reports_hold_slopes_agreement_gradients_and_trials(course, rows):
+    assert rows[0].values["slope"] is None
+    assert all(row.values["slope"] > 0 for row in rows[1:])
     # The shortest trial of the first step is 0.05 long.
-    assert 0.3 < rows[1]["agreement"] < 3
-
-
-def test_reports_count_gradients_and_trials(course):
+    assert 0.3 < rows[1].values["agreement"] < 3
     assert [report.evaluations for report in course[1]] == [1, 6, 11, 16, 21]
     assert course[1][-1].best == course[0][-1].fitness
 
 
-def test_the_function_refine_gives_the_creature_of_the_run(spec, course):
-    refined, rows = microcosmos.refine(spec.creature, steps=2, block=4)
-    assert rows[-1]["fitness"] >= rows[0]["fitness"]
+def test_the_function_refine_gives_the_creature_of_the_run(spec, rows):
+    refined, values = microcosmos.refine(spec.creature, steps=2, block=4)
+    assert values[-1]["fitness"] >= values[0]["fitness"]
     assert json.dumps(refined)
-    assert refined["sha256"] == course[0][-1].table.rows[2].creature
+    assert refined["sha256"] == rows[2].creature
 
 
 def test_damaged_creatures_and_measures_without_derivatives_are_refused(spec):

@@ -1,5 +1,7 @@
 """The fluid: conservation, walls, sponges, and the adjoint of a collision."""
 
+from functools import partial
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -118,9 +120,8 @@ def test_walls_reverse_populations(direction, float64):
     f, surroundings = random_populations(), fluid.Surroundings(solid=solid)
     f = without_fluid_in(solid, f)
     rates = fluid.rates(jnp.asarray(0.05))
-    collided = fluid.collide(
-        f, fluid.density(f), fluid.momentum(f), jnp.asarray(NO_FORCE), rates
-    )
+    now = (f, fluid.density(f), fluid.momentum(f), jnp.asarray(NO_FORCE))
+    collided = fluid.collide(*now, rates)
     x, y = DIRECTIONS[direction]
     back = DIRECTIONS.index((-x, -y))
     neighbour = (5 - x, 5 - y)
@@ -179,9 +180,8 @@ def test_the_adjoint_is_that_of_automatic_differentiation(float64):
     cotangent = planes(9, 1.0)
     out, pull = jax.vjp(fluid.collide, *given)
     same, own = jax.vjp(collision, *given)
-    for a, b in zip(same, out, strict=True):
-        np.testing.assert_array_equal(a, b)
+    jax.tree.map(np.testing.assert_array_equal, same, out)
     expected, found = pull(cotangent), own(cotangent)
     assert jax.tree.structure(found) == jax.tree.structure(expected)
-    for a, b in zip(jax.tree.leaves(found), jax.tree.leaves(expected), strict=True):
-        np.testing.assert_allclose(a, b, rtol=1e-12, atol=1e-12)
+    near = partial(np.testing.assert_allclose, rtol=1e-12, atol=1e-12)
+    jax.tree.map(near, found, expected)

@@ -65,15 +65,12 @@ def by_recursion(network, inputs):
 
 
 def test_a_network_equals_the_recursion_over_its_genes(networks):
+    assert tuple(genomes.ACTIVATIONS) == naming.ACTIVATIONS == tuple(FUNCTIONS)
     inputs = np.random.default_rng(0).uniform(-1, 1, (INPUTS, 5)).astype(np.float32)
     program = jax.jit(lambda network, x: genomes.evaluate(network, x, OUTPUTS))
     for network in networks:
         expected = np.transpose([by_recursion(network, point) for point in inputs.T])
         np.testing.assert_allclose(program(network, inputs), expected, rtol=2e-4, atol=2e-4)
-
-
-def test_activations_have_the_same_order_in_files_and_in_the_engine():
-    assert tuple(genomes.ACTIVATIONS) == naming.ACTIVATIONS == tuple(FUNCTIONS)
 
 
 def test_growing_squares_stay_finite():
@@ -99,9 +96,7 @@ def test_genes_survive_the_file(networks):
         back = genomes.from_genes(genomes.to_genes(numbered), 16, 40)
         for name, values in vars(numbered).items():
             np.testing.assert_array_equal(getattr(back, name), values, err_msg=name)
-
-
-def test_minus_zero_is_written_as_zero():
+    # Zero has one form.
     assert naming.encode(np.array([-0.0])) == naming.encode(np.array([0.0]))
 
 
@@ -118,13 +113,15 @@ def network():
     return neat.minimal(jax.random.key(2), 3, 2, 8, 8)
 
 
-def test_actuation_grows_from_the_rest_shape_over_the_ramp(network):
+def test_actuation_grows_from_the_rest_shape_over_the_ramp_and_repeats(network):
     rest = genomes.develop(network, controls(ramp=2))
     np.testing.assert_array_equal(rest.angle[0], BODY.rest_angle)
     np.testing.assert_array_equal(rest.length[0], BODY.rest_length)
     full = genomes.develop(network, controls(ramp=0))
     np.testing.assert_allclose(rest.angle[20], 0.25 * full.angle[20], rtol=1e-6)
     np.testing.assert_array_equal(rest.angle[80:], full.angle[80:])
+    # A periodic timer repeats the shape.
+    np.testing.assert_allclose(full.angle[:40], full.angle[40:80], atol=1e-5)
 
 
 def test_angles_and_lengths_stay_within_their_scales():
@@ -135,18 +132,10 @@ def test_angles_and_lengths_stay_within_their_scales():
         assert np.abs(rest.length - 1).max() <= 0.2
 
 
-def test_a_periodic_timer_repeats_the_shape(network):
-    rest = genomes.develop(network, controls(ramp=0))
-    np.testing.assert_allclose(rest.angle[:40], rest.angle[40:80], atol=1e-5)
-
-
-def test_a_linear_timer_runs_from_zero_towards_one():
+def test_a_linear_timer_and_positions_run_from_zero_or_minus_one_to_one():
     found = controls(timer="linear", position="unit")
     np.testing.assert_allclose(found.position, BODY.arc)
     np.testing.assert_allclose(found.timer, np.arange(STEPS)[None] / STEPS)
-
-
-def test_signed_positions_run_from_minus_one_to_one():
     position = controls().position
     assert (position[0], position[-1]) == (-1, 1)
 
@@ -157,9 +146,8 @@ WEB = Path(__file__).parents[3] / "web"
 @pytest.mark.optimised
 def test_the_fixture_of_the_page_is_what_the_engine_computes_now():
     kept = json.loads((WEB / "src" / "decode" / "networks.fixture.json").read_text())
-    made = json.loads(
-        json.dumps(runpy.run_path(str(WEB / "scripts" / "networks.py"))["cases"]())
-    )
+    cases = runpy.run_path(str(WEB / "scripts" / "networks.py"))["cases"]()
+    made = json.loads(json.dumps(cases))
     assert [case["genome"] for case in made] == [case["genome"] for case in kept]
     for now, then in zip(made, kept, strict=True):
         np.testing.assert_allclose(now["expected"], then["expected"], rtol=1e-4, atol=1e-4)

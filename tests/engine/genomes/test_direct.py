@@ -18,13 +18,9 @@ def grow(float64):
     """A function from a body's words and genes by part to what is simulated."""
 
     def make(body, genes, **control):
-        scene = spec.Scene.model_validate(
-            {
-                "body": body,
-                "control": {"encoding": "direct", "period": 20, "ramp": 0, **control},
-                "task": {"steps": STEPS},
-            }
-        )
+        control = {"encoding": "direct", "period": 20, "ramp": 0, **control}
+        parts = {"body": body, "control": control, "task": {"steps": STEPS}}
+        scene = spec.Scene.model_validate(parts)
         task = build_task(scene, float64)
         parts = task.encoding.parts
         values = np.concatenate([np.zeros(n) + genes.get(name, 0) for name, n in parts.items()])
@@ -90,11 +86,10 @@ def test_waves_are_scaled_as_a_network_s_outputs_are(grow):
 
 
 def test_a_phase_moves_the_wave_ahead(grow):
-    genes = {"angles": np.tile([0.5, 0.1, 0.2, -0.3], 7)}
-    task, driven = grow({"nodes": 9}, genes)
-    values = np.concatenate([np.tile([0.5, 0.1, 0.2, -0.3], 7), np.zeros(4 * 8)])
-    quarter = jnp.asarray(np.pi / 2)
-    ahead = task.encoding.drive(task.world, task.start, Vector(jnp.asarray(values)), quarter)
+    angles = np.tile([0.5, 0.1, 0.2, -0.3], 7)
+    task, driven = grow({"nodes": 9}, {"angles": angles})
+    values = Vector(jnp.asarray(np.concatenate([angles, np.zeros(4 * 8)])))
+    ahead = task.encoding.drive(task.world, task.start, values, jnp.asarray(np.pi / 2))
     np.testing.assert_allclose(ahead.inputs.angle[:20], driven.inputs.angle[5:25], atol=1e-12)
 
 

@@ -21,13 +21,8 @@ def task(float64):
         control=control,
         task=spec.Task(steps=10),
     )
-    assert control.outputs[2:] == (
-        "body_rest_angle",
-        "body_rest_length",
-        "body_stretch",
-        "body_bend",
-        "growth",
-    )
+    names = ("body_rest_angle", "body_rest_length", "body_stretch", "body_bend", "growth")
+    assert control.outputs[2:] == names
     return build_task(scene, float64, room=(16, 32))
 
 

@@ -23,16 +23,9 @@ def cyclic(network_of, float64):
 
     def make(inputs):
         bend, stretch, a, b = range(inputs, inputs + 4)
-        links = {
-            (0, a): 1.2,
-            (1, a): -0.7,
-            (a, a): 0.8,
-            (a, b): 1.1,
-            (b, a): -0.6,
-            (b, bend): 0.9,
-            (a, stretch): 0.5,
-            (bend, b): 0.4,
-        } | ({(3, a): 0.9} if inputs == 4 else {})
+        links = {(0, a): 1.2, (1, a): -0.7, (a, a): 0.8, (a, b): 1.1, (b, a): -0.6}
+        links |= {(b, bend): 0.9, (a, stretch): 0.5, (bend, b): 0.4}
+        links |= {(3, a): 0.9} if inputs == 4 else {}
         activations, biases = ("tanh", "sin", "gaussian", "sin"), [0.1, -0.2, 0.3, 0.05]
         return network_of(links, inputs, activations, biases, dtype=float64)
 
@@ -44,7 +37,7 @@ def recursion(network, timer, position):
     network, timer, position = jax.device_get((network, timer, position))
     nodes = int(network.node_used.sum())
     given = 1 + len(timer)
-    values, said = [0.0] * nodes, []
+    values, outputs = [0.0] * nodes, []
     for now in timer.T:
         values[:given] = [position, *now]
         new = list(values)
@@ -55,22 +48,17 @@ def recursion(network, timer, position):
                     z += float(network.weight[row]) * values[int(network.source[row])]
             new[node] = PLAIN[NAMES[int(network.activation[node])]](z)
         values = new
-        said.append(values[given : given + 2])
-    return np.array(said)
+        outputs.append(values[given : given + 2])
+    return np.array(outputs)
 
 
 @pytest.fixture
 def task(float64):
     def make(**control):
-        scene = spec.Scene.model_validate(
-            {
-                "world": {"width": 16, "height": 16}
-                | ({"energy": {"width": 3}} if control.get("sense_energy") else {}),
-                "body": {"nodes": 5},
-                "control": {"recurrent": True, "period": 9, "ramp": 0, **control},
-                "task": {"steps": 20},
-            }
-        )
+        energy = {"energy": {"width": 3}} if control.get("sense_energy") else {}
+        parts = {"world": {"width": 16, "height": 16} | energy, "body": {"nodes": 5}}
+        parts["control"] = {"recurrent": True, "period": 9, "ramp": 0, **control}
+        scene = spec.Scene.model_validate(parts | {"task": {"steps": 20}})
         return build_task(scene, float64, room=(12, 16))
 
     return make
@@ -81,20 +69,19 @@ def test_values_follow_the_plain_recursion(task, cyclic):
     rest = whole.encoding.drive(whole.world, whole.start, network, None).inputs
     controls = whole.encoding.controls
     for joint, node in enumerate(controls.joint_nodes):
-        said = recursion(network, controls.timer, controls.position[node])
-        expected = controls.angle_scale * np.tanh(said[:, 0])
+        outputs = recursion(network, controls.timer, controls.position[node])
+        expected = controls.angle_scale * np.tanh(outputs[:, 0])
         np.testing.assert_allclose(rest.angle[:, joint], expected, rtol=1e-12, atol=1e-14)
     ends = [recursion(network, controls.timer, controls.position[node]) for node in (0, 1)]
-    length = 1 + controls.length_scale * 0.5 * sum(np.tanh(said[:, 1]) for said in ends)
+    length = 1 + controls.length_scale * 0.5 * sum(np.tanh(end[:, 1]) for end in ends)
     np.testing.assert_allclose(rest.length[:, 0], length, rtol=1e-12)
 
 
 def test_without_hidden_nodes_a_recurrent_network_is_a_feed_forward_one(task, float64):
     whole = task()
     network = genomes.minimal(jax.random.key(3), 3, 2, 12, 16)
-    network = replace(
-        network, bias=network.bias.astype(float64), weight=network.weight.astype(float64)
-    )
+    genes = {name: getattr(network, name).astype(float64) for name in ("bias", "weight")}
+    network = replace(network, **genes)
     plain = replace(whole.encoding, recurrent=False)
     one = whole.encoding.drive(whole.world, whole.start, network, None).inputs
     other = plain.drive(whole.world, whole.start, network, None).inputs
@@ -148,8 +135,7 @@ def foragers(float64):
     """A function that makes the task of two chains side by side among packets."""
 
     def make(senses, seed=3, **options):
-        one = bodies.chain(8, 1.0)
-        body = bodies.together([bodies.placed(one, (0.0, y)) for y in (-1.0, 1.0)])
+        body = scenes.parallel_chains(8, 2.0)
         packets = fields.packets(SIZE, fields.Packets(3, 3.0, 1.0, seed))
         energy = fields.Energy(jnp.asarray(packets), jnp.asarray(0.05), jnp.asarray(0.1))
         box, start = scenes.immersed(body, 0.1, float64, size=SIZE, energy=energy, **options)
@@ -177,9 +163,7 @@ def measured(task):
     return named
 
 
-def test_only_a_network_that_heeds_energy_moves_otherwise_than_in_an_open_loop(
-    foragers, network
-):
+def test_energy_changes_the_motion_only_if_the_network_uses_it(foragers, network):
     opened, closed = measured(foragers(False))(network(3)), measured(foragers(True))
     elsewhere = foragers(True, seed=4).start.energy
     heedless = closed(network(4, 0.0))

@@ -18,16 +18,9 @@ def settings():
     """The paper's, with so much growth that small networks soon fill their room."""
     paper = neat.PRESETS["paper"]
     rates = replace(paper.rates, add_node=0.3, add_connection=0.4, toggle=0.05, weight_step=0.5)
-    coefficients = neat.Coefficients(1.0, 1.0, 0.4)
-    return replace(
-        paper,
-        rates=rates,
-        coefficients=coefficients,
-        threshold=0.7,
-        max_species=8,
-        interspecies=0.05,
-        stagnation=4,
-    )
+    grown = replace(paper, rates=rates, coefficients=neat.Coefficients(1.0, 1.0, 0.4))
+    species = {"threshold": 0.7, "max_species": 8, "interspecies": 0.05, "stagnation": 4}
+    return replace(grown, **species)
 
 
 @pytest.fixture(scope="session")
@@ -79,14 +72,8 @@ def evolve(begin, advance):
 
 @jax.jit
 def newcomers(keys):
-    minimal = partial(
-        neat.minimal,
-        inputs=INPUTS,
-        outputs=OUTPUTS,
-        max_nodes=NODES,
-        max_connections=CONNECTIONS,
-    )
-    return jax.vmap(minimal)(keys)
+    sizes = (INPUTS, OUTPUTS, NODES, CONNECTIONS)
+    return jax.vmap(lambda key: neat.minimal(key, *sizes))(keys)
 
 
 @pytest.fixture(scope="session")

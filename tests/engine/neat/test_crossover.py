@@ -83,39 +83,39 @@ def test_a_child_has_the_genes_of_the_fitter_and_values_of_either(parents, each,
     assert mixed > 50
 
 
-def test_matching_genes_come_from_either_parent_equally_often(parents, each, genes_of):
-    from_other = matching = 0
-    for key in range(10):
-        for a, b, child in zip(*map(each, (*parents, cross(parents, key=key))), strict=True):
-            genes_a, genes_b, genes = (genes_of(n)[1] for n in (a, b, child))
-            for number in genes_a.keys() & genes_b.keys():
-                if genes_a[number][3] != genes_b[number][3]:
-                    matching += 1
-                    from_other += genes[number][3] == genes_b[number][3]
+@pytest.fixture
+def families(parents, each, genes_of):
+    """A function that gives the connections of both parents and of each child."""
+
+    def read(key, **options):
+        for family in zip(
+            *map(each, (*parents, cross(parents, key=key, **options))), strict=True
+        ):
+            yield [genes_of(network)[1] for network in family]
+
+    return read
+
+
+def test_matching_genes_come_from_either_parent_equally_often(families):
+    from_other = matching = disabled = off = 0
+    for genes_a, genes_b, genes in (family for key in range(10) for family in families(key)):
+        for number, gene in genes.items():
+            donors = [d[number] for d in (genes_a, genes_b) if number in d]
+            if donors[0][3] != donors[-1][3]:
+                matching += 1
+                from_other += gene[3] == donors[-1][3]
+            if all(donor[2] for donor in donors):
+                assert gene[2]
+            else:
+                disabled += 1
+                off += not gene[2]
     assert from_other / matching == pytest.approx(0.5, abs=3 * 0.5 / matching**0.5)
-
-
-def test_genes_disabled_in_either_parent_are_disabled_three_times_in_four(
-    parents, each, genes_of
-):
-    disabled = off = 0
-    for key in range(10):
-        for a, b, child in zip(*map(each, (*parents, cross(parents, key=key))), strict=True):
-            genes_a, genes_b, genes = (genes_of(n)[1] for n in (a, b, child))
-            for number, gene in genes.items():
-                donors = [d[number] for d in (genes_a, genes_b) if number in d]
-                if all(donor[2] for donor in donors):
-                    assert gene[2]
-                else:
-                    disabled += 1
-                    off += not gene[2]
+    # Genes that are disabled in either parent are disabled three times in four.
     assert off / disabled == pytest.approx(0.75, abs=3 * 0.44 / disabled**0.5)
 
 
-def test_averaging_gives_the_mean_of_matching_weights(parents, each, genes_of):
-    children = cross(parents, key=0, average=1.0)
-    for a, b, child in zip(*map(each, (*parents, children)), strict=True):
-        genes_a, genes_b, genes = (genes_of(n)[1] for n in (a, b, child))
+def test_averaging_gives_the_mean_of_matching_weights(families):
+    for genes_a, genes_b, genes in families(0, average=1.0):
         for number in genes:
             mean = np.mean([d[number][3] for d in (genes_a, genes_b) if number in d])
             assert genes[number][3] == pytest.approx(mean, rel=1e-5, abs=1e-6)

@@ -16,6 +16,8 @@ from microcosmos.plugins import loading, registry
 pytestmark = pytest.mark.fast
 
 HEAD = "from microcosmos import plugins\nfrom microcosmos.spec import Part\n"
+BODY = f"{HEAD}class S(Part):\n    a: int\n"
+BODY += '@plugins.body("b", title="B", nodes=3, settings={})\ndef b(s): ...'
 ONE = HEAD + '@plugins.fitness("far", title="Far")\ndef far(motion):\n    return motion\n'
 
 
@@ -27,6 +29,7 @@ def none_before(monkeypatch):
 @pytest.fixture
 def write(tmp_path):
     def write(text, name="mine.py"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text)
         return tmp_path / name
 
@@ -48,9 +51,8 @@ def test_a_file_that_is_loaded_again_takes_the_place_of_what_it_was(write):
     with pytest.raises(plugins.Missing, match="--module"):
         plugins.find(("fitness",), "mine.far", first.source)
     (third,) = plugins.load(write(ONE + "# Changed.\n"))
-    with pytest.raises(
-        plugins.Missing, match=f"{first.source[:12]}, got version {third.source[:12]}"
-    ):
+    expected = f"{first.source[:12]}, got version {third.source[:12]}"
+    with pytest.raises(plugins.Missing, match=expected):
         plugins.find(("fitness",), "mine.far", first.source)
 
 
@@ -86,15 +88,8 @@ def test_a_file_that_broke_leaves_what_was_loaded_of_it(write):
         (ONE + ONE.replace("def far", "def other"), "'mine.far' more than once"),
         (ONE.replace('"far"', '"Far!"'), "`name` must be of a-z, 0-9 and _, got 'Far!'"),
         (ONE.replace("motion)", ")"), "'far' must take 1 arguments"),
-        (
-            HEAD + "class S(Part):\n    a: int\n"
-            '@plugins.body("b", title="B", nodes=3, settings=S)\ndef b(s): ...',
-            "must all have defaults, got none for a",
-        ),
-        (
-            HEAD + '@plugins.body("b", title="B", nodes=3, settings=dict)\ndef b(s): ...',
-            "must be a `microcosmos.spec.Part`",
-        ),
+        (BODY.format("S"), "must all have defaults, got none for a"),
+        (BODY.format("dict"), "must be a `microcosmos.spec.Part`"),
         (
             HEAD + '@plugins.descriptor("d", title="D", low=0, high=1, scale="log10")\n'
             "def d(m): ...",
@@ -114,9 +109,8 @@ def test_a_module_with_a_mistake_is_reported_and_others_load(write, text, words)
     assert [one.declaration.name for one in plugins.loaded()] == ["good.far"]
 
 
-def test_two_modules_of_one_name_are_refused(write, tmp_path):
+def test_two_modules_of_one_name_are_refused(write):
     plugins.load(write(ONE))
-    (tmp_path / "other").mkdir()
     with pytest.raises(ValueError, match="two modules are called 'mine'"):
         plugins.load(write(ONE, "other/mine.py"))
 
@@ -128,13 +122,9 @@ def test_a_file_that_is_not_python_is_refused(write, name):
         plugins.load(name)
 
 
-def test_an_installed_package_names_its_module_and_all_its_files_count(
-    write, tmp_path, monkeypatch
-):
-    (tmp_path / "swim").mkdir()
-    write(ONE, "swim/__init__.py")
+def test_an_installed_package_names_its_module_and_all_its_files_count(write, monkeypatch):
+    found = importlib.util.spec_from_file_location("swim", write(ONE, "swim/__init__.py"))
     write("x = 1", "swim/part.py")
-    found = importlib.util.spec_from_file_location("swim", tmp_path / "swim" / "__init__.py")
 
     def entry():
         module = importlib.util.module_from_spec(found)
@@ -146,10 +136,8 @@ def test_an_installed_package_names_its_module_and_all_its_files_count(
     broken = SimpleNamespace(name="bad", value="bad", load=lambda: 1 / 0)
     monkeypatch.setattr(loading, "entry_points", lambda group: [broken, *entries])
     (failed,) = plugins.load_all([])
-    assert (failed.module, failed.reason) == (
-        "bad (bad)",
-        "ZeroDivisionError: division by zero",
-    )
+    assert failed.module == "bad (bad)"
+    assert failed.reason == "ZeroDivisionError: division by zero"
     (one,) = plugins.loaded()
     assert one.declaration.name == "swim.far"
     write("x = 2", "swim/part.py")
@@ -159,9 +147,8 @@ def test_an_installed_package_names_its_module_and_all_its_files_count(
 
 def test_errors_of_a_function_are_named_as_its_own(write):
     (one,) = plugins.load(write(ONE.replace("return motion", "return motion.missing")))
-    with pytest.raises(
-        plugins.Broken, match=r"mine\.far .*, line 5\) failed with AttributeError"
-    ):
+    reason = r"mine\.far .*, line 5\) failed with AttributeError"
+    with pytest.raises(plugins.Broken, match=reason):
         plugins.find(("fitness",), "mine.far", one.source)(7, settings={})
 
 

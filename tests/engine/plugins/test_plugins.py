@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import jax
 import numpy as np
 import pytest
 from pydantic import ValidationError
@@ -108,16 +109,13 @@ def away(monkeypatch):
 
 
 @pytest.fixture(scope="module")
-def course(module):
+def course(module, carry_out):
     before, registry._plugins = registry._plugins, {}
     plugins.load(module)
     experiment = build(parse(SPEC))
-    state, reports = experiment.init(), []
-    while not experiment.done(state):
-        state, report = experiment.advance(state)
-        reports.append(report)
+    states, reports = carry_out(experiment)
     registry._plugins = before
-    return experiment, state, reports
+    return experiment, states[-1], reports
 
 
 def test_a_spec_says_the_version_and_all_settings_of_what_it_names(loaded):
@@ -174,15 +172,14 @@ def test_a_run_measures_selects_and_moves_as_the_module_says(course):
     experiment, state, reports = course
     names = list(experiment.plan.measures)
     assert names[-2:] == ["extra.ahead", "extra.straight"]
-    rows = np.asarray(state.elites.measures)[np.asarray(state.elites.occupied)]
-    fitness = np.asarray(state.elites.fitness)[np.asarray(state.elites.occupied)]
+    elites = jax.device_get(state.elites)
+    rows, fitness = elites.measures[elites.occupied], elites.fitness[elites.occupied]
     np.testing.assert_allclose(fitness, 2 * rows[:, names.index("displacement")], rtol=1e-6)
     np.testing.assert_array_equal(fitness, rows[:, names.index("extra.straight")])
     assert np.all(np.abs(rows[:, -2]) <= rows[:, names.index("displacement")] + 1e-6)
     assert len(np.unique(fitness)) > 1
-    assert all(
-        elite.descriptors[0] == elite.measures["extra.ahead"] for elite in reports[0].elites
-    )
+    for elite in reports[0].elites:
+        assert elite.descriptors[0] == elite.measures["extra.ahead"]
 
 
 def test_a_run_goes_on_from_its_file_with_the_same_bytes(course, module, away):
@@ -196,9 +193,8 @@ def test_a_run_goes_on_from_its_file_with_the_same_bytes(course, module, away):
     plugins.load(module)
     changed = build(parse(SPEC))
     module.write_text(MODULE)
-    with pytest.raises(
-        ValueError, match=r"plugin\.source` must be \w{12}, .* continue with that version"
-    ):
+    reason = r"plugin\.source` must be \w{12}, .* continue with that version"
+    with pytest.raises(ValueError, match=reason):
         changed.restore(data)
 
 
@@ -221,19 +217,16 @@ def test_a_creature_is_replayed_without_its_measures(course, module, monkeypatch
     monkeypatch.setattr(registry, "_plugins", kept)
     replay = read_replay(record(file))
     np.testing.assert_array_equal(replay.positions, whole.positions)
-    header = whole.header
-    assert header["fitness"]["replayed"] == pytest.approx(
-        header["fitness"]["recorded"], rel=0.1
-    )
+    fitness = whole.header["fitness"]
+    assert fitness["replayed"] == pytest.approx(fitness["recorded"], rel=0.1)
     assert replay.header["fitness"]["replayed"] is None
 
 
 def test_a_measure_that_is_no_number_is_refused_by_name():
     axes = {"descriptors": [{"name": "extra.broken", "bins": 2}]}
     experiment = build(parse({**SPEC, "archive": axes}))
-    with pytest.raises(
-        plugins.Broken, match=r"extra\.broken must return one number, got shape"
-    ):
+    reason = r"extra\.broken must return one number, got shape"
+    with pytest.raises(plugins.Broken, match=reason):
         experiment.advance(experiment.init())
 
 

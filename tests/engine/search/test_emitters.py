@@ -31,9 +31,8 @@ def archive():
         prototype = jax.tree.map(lambda x: x[0], genotypes)
         empty = search.no_elites(5, 1, prototype)
         place = jnp.asarray(cells)
-        whole = jax.tree.map(
-            lambda old, new: old.at[place].set(new), empty.genotypes, genotypes
-        )
+        put = lambda old, new: old.at[place].set(new)  # noqa: E731
+        whole = jax.tree.map(put, empty.genotypes, genotypes)
         occupied = empty.occupied.at[place].set(True)
         fitness = empty.fitness.at[place].set(jnp.arange(len(cells), dtype=jnp.float32))
         return replace(empty, genotypes=whole, occupied=occupied, fitness=fitness)
@@ -52,13 +51,17 @@ def emitted(emitter, archive, seed=0):
     return children, counters
 
 
-def test_a_gaussian_step_has_the_deviation_that_was_asked_for(archive):
+def test_a_gaussian_step_has_the_requested_deviation_within_the_bounds(archive):
     elite = Vector(jnp.asarray([[0.1, -0.2, 0.0]]))
     children, _ = emitted(emitters.IsoLine(SLOTS, vector, iso=0.05), archive(elite, [3]))
     steps = np.asarray(children.genotypes.values) - np.asarray(elite.values)
     np.testing.assert_allclose(steps.std(0), 0.05, rtol=0.06)
     np.testing.assert_allclose(steps.mean(0), 0.0, atol=0.005)
     assert (np.asarray(children.parents) == [3, search.NO_PARENT]).all()
+    # Genes stay within their bounds.
+    elite = Vector(jnp.asarray([[1.0, -1.0, 0.99]]))
+    children, _ = emitted(emitters.IsoLine(SLOTS, vector, iso=1.0), archive(elite, [0]))
+    assert np.abs(children.genotypes.values).max() <= 1.0
 
 
 def test_children_of_a_line_lie_along_it(archive):
@@ -74,14 +77,8 @@ def test_children_of_a_line_lie_along_it(archive):
     np.testing.assert_allclose(values[:, 1:].std(), 0.001, rtol=0.06)
 
 
-def test_genes_stay_within_their_bounds(archive):
-    elite = Vector(jnp.asarray([[1.0, -1.0, 0.99]]))
-    children, _ = emitted(emitters.IsoLine(SLOTS, vector, iso=1.0), archive(elite, [0]))
-    assert np.abs(children.genotypes.values).max() <= 1.0
-
-
 @pytest.mark.parametrize("crossover", [0.0, 0.5])
-def test_so_many_children_have_two_parents_as_was_asked_for(archive, crossover):
+def test_the_requested_share_of_children_has_two_parents(archive, crossover):
     networks = jax.vmap(network)(jax.random.split(jax.random.key(2), 4))
     rates = neat.Rates(0.6, 1.0, 0.05, 0.1, 0.02, 0.15, 0.25)
     emitter = emitters.Neat(SLOTS, lambda *, key: network(key), rates, 3, crossover)
@@ -119,8 +116,8 @@ def test_each_emitter_is_told_of_its_own_children_alone(outcome_of):
             return outcome.fitness
 
     outcome = outcome_of(Vector(jnp.zeros((4, GENES))), jnp.arange(4.0))
-    told = search.emitters.tell((Listener(), Listener()), (None, None), outcome)
-    assert [x.tolist() for x in told] == [[0.0, 1.0], [2.0, 3.0]]
+    states = search.emitters.tell((Listener(), Listener()), (None, None), outcome)
+    assert [x.tolist() for x in states] == [[0.0, 1.0], [2.0, 3.0]]
 
 
 def minimise(function, start, children, generations, sigma=0.3, seed=0):
@@ -156,10 +153,7 @@ def test_turning_the_problem_turns_the_search(float64):
     scales, start = 10.0 ** np.arange(4), np.array([0.5, -0.3, 0.2, 0.1])
     turn = np.linalg.qr(np.random.default_rng(0).normal(size=(4, 4)))[0]
     strategy = es.strategy(4, 8)
-    straight, turned = (
-        es.start(jnp.asarray(start), 0.3),
-        es.start(jnp.asarray(turn @ start), 0.3),
-    )
+    straight, turned = (es.start(jnp.asarray(x), 0.3) for x in (start, turn @ start))
     for z in jnp.asarray(np.random.default_rng(3).normal(size=(30, 8, 4))):
         values = straight.mean[None] + straight.sigma * z @ straight.m.T
         order = jnp.argsort(jnp.sum(scales[None] * values**2, 1))
@@ -191,7 +185,7 @@ def emitter():
 
 
 @pytest.fixture
-def told(outcome_of):
+def state_after(outcome_of):
     """A function that gives an emitter's state after an outcome of six children."""
 
     def tell(emitter, fitness, cell, feasible=(True,) * 6, **changes):
@@ -206,45 +200,40 @@ def told(outcome_of):
     return tell
 
 
-def test_thresholds_follow_what_was_found_above_them(emitter, told):
-    found = told(emitter(), [2.0, 2.0, 2.0, 0.5, 3.0, 4.0], [0, 0, 0, 0, 1, 2])
+def test_thresholds_follow_fitness_above_them_at_the_learning_rate(emitter, state_after):
+    found = state_after(emitter(), [2.0, 2.0, 2.0, 0.5, 3.0, 4.0], [0, 0, 0, 0, 1, 2])
     # One after another, t ← t + 0.3 (f − t), which for equal fitness is the batch's rule.
     first = 1.0
     for _ in range(3):
         first += 0.3 * (2.0 - first)
     expected = [first, 1 + 0.3 * 2, 1 + 0.3 * 3, 1.0]
     np.testing.assert_allclose(found.thresholds, expected, rtol=1e-6)
+    for rate, expected in ((0.0, 1.0), (1.0, 2.5)):
+        found = state_after(
+            emitter(learning_rate=rate), [2.0, 3.0, 0.0, 0.0, 0.0, 0.0], [0] * 6
+        )
+        np.testing.assert_allclose(found.thresholds, [expected, 1, 1, 1])
 
 
-@pytest.mark.parametrize(("rate", "expected"), [(0.0, 1.0), (1.0, 2.5)])
-def test_a_threshold_stays_or_is_replaced_at_the_ends_of_the_rate(
-    emitter, told, rate, expected
-):
-    found = told(emitter(learning_rate=rate), [2.0, 3.0, 0.0, 0.0, 0.0, 0.0], [0] * 6)
-    np.testing.assert_allclose(found.thresholds, [expected, 1, 1, 1])
-
-
-def test_diverged_children_rank_last_and_move_no_threshold(emitter, told):
+def test_diverged_children_rank_last_and_move_no_threshold(emitter, state_after):
     fitness = [np.nan, np.inf, 3.0, 2.0, 1.5, 1.2]
     feasible = [False, False, True, True, True, True]
-    found = told(emitter(), fitness, [0, 0, 1, 1, 2, 3], feasible=feasible)
+    found = state_after(emitter(), fitness, [0, 0, 1, 1, 2, 3], feasible=feasible)
     assert np.isfinite(found.thresholds).all()
     assert np.isfinite(found.distribution.mean).all()
     assert found.thresholds[0] == 1.0
 
 
-def test_a_spent_distribution_begins_anew_at_an_elite(emitter, told):
+def test_a_spent_distribution_begins_anew_at_an_elite(emitter, state_after):
     chosen = emitter()
     state = chosen.init(key=jax.random.key(0))
     spent = replace(state.distribution, sigma=jnp.float32(1e-30), mean=jnp.full(2, 0.5))
     assert es.spent(spent)
-    after = told(chosen, np.arange(6.0), [0] * 6, z=state.z, distribution=spent)
+    after = state_after(chosen, np.arange(6.0), [0] * 6, z=state.z, distribution=spent)
     assert after.restart
     archive = search.no_elites(4, 1, Vector(jnp.zeros(2)))
-    elite = archive.genotypes.values.at[2].set(jnp.asarray([0.7, -0.1]))
-    archive = replace(
-        archive, occupied=archive.occupied.at[2].set(True), genotypes=Vector(elite)
-    )
+    elite = Vector(archive.genotypes.values.at[2].set(jnp.asarray([0.7, -0.1])))
+    archive = replace(archive, occupied=archive.occupied.at[2].set(True), genotypes=elite)
     keys, counters = jax.random.split(jax.random.key(0), 6), neat.first_counters(1, 1)
     children, again, _ = chosen.emit(after, archive, counters, keys=keys)
     np.testing.assert_allclose(again.distribution.mean, [0.7, -0.1], rtol=1e-6)

@@ -25,15 +25,10 @@ CONTROLS = {
 @pytest.fixture(params=["cppn", pytest.param("direct", marks=pytest.mark.long)])
 def creature(request, float64):
     """A small swimmer of each encoding in double precision, no limit acting."""
-    scene = spec.Scene.model_validate(
-        {
-            "world": {"width": 24, "height": 24, "viscosity": 0.1},
-            "body": {"nodes": 8},
-            "coupling": {"limits": False},
-            "control": CONTROLS[request.param],
-            "task": {"steps": STEPS},
-        }
-    )
+    world = {"width": 24, "height": 24, "viscosity": 0.1}
+    parts = {"world": world, "body": {"nodes": 8}, "coupling": {"limits": False}}
+    parts |= {"control": CONTROLS[request.param], "task": {"steps": STEPS}}
+    scene = spec.Scene.model_validate(parts)
     task = build_task(scene, float64, room=(8, 12))
     newcomer = task.encoding.newcomer(key=jax.random.key(3))
     double = partial(jax.tree.map, lambda x: x.astype(float64) if x.dtype == "f" else x)
@@ -44,9 +39,8 @@ def test_derivatives_by_every_part_are_those_of_finite_differences(creature):
     task, genotype = creature
     values = gradients.parts(task, genotype)
     value = jax.jit(lambda v: gradients.measures(task, genotype, v, OF))
-    found, rows = jax.jit(
-        lambda v: gradients.value_and_jacobian(task, genotype, v, OF, segment=15)
-    )(values)
+    backward = partial(gradients.value_and_jacobian, task, genotype, of=OF, segment=15)
+    found, rows = jax.jit(backward)(values)
     np.testing.assert_allclose(found, value(values), rtol=1e-10)
     random = np.random.default_rng(0)
     for name, at in values.items():

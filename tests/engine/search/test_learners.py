@@ -19,10 +19,8 @@ KEYS = jax.random.split(jax.random.key(7), SLOTS)
 
 
 def mega(**changes):
-    return emitters.CmaMega(
-        slots=SLOTS, newcomer=lambda *, key: Vector(jax.random.uniform(key, (GENES,))),
-        outputs=3, **changes,
-    )  # fmt: skip
+    newcomer = lambda *, key: Vector(jax.random.uniform(key, (GENES,)))  # noqa: E731
+    return emitters.CmaMega(slots=SLOTS, newcomer=newcomer, outputs=3, **changes)
 
 
 def archive(genotype, occupied):
@@ -78,27 +76,24 @@ def test_cma_mega_climbs_a_sphere(outcome_of):
         children, state = emitter.learn(state, children, slopes(rows))
         values = np.asarray(children.genotypes.values)
         fitness = -np.sum((values - top) ** 2, 1)
-        state = emitter.tell(
-            state, outcome_of(children.genotypes, fitness, entered=jnp.asarray(fitness > best))
-        )
+        entered = jnp.asarray(fitness > best)
+        outcome = outcome_of(children.genotypes, fitness, entered=entered)
+        state = emitter.tell(state, outcome)
         best = max(best, fitness.max())
         # Without this a step that overshoots would begin anew at the middle for ever.
         elites = archive(Vector(jnp.asarray(values[np.argmax(fitness)])), True)
     assert best > -0.02 * np.sum(top**2)
 
 
-def test_cma_mega_begins_anew_where_nothing_enters_and_stays_where_slopes_are_unsound(
-    outcome_of,
-):
+def test_cma_mega_restarts_if_nothing_enters_and_stays_if_slopes_are_invalid(outcome_of):
     emitter = mega()
     elites = archive(Vector(jnp.full(GENES, 0.2)), True)
     children, state = emitted(emitter, emitter.init(key=KEYS[0]), elites)
     children, state = emitter.learn(state, children, slopes(np.ones((3, GENES)), finite=False))
     np.testing.assert_allclose(children.genotypes.values, 0.2, atol=1e-7)
-    state = emitter.tell(
-        state, outcome_of(children.genotypes, np.zeros(SLOTS), entered=jnp.zeros(SLOTS, bool))
-    )
-    assert state.restart
+    nothing = {"entered": jnp.zeros(SLOTS, bool)}
+    outcome = outcome_of(children.genotypes, np.zeros(SLOTS), **nothing)
+    assert emitter.tell(state, outcome).restart
 
 
 @pytest.fixture(scope="module")
@@ -110,22 +105,22 @@ def lamarckian():
     return emitters.Lamarckian(varied, outputs=3, lessons=2, step=0.25)
 
 
-def test_a_lesson_is_one_step_of_the_given_length_up_the_wished_for_slope(lamarckian):
+def test_a_lesson_is_one_step_of_the_given_length_up_the_requested_slope(lamarckian):
     parent = minimal(jax.random.key(1), 3, 2, 12, 16)
-    children, wishes = emitted(lamarckian, lamarckian.init(key=KEYS[0]), archive(parent, True))
+    children, state = emitted(lamarckian, lamarckian.init(key=KEYS[0]), archive(parent, True))
     before = np.asarray(jax.vmap(genes_of)(children.genotypes))
     rows = np.random.default_rng(1).normal(size=(SLOTS, 3, before.shape[1]))
     finite = np.arange(SLOTS) != 2
-    told = search.Slopes(jnp.asarray(rows, jnp.float32), jnp.asarray(finite))
-    learnt, _ = jax.jit(lamarckian.learn)(wishes, children, told)
+    slopes = search.Slopes(jnp.asarray(rows, jnp.float32), jnp.asarray(finite))
+    learnt, _ = jax.jit(lamarckian.learn)(state, children, slopes)
     moved = np.asarray(jax.vmap(genes_of)(learnt.genotypes)) - before
     np.testing.assert_allclose(np.linalg.norm(moved, axis=1), 0.25 * finite, atol=1e-4)
     unit = rows / np.linalg.norm(rows, axis=2, keepdims=True)
-    wished = np.einsum("so,sog->sg", np.asarray(wishes.weights), unit)
-    gain = np.sum(moved * wished, 1)
+    direction = np.einsum("so,sog->sg", np.asarray(state.weights), unit)
+    gain = np.sum(moved * direction, 1)
     assert (gain[finite] > 0).all()
-    assert np.array_equal(np.asarray(learnt.genotypes.innovation),
-                          np.asarray(children.genotypes.innovation))  # fmt: skip
+    numbers = (np.asarray(one.genotypes.innovation) for one in (learnt, children))
+    assert np.array_equal(*numbers)
     assert {search.OPERATORS[i] for i in np.asarray(children.operator)} == {"lamarckian"}
 
 

@@ -36,15 +36,10 @@ def lenient():
 
 def filled(cells, count=40):
     random = np.random.default_rng(3)
-    measures = random.uniform(0.02, 1.0, (count, 3))
-    rows = search.Elites(
-        occupied=jnp.ones(count, bool),
-        fitness=jnp.asarray(random.normal(size=count), jnp.float32),
-        measures=jnp.asarray(measures, jnp.float32),
-        generation=jnp.full(count, 7, jnp.int32),
-        slot=jnp.arange(count, dtype=jnp.int32),
-        genotypes=genomes.Vector(jnp.asarray(random.uniform(-1, 1, (count, 5)), jnp.float32)),
-    )
+    measures = jnp.asarray(random.uniform(0.02, 1.0, (count, 3)), jnp.float32)
+    fitness = jnp.asarray(random.normal(size=count), jnp.float32)
+    genotypes = genomes.Vector(jnp.asarray(random.uniform(-1, 1, (count, 5)), jnp.float32))
+    rows = search.candidates(7, genotypes, fitness, measures, jnp.ones(count, bool))
     nobody = search.no_elites(cells.count, 3, genomes.Vector(jnp.zeros(5)))
     return search.insert(nobody, rows, cells)[0]
 
@@ -88,20 +83,16 @@ def evaluated(genotypes):
     measures = jnp.stack([x[:, 0], 10 ** x[:, 1], 1 + x[:, 2]], 1)
     status = jnp.where(x[:, 3] > 0.8, 1, 0)
     measures = jnp.where(status[:, None] == 1, jnp.nan, measures)
-    return search.Evaluation(
-        jnp.where(status == 1, jnp.nan, -jnp.sum(x * x, 1)), measures, status
-    )
+    fitness = jnp.where(status == 1, jnp.nan, -jnp.sum(x * x, 1))
+    return search.Evaluation(fitness, measures, status)
 
 
 def test_their_map_elites_runs_on_our_scores_and_what_diverged_never_enters():
-    loop, emitters = (
-        qdax.needed("core.map_elites"),
-        qdax.needed("core.emitters.standard_emitters"),
-    )
+    names = ("core.map_elites", "core.emitters.standard_emitters")
+    loop, emitters = map(qdax.needed, names)
     score = qdax.scoring_function(evaluated, AROUND)
-    mix = emitters.MixingEmitter(
-        lambda x, key: x + 0.3 * jax.random.normal(key, x.shape), None, 0.0, 32
-    )
+    mutate = lambda x, key: x + 0.3 * jax.random.normal(key, x.shape)  # noqa: E731
+    mix = emitters.MixingEmitter(mutate, None, 0.0, 32)
     run = loop.MAPElites(score, mix, lambda repertoire: {})
     first = jax.random.uniform(jax.random.PRNGKey(0), (32, 5), minval=-1.0, maxval=1.0)
     repertoire, state, _ = run.init(first, AROUND.centroids, jax.random.PRNGKey(1))
@@ -116,36 +107,15 @@ def test_their_map_elites_runs_on_our_scores_and_what_diverged_never_enters():
 
 
 def looped(generations, emitter, archive, state, begin=0):
-    for number in range(begin, begin + generations):
-        children, (state,), _ = search.emitters.emit(
-            (emitter,),
-            (state,),
-            archive,
-            neat.first_counters(1, 1),
-            jnp.asarray(number),
-            key=jax.random.key(5),
-        )
+    counters = neat.first_counters(1, 1)
+    for number in map(jnp.asarray, range(begin, begin + generations)):
+        given = ((emitter,), (state,), archive, counters, number)
+        children, (state,), _ = search.emitters.emit(*given, key=jax.random.key(5))
         found = evaluated(children.genotypes)
-        rows = search.Elites(
-            occupied=found.status == 0,
-            fitness=found.fitness,
-            measures=found.measures,
-            generation=jnp.full(emitter.slots, number, jnp.int32),
-            slot=jnp.arange(emitter.slots, dtype=jnp.int32),
-            genotypes=children.genotypes,
-        )
+        columns = (found.fitness, found.measures, found.status == 0)
+        rows = search.candidates(number, children.genotypes, *columns)
         archive, inserted = search.insert(archive, rows, AROUND)
-        outcome = search.Outcome(
-            genotypes=children.genotypes,
-            fitness=rows.fitness,
-            measures=rows.measures,
-            feasible=rows.occupied,
-            cell=inserted.cell,
-            entered=inserted.entered,
-            fresh=inserted.fresh,
-            improvement=inserted.improvement,
-        )
-        state = emitter.tell(state, outcome)
+        state = emitter.tell(state, search.emitters.outcome(rows, inserted))
     return archive, state
 
 
@@ -163,9 +133,8 @@ def test_cma_me_climbs_in_our_loop_and_goes_on_from_kept_arrays():
     again = jax.tree.map(lambda x: jnp.asarray(np.array(x)), kept)
     assert same(looped(6, emitter, early, again, begin=3), (whole, state))
     assert jax.tree.structure(state) == jax.tree.structure(start)
-    assert all(
-        np.isfinite(x).all() for x in jax.tree.leaves(state.emitter.emitter_states.cmaes_state)
-    )
+    strategies = state.emitter.emitter_states.cmaes_state
+    assert all(np.isfinite(x).all() for x in jax.tree.leaves(strategies))
     assert int(whole.occupied.sum()) >= int(early.occupied.sum())
     assert np.all(whole.fitness[early.occupied] >= early.fitness[early.occupied])
 
@@ -181,15 +150,7 @@ def network_scores(networks, key=None):
 
 def test_our_neat_grows_networks_in_their_map_elites_and_numbers_them_alike():
     loop, multi = qdax.needed("core.map_elites"), qdax.needed("core.emitters.multi_emitter")
-    rates = neat.Rates(
-        weight=0.8,
-        weight_step=0.5,
-        replace=0.1,
-        activation=0.1,
-        toggle=0.1,
-        add_node=0.5,
-        add_connection=0.3,
-    )
+    rates = neat.Rates(0.8, 0.5, 0.1, 0.1, toggle=0.1, add_node=0.5, add_connection=0.3)
 
     def minimal(*, key):
         return neat.minimal(key, 2, 1, 16, 32)
@@ -214,7 +175,7 @@ def test_our_neat_grows_networks_in_their_map_elites_and_numbers_them_alike():
     assert all((np.diff(numbers) > 0).all() for numbers in rows)
 
 
-def test_without_qdax_the_command_to_install_it_is_told(monkeypatch):
+def test_without_qdax_the_error_names_the_command(monkeypatch):
     def missing(name):
         raise ImportError(name)
 

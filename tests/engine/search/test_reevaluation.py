@@ -45,11 +45,9 @@ def disturbed(task, network):
     run = jax.jit(lambda changed: reevaluation.evaluate_disturbed(task, network, changed))
 
     def found(**changes):
-        values = {**STILL, **changes}
-        whole = {
-            name: jnp.asarray(value, jnp.int32 if name == "energy" else jnp.float32)
-            for name, value in values.items()
-        }
+        values = (STILL | changes).items()
+        types = {"energy": jnp.int32}
+        whole = {n: jnp.asarray(value, types.get(n, jnp.float32)) for n, value in values}
         evaluation = run(Disturbance(**whole))
         assert evaluation.status == 0
         measures = np.asarray(evaluation.measures)
@@ -58,10 +56,14 @@ def disturbed(task, network):
     return found
 
 
-@pytest.fixture(scope="module")
-def plain(task, network):
+def measured(task, network):
     measures = jax.jit(lambda: search.evaluate(task, network).measures)()
     return dict(zip(search.MEASURES, np.asarray(measures).tolist(), strict=True))
+
+
+@pytest.fixture(scope="module")
+def plain(task, network):
+    return measured(task, network)
 
 
 MOTION = ("displacement", "path_length", "bending_effort", "rotation")
@@ -73,11 +75,8 @@ def agree(found, expected, names=MOTION, rel=1e-3):
         assert found[name] == pytest.approx(expected[name], rel=rel, abs=1e-5), name
 
 
-def test_conditions_that_are_not_disturbed_change_nothing(disturbed, plain):
-    agree(disturbed(), plain, (*MOTION, "energy", "mach"))
-
-
 def test_the_lattice_is_the_same_everywhere_and_in_its_four_directions(disturbed, plain):
+    agree(disturbed(), plain, (*MOTION, "energy", "mach"))
     agree(disturbed(shift=(7.0, -3.0)), plain)
     agree(disturbed(turn=np.pi / 2), plain)
     agree(disturbed(turn=np.pi, shift=(1.0, 2.0)), plain)
@@ -97,9 +96,7 @@ def test_a_whole_period_ahead_is_no_change_and_half_a_period_is_one(disturbed, p
 
 def test_a_factor_of_viscosity_is_that_viscosity(disturbed, task, network):
     other = replace(task, world=replace(task.world, viscosity=1.05 * task.world.viscosity))
-    measures = jax.jit(lambda: search.evaluate(other, network).measures)()
-    expected = dict(zip(search.MEASURES, np.asarray(measures).tolist(), strict=True))
-    agree(disturbed(viscosity=1.05), expected)
+    agree(disturbed(viscosity=1.05), measured(other, network))
 
 
 def test_disturbances_stay_within_the_spread():
@@ -221,9 +218,11 @@ def test_measures_are_means_over_all_placements(foraging, sensing):
     assert np.ptp([e.measures[ENERGY] for e in each]) > 0.01
 
 
-def test_the_first_placement_is_the_world_as_it_is_and_all_differ(foraging):
+def test_the_first_of_several_placements_is_the_world_as_it_is_and_all_differ(foraging):
     assert not foraging.placements[0].any()
     assert len({tuple(shift.tolist()) for shift in foraging.placements}) == 3
+    one = build_task(spec.Scene(world=spec.World(energy=spec.Energy())))
+    assert one.placements is None
 
 
 def test_a_simulation_that_fails_in_one_world_fails(foraging, sensing):
@@ -237,13 +236,8 @@ def test_gradients_are_of_the_mean(foraging, sensing, float64):
         (foraging, sensing),
     )
     values = search.gradients.parts(task, network, ("genes",))
-    whole = jax.jit(lambda v: search.gradients.measures(task, network, v, ("energy",)))
-    one = jax.jit(
-        lambda v, shift: search.gradients.measures(moved(task, shift), network, v, ("energy",))
-    )
+    measures, of = search.gradients.measures, ("energy",)
+    one = jax.jit(lambda v, shift: measures(moved(task, shift), network, v, of))
     each = [one(values, shift)[0] for shift in task.placements]
-    np.testing.assert_allclose(whole(values)[0], np.mean(each), rtol=1e-10)
-
-
-def test_a_task_of_one_placement_has_no_axis_of_placements():
-    assert build_task(spec.Scene(world=spec.World(energy=spec.Energy()))).placements is None
+    whole = jax.jit(lambda v: measures(task, network, v, of))(values)[0]
+    np.testing.assert_allclose(whole, np.mean(each), rtol=1e-10)

@@ -19,12 +19,11 @@ needs_package = pytest.mark.skipif(
     not tensorneat.available(), reason="tensorneat is not installed: make tensorneat"
 )
 
+PRESET = neat.PRESETS["tensorneat"]
 SETTINGS = replace(
-    neat.PRESETS["tensorneat"],
+    PRESET,
     population=40,
-    rates=replace(
-        neat.PRESETS["tensorneat"].rates, palette=tuple(range(9)), add_node=0.5, activation=0.3
-    ),
+    rates=replace(PRESET.rates, palette=tuple(range(9)), add_node=0.5, activation=0.3),
 )
 
 
@@ -51,24 +50,20 @@ def invented(generation):
 
 @pytest.mark.fast
 def test_without_the_package_the_refusal_names_the_command(monkeypatch):
+    # The package is not loaded to look for it.
+    assert tensorneat.available() == (importlib.util.find_spec("tensorneat") is not None)
     monkeypatch.setattr(tensorneat, "find_spec", lambda name: None)
     assert not tensorneat.available()
     with pytest.raises(ValueError, match=r"not installed; install it with: make tensorneat$"):
         tensorneat.build(SETTINGS, 3, 2, 24, 48)
 
 
-@pytest.mark.fast
-def test_the_package_is_not_loaded_to_ask_for_it():
-    assert tensorneat.available() == (importlib.util.find_spec("tensorneat") is not None)
-
-
 @needs_package
 def test_a_state_in_arrays_goes_on_bit_for_bit(backend, grown):
     half, end = grown
     arrays = backend.to_arrays(half)
-    assert {"randkey", "pop_nodes", "pop_conns", "generation", "species.center_nodes"} <= {
-        *arrays
-    }
+    needed = {"randkey", "pop_nodes", "pop_conns", "generation", "species.center_nodes"}
+    assert needed <= {*arrays}
     assert all(array.dtype != object for array in arrays.values())
     state = backend.from_arrays({name: array.copy() for name, array in arrays.items()})
     for generation in range(4, 8):
@@ -86,9 +81,8 @@ def test_the_population_computes_the_same_as_our_networks(backend, grown):
     nodes, connections = backend.ask(state)
     outputs = forward(backend.algorithm, state)(nodes, connections, inputs.T)
     batch, computes = backend.population(state)
-    ours = jax.jit(jax.vmap(lambda network: genomes.evaluate(network, jnp.asarray(inputs), 2)))(
-        jax.tree.map(jnp.asarray, batch)
-    )
+    evaluate = jax.jit(jax.vmap(lambda one: genomes.evaluate(one, jnp.asarray(inputs), 2)))
+    ours = evaluate(jax.tree.map(jnp.asarray, batch))
     for row in range(40):
         theirs = np.asarray(outputs[row]).T
         network = networks.read_tensorneat(nodes[row], connections[row], backend.meta)
@@ -104,8 +98,8 @@ def test_the_population_computes_the_same_as_our_networks(backend, grown):
 @needs_package
 def test_exported_genes_run_in_tensorneat(backend, grown):
     """Genes of ours, written as a genome, in a population of TensorNEAT's."""
-    batch, computes = backend.population(grown[1])
     state = grown[1]
+    batch, computes = backend.population(state)
     inputs = np.random.default_rng(0).normal(size=(3, 16)).astype(np.float32)
     names = ("a", "b", "c"), ("d", "e")
     for row in np.flatnonzero(computes)[:5]:

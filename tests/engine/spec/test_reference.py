@@ -37,13 +37,9 @@ def test_the_document_is_what_the_schemas_give_now():
 
 
 @pytest.mark.parametrize("part", list(everything()), ids=lambda part: part.name)
-def test_every_field_says_what_it_means(part):
+def test_every_field_has_a_text_and_every_number_a_unit_or_is_known_to_have_none(part):
     assert part.text
     assert [field.name for field in part.fields if not field.text] == []
-
-
-@pytest.mark.parametrize("part", list(everything()), ids=lambda part: part.name)
-def test_every_number_has_a_unit_or_is_known_to_have_none(part):
     plain = WITHOUT_UNIT.split()
     numbers = [f for f in part.fields if "integer" in f.kind or "number" in f.kind]
     lacking = [f.name for f in numbers if not f.unit and f.name not in plain]
@@ -70,14 +66,10 @@ def test_every_part_that_a_field_links_to_is_there():
                 assert link.partition("]")[0] in names
 
 
-def test_bounds_of_inherited_angles_are_in_rad():
+def test_inherited_angles_are_in_rad_and_ends_of_an_axis_in_the_unit_of_its_measure():
     parts = EXPERIMENTS["quality-diversity"].spec.model_json_schema()["$defs"]
     for part in ("Direct", "Grown"):
         assert parts[part]["properties"]["rest_angle"]["unit"] == "rad"
-
-
-def test_ends_of_an_axis_have_the_unit_of_what_is_measured():
-    parts = EXPERIMENTS["quality-diversity"].spec.model_json_schema()["$defs"]
     for end in ("low", "high"):
         field = parts["Descriptor"]["properties"][end]
         assert field["unit_of"] in parts["Descriptor"]["properties"]

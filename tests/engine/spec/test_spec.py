@@ -29,6 +29,9 @@ def test_a_preset_survives_json(preset):
 
 AXES = [{"name": "bending_effort", "low": 0}, {"name": "stretching_effort"}]
 LOOP = {"builder": "ring", "nodes": 12}
+GROWN = {"encoding": "cppn-body"}
+MANY = {"control": GROWN | {"min_nodes": 20}, "body": {"nodes": 12}}
+NARROW = {"body": {"nodes": 62}, "world": {"width": 80}}
 LARGE = {"body": {"nodes": 256}, "world": {"width": 512, "height": 512}}
 
 
@@ -49,10 +52,7 @@ def free(low, high):
         ({"body": {"nodes": 10**9}}, "body.nodes"),
         ({"world": {"width": 32}}, "`world.width` must be at least 39"),
         ({"body": {"nodes": 62}}, "`world.width` must be at least 72 cells"),
-        (
-            {"body": {"nodes": 62}, "world": {"width": 80}},
-            "`world.height` must be at least 72 cells",
-        ),
+        (NARROW, "`world.height` must be at least 72 cells"),
         ({"coupling": {"theta_feedback": 0}}, "`projection` must be 'none' or 'force'"),
         ({"world": {"magic": "fixed", "viscosity": 0.001}}, "`magic` must be"),
         ({"archive": {"descriptors": [AXES[1]] * 2}}, "`descriptors` must not repeat"),
@@ -69,14 +69,11 @@ def free(low, high):
         (direct(rest_angle=free(0.5, 0.9)) | {"body": LOOP}, "without loops"),
         (direct(rest_length=free(0.5, 0.9)) | {"body": LOOP}, "without loops"),
         (direct(rest_length=free(1.0, 2.0)), "at least 73 cells"),  # 31 × 2 × 1.1 + 4
-        ({"control": {"encoding": "cppn-body"}, "body": {"builder": "arc"}}, "must be 'chain'"),
-        (
-            {"control": {"encoding": "cppn-body", "min_nodes": 20}, "body": {"nodes": 12}},
-            "at most the body's 12 nodes",
-        ),
+        ({"control": GROWN, "body": {"builder": "arc"}}, "must be 'chain'"),
+        (MANY, "at most the body's 12 nodes"),
         (direct(terms=256) | LARGE, "at most 65536 genes"),
         (
-            {"control": {"encoding": "cppn-body"}, "genome": {"max_nodes": 10}},
+            {"control": GROWN, "genome": {"max_nodes": 10}},
             "`genome.max_nodes` must be at least 11",
         ),
     ],
@@ -86,12 +83,9 @@ def test_a_spec_that_cannot_be_carried_out_is_refused_with_the_field_and_reason(
     assert re.search(words, refusal(**changes))
 
 
-def test_an_unknown_encoding_of_a_scene_is_refused_with_the_known_ones():
+def test_an_unknown_encoding_or_experiment_is_refused_with_the_known_ones():
     with pytest.raises(ValidationError, match=r"`encoding` must be .*direct.*got 'l-system'"):
         Scene.model_validate({"control": {"encoding": "l-system"}})
-
-
-def test_an_unknown_experiment_is_refused_with_the_known_ones():
     with pytest.raises(ValidationError, match="'quality-diversity'"):
         parse({"experiment": "astrology"})
 
@@ -141,10 +135,8 @@ def test_importing_it_loads_no_jax(module):
 
 
 def test_only_forms_without_projection_can_push_themselves():
-    forms = {
-        name: spec.Coupling(projection=name).force_free for name in ("force", "force+torque")
-    }
-    assert forms == {"force": True, "force+torque": True}
+    for projection in ("force", "force+torque"):
+        assert spec.Coupling(projection=projection).force_free
     assert not spec.Coupling(projection="none").force_free
 
 

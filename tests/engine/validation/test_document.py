@@ -1,10 +1,10 @@
-"""The document says what was found, misses too."""
+"""The document shows every result, failures included."""
 
 import numpy as np
 import pytest
 
 from validation import __main__ as program
-from validation.rows import Found, Line, Plot, at_least, at_most, between, close, holds
+from validation.rows import Line, Plot, Result, Row, at_least, at_most, close, holds
 from validation.suite import SECTIONS, Section
 
 
@@ -23,7 +23,7 @@ def section(found):
         (at_least("q", float("inf"), 0.8, 1.0, "s"), False),
         (close("q", -1.04, -1.0, 0.05, "s"), True),
         (close("q", 1.0, -1.0, 0.05, "s"), False),
-        (between("q", 1.03, 0.95, 1.02, 1.0, "s"), False),
+        (Row("q", 1.03, 0.95, 1.02, "0.95 to 1.02", 1.0, "s"), False),
         (holds("q", True, "s"), True),
         (holds("q", False, "s"), False),
     ],
@@ -42,7 +42,7 @@ def test_a_missed_bar_is_written_and_fails_the_program(tmp_path, capsys):
         Plot("lines", "time", "drag", (Line("here", [1, 2], [3, 4], "o-"),), None, "xy"),
         Plot("field", "x", "y", image=np.eye(4)),
     ]
-    assert program.main((section(Found(rows, plots)),), tmp_path) == 1
+    assert program.main((section(Result(rows, plots)),), tmp_path) == 1
     text = (tmp_path / "validation.md").read_text(encoding="utf-8")
     assert "| a small error | 0 (Somebody 1900) | 2 | ≤ 1 | **FAIL** |" in text
     assert "| drag | 2.05 (Somebody 1970) | 2.06 | ± 8 % | pass |" in text
@@ -55,7 +55,7 @@ def test_a_missed_bar_is_written_and_fails_the_program(tmp_path, capsys):
 
 
 def test_the_program_succeeds_if_every_line_passes(tmp_path):
-    assert program.main((section(Found([holds("a fact", True, "logic")])),), tmp_path) == 0
+    assert program.main((section(Result([holds("a fact", True, "logic")])),), tmp_path) == 0
     assert "FAIL" not in (tmp_path / "validation.md").read_text(encoding="utf-8")
 
 

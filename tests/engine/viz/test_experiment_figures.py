@@ -28,44 +28,28 @@ def rows():
     ):
         fails = (form, swimmer, viscosity) == ("paper", "worm", 0.001)
         limited = (form, swimmer, viscosity) == ("ours", "ray", 2.0)
-        found.append(
-            {
-                "form": form,
-                "swimmer": swimmer,
-                "viscosity": viscosity,
-                "displacement": None if fails else displacement(swimmer, viscosity),
-                "status": "diverged" if fails else "ok",
-                "reynolds": None if fails else {"worm": 3.1, "ray": 6.2}[swimmer] / viscosity,
-                "limited": 0.25 if limited else 0.0,
-                "force_free": form != "paper",
-            }
-        )
+        row = {"form": form, "swimmer": swimmer, "viscosity": viscosity}
+        row |= {"limited": 0.25 if limited else 0.0, "force_free": form != "paper"}
+        row |= {"status": "diverged", "displacement": None, "reynolds": None}
+        if not fails:
+            reynolds = {"worm": 3.1, "ray": 6.2}[swimmer] / viscosity
+            far = displacement(swimmer, viscosity)
+            row |= {"status": "ok", "displacement": far, "reynolds": reynolds}
+        found.append(row)
     return found
 
 
 @pytest.fixture
 def timings():
     """A run that is linear beside a fluid of 6 s, and all pairs of which two are known."""
-    ours = [
-        {
-            "method": "microcosmos",
-            "nodes": nodes,
-            "seconds": 6 + nodes / 1000,
-            "fluid": 6.0,
-            "coupling": nodes / 2000,
-            "constraints": nodes / 4000,
-            "steric": nodes / 4000,
-            "memory_bytes": 2**26 + 1000 * nodes,
-        }
-        for nodes in NODES
+    whole = ("method", "nodes", "seconds", "memory_bytes")
+    names = (*whole, "fluid", "coupling", "constraints", "steric")
+    rows = [
+        ("microcosmos", n, 6 + n / 1000, 2**26 + 1000 * n, 6.0, n / 2000, n / 4000, n / 4000)
+        for n in NODES
     ]
-    pairs = [
-        {"method": "all-pairs", "nodes": n, "seconds": 1e-6 * n**2, "memory_bytes": 8 * n**2}
-        for n in NODES[:2]
-    ]
-    for row in pairs:
-        row |= dict.fromkeys(("fluid", "coupling", "constraints", "steric"))
-    return ours + pairs
+    rows += [("all-pairs", n, 1e-6 * n**2, 8 * n**2, *[None] * 4) for n in NODES[:2]]
+    return [dict(zip(names, row, strict=True)) for row in rows]
 
 
 def line(panel, label):
@@ -121,20 +105,16 @@ def test_the_legend_explains_only_marks_that_are_there(rows):
     assert texts(sound) == ["worm", "ray"]
 
 
-def test_the_upper_axis_has_the_worms_reynolds_numbers_at_its_viscosities(rows):
+def test_the_upper_axis_has_the_reynolds_numbers_of_the_worm_or_else_of_another(rows):
     figure = experiments.sweep(rows)
     for panel in figure.axes:
         (upper,) = panel.child_axes
         assert upper.get_xlabel() == "Reynolds number of the worm"
         ticks = dict(zip(upper.get_xticks(), upper.get_xticklabels(), strict=True))
         for viscosity, label in ticks.items():
-            assert float(label.get_text().replace(",", "")) == pytest.approx(
-                3.1 / viscosity, rel=0.05
-            )
+            reynolds = float(label.get_text().replace(",", ""))
+            assert reynolds == pytest.approx(3.1 / viscosity, rel=0.05)
     assert set(upper.get_xticks()) <= set(VISCOSITIES)
-
-
-def test_the_upper_axis_names_another_swimmer_where_there_is_no_worm(rows):
     figure = experiments.sweep([row for row in rows if row["swimmer"] == "ray"])
     for panel in figure.axes:
         assert panel.child_axes[0].get_xlabel() == "Reynolds number of the ray"

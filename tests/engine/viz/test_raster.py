@@ -61,7 +61,10 @@ def test_x_goes_right_and_y_goes_up(pose):
         assert np.abs(shade(picture, x, y) - NEUTRAL).max() <= 1
 
 
-def test_a_straight_filament_covers_its_length_times_four_fifths_of_a_cell(pose):
+def test_a_straight_filament_on_neutral_fluid_covers_its_length_times_its_width(pose):
+    picture = pose([[5.0, 5.0], [6.0, 5.0]], [[0, 1]], way=False)
+    still = (np.abs(picture.astype(int) - NEUTRAL).max(-1) == 0).mean()
+    assert still > 0.98
     picture = pose([[8.0, 12.0], [20.0, 12.0]], [[0, 1]], way=False)
     radius = 0.4 * SCALE
     area = 12 * SCALE * 2 * radius + np.pi * radius**2
@@ -103,12 +106,6 @@ def test_a_curve_runs_round_through_the_nodes_of_a_hexagon(pose):
         np.testing.assert_array_equal(shade(picture, *point), INK)
 
 
-def test_still_fluid_is_neutral(pose):
-    picture = pose([[5.0, 5.0], [6.0, 5.0]], [[0, 1]], way=False)
-    plain = (np.abs(picture.astype(int) - NEUTRAL).max(-1) == 0).mean()
-    assert plain > 0.98
-
-
 @pytest.mark.parametrize("theme", THEMES)
 def test_opposite_vorticity_has_opposite_colours(pose, theme):
     levels = np.zeros((32, 24))
@@ -136,7 +133,7 @@ def test_each_of_two_creatures_has_its_own_way(replay_bytes):
     np.testing.assert_allclose(centres, [[[5, 4], [21, 10]]] * 2)
 
 
-def test_distances_are_those_to_the_segment():
+def test_distances_are_those_to_the_segment_and_coverage_falls_with_them():
     starts, ends = np.array([[10.0, 20.0]]), np.array([[40.0, 32.0]])
     got = distance(starts, ends, (60, 64), 9.0)
     row, column = np.mgrid[:60, :64] + 0.5
@@ -145,9 +142,7 @@ def test_distances_are_those_to_the_segment():
     share = np.clip((points - starts[0]) @ along / (along @ along), 0, 1)
     exact = np.linalg.norm(points - starts[0] - share[..., None] * along, axis=-1)
     np.testing.assert_allclose(got, np.minimum(exact, 9), atol=1e-4)
-
-
-def test_a_thin_line_is_faint_and_a_thick_one_full():
+    # A thin line is faint and a thick one full.
     assert coverage(np.zeros(1), 0.5) == 0.5
     np.testing.assert_allclose(coverage(np.array([0, 2.0, 2.5]), 4.0), [1, 0.5, 0])
 
@@ -155,9 +150,9 @@ def test_a_thin_line_is_faint_and_a_thick_one_full():
 def test_a_field_between_pixels_keeps_its_values_in_the_middles_of_cells():
     random = np.random.default_rng(0)
     field = random.normal(size=(16, 10))
-    seen = view((16, 10), 16 * 5, np.array([8.1, 5.1]))
+    shown = view((16, 10), 16 * 5, np.array([8.1, 5.1]))
     # The camera is a tenth of a cell off, so that one pixel in five is the middle of a cell.
-    got = seen.sampled(field)
+    got = shown.sampled(field)
     assert got.shape == (50, 80)
     x = (np.arange(80) + 0.5) / 5 + 0.1
     columns = np.flatnonzero(np.isclose(x, np.round(x)))
@@ -205,13 +200,10 @@ def test_a_strip_has_the_moments_side_by_side(swimming, count, columns):
         np.testing.assert_array_equal(panel, frame(swimming, number, width=64))
 
 
-def test_moments_go_evenly_from_the_first_frame_to_the_last(swimming):
+def test_moments_are_even_and_each_has_its_step_written_below_it(swimming):
     assert moments(swimming, 4) == [0, 10, 20, 30]
     assert moments(swimming, 1) == [30]
     assert moments(swimming, 31) == list(range(31))
-
-
-def test_each_moment_has_its_step_written_below_it(swimming):
     slower = replace(swimming, header=swimming.header | {"every": 50})
     assert [replay.step(15) for replay in (swimming, slower)] == [75, 750]
     sheet, other = (opened(strip(replay, 3, width=64)) for replay in (swimming, slower))
@@ -241,9 +233,8 @@ def test_a_strip_that_cannot_be_is_refused(swimming, options, message):
 
 def test_a_library_that_is_missing_is_named_with_what_installs_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "PIL", None)
-    with pytest.raises(
-        ImportError, match=r'PIL is needed: pip install "microcosmos\[figures\]"'
-    ):
+    reason = r'PIL is needed: pip install "microcosmos\[figures\]"'
+    with pytest.raises(ImportError, match=reason):
         require("PIL")
 
 

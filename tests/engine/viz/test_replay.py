@@ -12,33 +12,21 @@ from microcosmos import fields, genomes, search, spec
 from microcosmos.archive import creature
 from microcosmos.audit.physics import audit
 from microcosmos.audit.reproducibility import check, measurement
-from microcosmos.build import build, build_block, build_encoding, build_task
+from microcosmos.build import build_block, build_encoding, build_task
 from microcosmos.device import device_kind
 from microcosmos.experiments.lineage import identity
-from microcosmos.spec import parse
 from microcosmos.spec.creature.identity import Identity
 from microcosmos.viz.raster import THEMES, frame
 from microcosmos.viz.replay import actuator_of, record
 from microcosmos.viz.replay_file import Replay, ReplayError, read_replay
 from microcosmos.world import flow
 
-SPEC = parse(
-    {
-        "experiment": "quality-diversity",
-        "world": {"width": 40, "height": 32},
-        "body": {"nodes": 12},
-        "control": {"period": 30},
-        "task": {"steps": 601},
-        "search": {"generations": 1, "batch": 4, "block": 4},
-    }
-)
-
 
 @pytest.fixture(scope="module")
-def best():
+def best(best_of):
+    parts = {"world": {"width": 40, "height": 32}, "body": {"nodes": 12}}
     with jax.numpy_rank_promotion("raise"):
-        experiment = build(SPEC)
-        return experiment.best(experiment.advance(experiment.init())[0])
+        return best_of(4, **parts, control={"period": 30}, task={"steps": 601})
 
 
 @pytest.fixture(scope="module")
@@ -62,12 +50,9 @@ def test_a_short_run_is_recorded_at_every_step(newcomer):
     assert moved == pytest.approx(film.header["fitness"]["replayed"], abs=1e-4)
 
 
-def test_the_body_begins_straight_in_the_middle(film):
+def test_the_body_begins_straight_in_the_middle_and_ends_where_the_fitness_says(film, best):
     np.testing.assert_allclose(film.positions[0].mean(0), [20, 16], atol=1e-5)
     np.testing.assert_allclose(np.diff(film.positions[0], axis=0), [[1, 0]] * 11, atol=1e-5)
-
-
-def test_the_motion_ends_where_the_fitness_says(film, best):
     moved = np.linalg.norm(np.diff(film.centres[[0, -1], 0], axis=0))
     fitness = film.header["fitness"]
     # The last frame is one step before the end: 601 steps, every third kept.
@@ -82,10 +67,10 @@ def test_a_check_repeats_every_recorded_number_exactly(best):
     assert result.same_device
     assert result.exact
     assert set(result.repeated) == set(search.MEASURES)
-    told = measurement(best)
-    assert (told["exact"], told["figures"]) == (True, [])
-    assert told["fitness"]["measured"] == best["measured"]["fitness"]
-    assert told["device"] == told["recorded_device"]
+    report = measurement(best)
+    assert (report["exact"], report["figures"]) == (True, [])
+    assert report["fitness"]["measured"] == best["measured"]["fitness"]
+    assert report["device"] == report["recorded_device"]
 
 
 @pytest.mark.optimised
@@ -94,8 +79,8 @@ def test_a_check_notices_a_wrong_record(best):
     right = changed["measured"]["measures"]["path_length"]
     wrong = changed["measured"]["measures"]["path_length"] = right * (1 + 1e-12)
     assert not check(changed).exact
-    (told,) = measurement(changed)["figures"]
-    assert told == {"name": "path_length", "recorded": wrong, "measured": right}
+    (figure,) = measurement(changed)["figures"]
+    assert figure == {"name": "path_length", "recorded": wrong, "measured": right}
     # Older files know fewer measures; what a file does not say is not compared.
     del changed["measured"]["measures"]["path_length"]
     assert check(changed).exact
@@ -124,9 +109,8 @@ def test_a_replay_holds_the_rest_shapes_as_they_were_applied(film, best):
     scene = creature.scene_of(best)
     encoding = build_encoding(scene, creature.room(best))
     task = build_task(scene)
-    genotype = jax.tree.map(
-        jnp.asarray, genomes.read(best["identity"]["genome"], encoding.room)
-    )
+    genes = genomes.read(best["identity"]["genome"], encoding.room)
+    genotype = jax.tree.map(jnp.asarray, genes)
     rest = search.drive(task, genotype).inputs
     steps = np.maximum(np.arange(film.frames) * film.header["every"] - 1, 0)
     np.testing.assert_allclose(film.drive.angles, rest.angle[steps], atol=1e-6)
@@ -143,10 +127,7 @@ def test_a_replay_holds_the_velocity_of_the_fluid(film, best):
     found = film.drive.velocity[30]
     np.testing.assert_allclose(found, flows[89], atol=0.51 * quantum + 1e-5)
     curl = film.vorticity[30]
-    across, up = (
-        np.roll(u, -1, axis) - np.roll(u, 1, axis)
-        for u, axis in zip(found[::-1], (0, 1), strict=True)
-    )
+    across, up = (np.roll(found[1 - k], -1, k) - np.roll(found[1 - k], 1, k) for k in (0, 1))
     np.testing.assert_allclose(0.5 * (across - up), curl, atol=1.1 * quantum + film.quantum)
 
 
@@ -155,10 +136,8 @@ def test_energy_is_kept_once_unless_it_changes(best, change):
     identity = copy.deepcopy(best["identity"])
     identity["world"]["energy"] = {"packets": 3, "width": 2.0} | change
     identity["task"]["steps"] = 60
-    file = creature.document(
-        Identity.model_validate(identity).model_dump(mode="json"), None, None
-    )
-    film = read_replay(record(file))
+    whole = Identity.model_validate(identity).model_dump(mode="json")
+    film = read_replay(record(creature.document(whole, None, None)))
     assert len(film.drive.energy) == (film.frames if change else 1)
     packets = fields.packets((40, 32), fields.Packets(3, 2.0, 1.0, 0))
     np.testing.assert_allclose(film.drive.energy[0], packets, atol=0.003)
@@ -214,19 +193,11 @@ def test_bytes_that_are_no_replay_are_refused(replay_bytes, change, field):
     assert caught.value.field == field
 
 
-@pytest.mark.parametrize(
-    ("data", "field"),
-    [
-        (b"", "bytes"),
-        (b"\xff\0\0\0{}", "header"),
-        (b"\2\0\0\0{]", "header"),
-        (b"\2\0\0\0[]", "header"),
-    ],
-)
-def test_a_header_that_cannot_be_read_is_refused(data, field):
+@pytest.mark.parametrize("data", [b"", b"\xff\0\0\0{}", b"\2\0\0\0{]", b"\2\0\0\0[]"])
+def test_a_header_that_cannot_be_read_is_refused(data):
     with pytest.raises(ReplayError) as caught:
         read_replay(data)
-    assert caught.value.field == field
+    assert caught.value.field == ("header" if data else "bytes")
 
 
 def test_positions_that_are_not_finite_are_refused(replay_bytes):
@@ -240,22 +211,21 @@ BASE = {"period": 12, "angle_scale": 0.3}
 BENT = spec.Bounds(low=-0.1, high=0.1)
 
 
-def controls():
-    return {
-        "recurrent": spec.Control(recurrent=True, **BASE),
-        "direct": spec.Direct(rest_angle=BENT, bend=spec.Bounds(low=0.3, high=1.0), **BASE),
-        "weights": spec.Weights(**BASE),
-        "cppn-body": spec.Grown(**BASE),
-    }
+CONTROLS = {
+    "recurrent": spec.Control(recurrent=True, **BASE),
+    "direct": spec.Direct(rest_angle=BENT, bend=spec.Bounds(low=0.3, high=1.0), **BASE),
+    "weights": spec.Weights(**BASE),
+    "cppn-body": spec.Grown(**BASE),
+}
 
 
-@pytest.fixture(params=list(controls()))
+@pytest.fixture(params=CONTROLS)
 def file(request):
     """A creature that was measured as those of a run are."""
     scene = spec.Scene(
         world=spec.World(width=20, height=20),
         body=spec.Chain(nodes=NODES),
-        control=controls()[request.param],
+        control=CONTROLS[request.param],
         task=spec.Task(steps=STEPS),
     )
     encoding = build_encoding(scene, ROOM)

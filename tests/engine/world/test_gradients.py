@@ -103,7 +103,7 @@ def both_fields():
 def test_some_nodes_of_a_chain_swim_as_a_shorter_chain(pair, options):
     (short, start), (long, begun) = pair(**options())
     run = jax.jit(lambda box, start, rest: world.rollout(box, start, rest, see))
-    whole, seen = run(short, start, gait(GROWN))
+    whole, expected = run(short, start, gait(GROWN))
     part, other = run(long, begun, gait(ALL))
     np.testing.assert_allclose(part.positions[:GROWN], whole.positions, atol=1e-10)
     np.testing.assert_array_equal(part.positions[GROWN:], begun.positions[GROWN:])
@@ -113,9 +113,9 @@ def test_some_nodes_of_a_chain_swim_as_a_shorter_chain(pair, options):
         np.testing.assert_allclose(part.collected[:GROWN], whole.collected, atol=1e-12)
         np.testing.assert_array_equal(part.collected[GROWN:], 0)
     for name in ("speed", "node_speed", "held", "force", "centre", "heading", "power"):
-        ours, theirs = getattr(other, name), getattr(seen, name)
+        ours, theirs = getattr(other, name), getattr(expected, name)
         np.testing.assert_allclose(ours, theirs, atol=1e-10, err_msg=name)
-    np.testing.assert_allclose(other.curvature[:, : GROWN - 2], seen.curvature, atol=1e-10)
+    np.testing.assert_allclose(other.curvature[:, : GROWN - 2], expected.curvature, atol=1e-10)
     np.testing.assert_array_equal(other.curvature[:, GROWN - 2 :], 0)
     np.testing.assert_allclose(other.force, 0, atol=1e-13)
     assert jnp.linalg.norm(whole.positions[0] - start.positions[0]) > 0.01

@@ -128,17 +128,9 @@ def database() -> str:
 
 @pytest.fixture
 def secrets(services) -> dict[str, str | None]:
-    made = {
-        who: tokens.create(services, who, scope)
-        for who, scope in {
-            "reader": READ,
-            "other": WRITE,
-            "owner": WRITE,
-            "admin": ADMIN,
-            "expired": ADMIN,
-            "revoked": ADMIN,
-        }.items()
-    }
+    scopes = {"reader": READ, "other": WRITE, "owner": WRITE}
+    scopes |= dict.fromkeys(("admin", "expired", "revoked"), ADMIN)
+    made = {who: tokens.create(services, who, scope) for who, scope in scopes.items()}
     with services.sessions.write.begin() as session:
         past = datetime.now(UTC) - timedelta(minutes=1)
         session.get_one(Token, made["expired"].token.id).expires_at = past

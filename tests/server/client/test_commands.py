@@ -179,15 +179,11 @@ def test_ctrl_c_leaves_the_run_going(address, client, run, terminal):
     assert client.run(run.id).status == "queued"
 
 
-def levels(findings):
-    return [finding.level for finding in findings]
-
-
 def test_the_doctor_warns_of_missing_workers(address):
     found = list(server(address, None))
     subjects = {one.subject for one in found if one.level == "ok"}
     assert subjects == {"server", "database", "disk", "Redis"}
-    assert levels(found)[-1] == "warning"
+    assert found[-1].level == "warning"
     assert found[0].found.endswith(f"answers at {address}")
     assert "WORKERS=n" in found[-1].advice
 
@@ -198,8 +194,8 @@ def test_the_doctor_names_a_lost_redis_and_asks_for_a_token(serve, monkeypatch):
     assert any(one.subject == "Redis" and one.level == "problem" for one in found)
     monkeypatch.delenv("MICROCOSMOS_TOKEN", raising=False)
     with serve(token=SecretStr("sesame")) as address:
-        assert levels(server(address, None)) == ["problem"]
-        assert "problem" not in levels(server(address, "sesame"))
+        assert [one.level for one in server(address, None)] == ["problem"]
+        assert "problem" not in {one.level for one in server(address, "sesame")}
 
 
 def test_another_version_is_a_warning(address, monkeypatch):

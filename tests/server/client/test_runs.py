@@ -5,6 +5,7 @@ from contextlib import nullcontext
 
 import numpy as np
 import pytest
+from pydantic import SecretStr
 
 from microcosmos.client import Client, Conflict, NoAnswer, NotFound, Refused, polling
 from microcosmos.client.views import watch
@@ -135,8 +136,6 @@ def test_a_table_comes_as_rows(client, services, sweep_id, table):
 
 
 def test_the_client_sends_its_token(serve, monkeypatch):
-    from pydantic import SecretStr
-
     with serve(token=SecretStr("sesame")) as address:
         monkeypatch.delenv("MICROCOSMOS_TOKEN", raising=False)
         with pytest.raises(Exception, match=r"token is needed.*MICROCOSMOS_TOKEN"):
@@ -180,12 +179,9 @@ def worked(attempt, record):
 
 def test_a_run_is_followed_by_events(client, run, worked):
     view = Kept(worked)
-    assert (
-        watch(polling.follow(client.connection, run.id), "Run x", nullcontext(view))
-        == "finished"
-    )
-    status, generation, curve = view.shown[-1]
-    assert (status, generation, curve) == ("finished", 3, [1, 2, 3])
+    states = polling.follow(client.connection, run.id)
+    assert watch(states, "Run x", nullcontext(view)) == "finished"
+    assert view.shown[-1] == ("finished", 3, [1, 2, 3])
     curves = [curve for _, _, curve in view.shown]
     assert curves == sorted(curves)  # Nothing twice, nothing out of order.
 

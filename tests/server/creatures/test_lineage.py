@@ -10,7 +10,7 @@ from microcosmos.archive import creature, creature_h5
 
 
 @pytest.fixture
-def bring(api, identity):
+def bring(upload, identity):
     """Uploads a creature with parents, given by number or name, and returns its name."""
 
     def name(parent: int | str) -> str:
@@ -24,8 +24,7 @@ def bring(api, identity):
             "seed": 0,
             "version": "1",
         }
-        file = creature.document(identity(number), None, origin)
-        return api.post("creatures", json=file).json()["creature"]
+        return upload(identity(number), None, origin)
 
     return make
 
@@ -83,11 +82,11 @@ def test_a_missing_parent_is_listed_by_hash(api, bring, identity, enter):
     child = bring(2, 1)
     (only,) = api.get(f"creatures/{child}/ancestors").json()["items"]
     assert only["creature"] == creature.name(identity(1))
-    assert (only["kept"], only["fitness"], only["operator"]) == (False, None, None)
+    assert (only["stored"], only["fitness"], only["operator"]) == (False, None, None)
     parent = "ab" * 32
     elite = enter(1, 1.25, parent)
     (only,) = api.get(f"creatures/{elite}/ancestors").json()["items"]
-    assert (only["creature"], only["kept"]) == (parent, False)
+    assert (only["creature"], only["stored"]) == (parent, False)
 
 
 def test_children_are_counted_and_named_once_each(api, bring):
@@ -132,9 +131,8 @@ def test_a_creature_as_hdf5_is_complete_and_always_the_same_bytes(api, bring):
     answer = api.get(f"creatures/{name}/creature.h5")
     assert answer.status_code == 200
     assert f'filename="creature-{name[:12]}.h5"' in answer.headers["content-disposition"]
-    assert creature_h5.load(answer.content) == creature.parse(
-        api.get(f"creatures/{name}").json()
-    )
+    document = api.get(f"creatures/{name}").json()
+    assert creature_h5.load(answer.content) == creature.parse(document)
     assert api.get(f"creatures/{name}/creature.h5").content == answer.content
     with h5py.File(BytesIO(answer.content), "r") as file:
         weights: Any = file["genome/connections/weight"]

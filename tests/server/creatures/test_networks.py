@@ -10,7 +10,6 @@ import pytest
 from answers import detail
 
 from microcosmos import naming
-from microcosmos.archive import creature
 from server.creatures.sandbox import Sandbox
 from server.creatures.sandbox_process import CPU_SECONDS
 from server.tables import Creature
@@ -24,13 +23,11 @@ TYPES = {
 
 
 @pytest.fixture
-def known(api, identity):
-    def bring(change=None) -> str:
+def known(upload, identity):
+    def bring(change=lambda identity: None) -> str:
         found = identity(2)
-        if change:
-            change(found)
-        document = creature.document(found, None, None)
-        return api.post("creatures", json=document).json()["creature"]
+        change(found)
+        return upload(found)
 
     return bring
 
@@ -110,9 +107,7 @@ def test_a_network_is_written_without_a_connection(api, services, known, form, m
 @pytest.mark.parametrize("form", TYPES)
 def test_a_creature_without_network_says_so(api, services, form):
     found = {"genome": {"encoding": "gait", "swimmer": "worm"}}
-    name = naming.name(found)
+    name, identity = naming.name(found), naming.canonical(found)
     with services.sessions.write.begin() as session:
-        identity = naming.canonical(found)
-        row = Creature(sha256=name, identity=identity, parents=[], licence="CC0-1.0")
-        session.add(row)
+        session.add(Creature(sha256=name, identity=identity, parents=[], licence="CC0-1.0"))
     assert "'gait'" in detail(api.get(f"creatures/{name}/network.{form}"), 404)

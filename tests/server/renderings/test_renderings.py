@@ -21,10 +21,8 @@ def test_a_refused_replay_answers_with_the_engines_reason(api, services, known):
     services.jobs.render(known)
     job = services.jobs.find(services.jobs.rendering_id(known))
     services.jobs.give_up(job, f"Traceback\n{type(error).__module__}.CreatureError: {error}\n")
-    answer = api.get(f"creatures/{known}/replay")
-    assert answer.status_code == 500
-    expected = "The replay failed: `task.steps` needs at most 1 cell step"
-    assert answer.json()["detail"].startswith(expected)
+    refused = detail(api.get(f"creatures/{known}/replay"), 500)
+    assert refused.startswith("The replay failed: `task.steps` needs at most 1 cell step")
     assert services.jobs.renderings.count == 0
 
 
@@ -65,9 +63,8 @@ def test_each_kind_is_made_once_and_then_kept(api, services, known, kind, media_
     answer = api.get(f"creatures/{known}/{kind}")
     assert (answer.status_code, answer.content) == (200, b"what was made")
     assert answer.headers["content-type"] == media_type
-    again = api.get(
-        f"creatures/{known}/{kind}", headers={"If-None-Match": answer.headers["etag"]}
-    )
+    known_already = {"If-None-Match": answer.headers["etag"]}
+    again = api.get(f"creatures/{known}/{kind}", headers=known_already)
     assert again.status_code == 304
     assert renderings.existing(services, known, kind) == b"what was made"
 
@@ -139,9 +136,8 @@ def test_a_motion_is_every_kth_frame_of_the_replay(api, services, known, frames,
     np.testing.assert_array_equal(motion, positions[::stride])
     assert header["every"] == 5 * stride
     assert (header["nodes"], header["edges"], header["size"]) == (3, [[0, 1], [1, 2]], [8, 4])
-    again = api.get(
-        f"creatures/{known}/motion", headers={"If-None-Match": answer.headers["etag"]}
-    )
+    known_already = {"If-None-Match": answer.headers["etag"]}
+    again = api.get(f"creatures/{known}/motion", headers=known_already)
     assert (again.status_code, again.content) == (304, b"")
 
 
@@ -152,10 +148,9 @@ def test_a_motion_without_replay_orders_the_replay(api, services, known):
 
 
 @pytest.fixture
-def measured(api, report) -> str:
+def measured(upload, report) -> str:
     (elite,) = report(1, {3: 1.5}).elites
-    file = creature.document(json.loads(elite.identity), elite.measured, elite.provenance)
-    return api.post("creatures", json=file).json()["creature"]
+    return upload(json.loads(elite.identity), elite.measured, elite.provenance)
 
 
 def test_a_creature_is_measured_again_on_request_and_repeatedly(api, services, measured):
@@ -174,10 +169,8 @@ def test_a_creature_is_measured_again_on_request_and_repeatedly(api, services, m
     assert api.get(path).status_code == 202
 
 
-def test_an_unmeasured_creature_is_not_measured_again(api, identity):
-    file = creature.document(identity(3), None, None)
-    measured = api.post("creatures", json=file).json()["creature"]
-    answer = api.post(f"creatures/{measured}/measure")
+def test_an_unmeasured_creature_is_not_measured_again(api, known):
+    answer = api.post(f"creatures/{known}/measure")
     assert (answer.status_code, answer.json()["title"]) == (422, "Never measured")
 
 
@@ -185,6 +178,5 @@ def test_a_measurement_that_failed_says_why(api, services, measured):
     api.post(f"creatures/{measured}/measure")
     (job,) = services.jobs.audits.get_jobs()
     services.jobs.give_up(job, "Traceback\nValueError: out of memory\n")
-    answer = api.get(f"creatures/{measured}/measurement")
-    assert answer.status_code == 500
-    assert "The measurement failed: ValueError: out of memory" in answer.text
+    refused = detail(api.get(f"creatures/{measured}/measurement"), 500)
+    assert "The measurement failed: ValueError: out of memory" in refused

@@ -162,9 +162,8 @@ def test_a_run_must_fit_the_largest_live_worker(api, services, spec):
 def test_the_same_key_at_once_gives_one_run(api, services, spec):
     headers = {"Idempotency-Key": "a key"}
     with ThreadPoolExecutor(8) as pool:
-        answers = list(
-            pool.map(lambda _: api.post("runs", json=spec, headers=headers), range(8))
-        )
+        sent = [pool.submit(api.post, "runs", json=spec, headers=headers) for _ in range(8)]
+    answers = [one.result() for one in sent]
     assert sorted(answer.status_code for answer in answers) == [200] * 7 + [202]
     assert len({answer.json()["id"] for answer in answers}) == 1
     assert len(api.get("runs").json()["items"]) == 1

@@ -17,9 +17,8 @@ STRANGE = {"Host": "microcosmos.example"}
 
 
 @pytest.fixture
-def other(api, identity) -> str:
-    file = creature.document(identity(4), None, None)
-    return api.post("creatures", json=file).json()["creature"]
+def other(upload, identity) -> str:
+    return upload(identity(4))
 
 
 @pytest.fixture
@@ -84,9 +83,8 @@ def test_a_share_shows_its_creature_and_no_other(api, through, shared, known, ot
         assert through(slug, f"creatures/{other}{path}").status_code == 404, path
     for path in (f"creatures/{known}/children", f"creatures/{known}/audit", "runs", "workers"):
         assert through(slug, path).status_code == 403, path
-    assert (
-        api.post(f"creatures/{known}/measure", headers={SHARE_HEADER: slug}).status_code == 403
-    )
+    holder = {SHARE_HEADER: slug}
+    assert api.post(f"creatures/{known}/measure", headers=holder).status_code == 403
     assert api.get(f"shares/{'A' * 32}").status_code == 404
     assert through("A" * 32, f"creatures/{known}").status_code == 404
 

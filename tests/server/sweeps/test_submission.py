@@ -59,11 +59,7 @@ def test_a_path_reaches_into_lists_whole_parts_and_parts_that_are_off(api, post)
         ({"grid": {"viscosity": [1]}}, "grid.viscosity", "did you mean `world.viscosity`"),
         ({"grid": {"archive.descriptors.2.bins": [4]}}, "grid.archive.descriptors.2.bins", ""),
         ({"grid": {"seed": [1]}}, "grid.seed", "`seeds`"),
-        (
-            {"grid": {"experiment": ["folding"]}},
-            "grid.experiment",
-            "cannot contain",
-        ),
+        ({"grid": {"experiment": ["folding"]}}, "grid.experiment", "cannot contain"),
         ({"grid": {"seed.low": [1]}}, "grid.seed.low", "no field"),
         ({"grid": {"world.viscosity": []}}, "grid.world.viscosity", "at least 1 item"),
         ({"grid": {"world.viscosity": [1, 1.0]}}, "grid.world.viscosity[1]", "viscosity[0]"),
@@ -141,12 +137,10 @@ def test_a_write_that_fails_half_way_leaves_nothing(services, post, monkeypatch)
 
 @pytest.mark.postgresql
 def test_the_same_key_at_once_gives_one_sweep(api, services, spec):
-    headers = {"Idempotency-Key": "a key"}
-    asked = {"spec": spec, "seeds": 2}
+    headers, asked = {"Idempotency-Key": "a key"}, {"spec": spec, "seeds": 2}
     with ThreadPoolExecutor(4) as pool:
-        answers = list(
-            pool.map(lambda _: api.post("sweeps", json=asked, headers=headers), range(4))
-        )
+        sent = [pool.submit(api.post, "sweeps", json=asked, headers=headers) for _ in range(4)]
+    answers = [one.result() for one in sent]
     assert sorted(answer.status_code for answer in answers) == [200] * 3 + [202]
     assert len({answer.json()["id"] for answer in answers}) == 1
     assert services.jobs.sweeps.count == 2

@@ -1963,14 +1963,14 @@ export interface components {
             fitness: number | null;
             /** Generation */
             generation: number | null;
-            /** Kept */
-            kept: boolean;
             /** Licence */
             licence?: string | null;
             /** Operator */
             operator: string | null;
             /** Parents */
             parents: string[];
+            /** Stored */
+            stored: boolean;
         };
         /** Rendering */
         Rendering: {

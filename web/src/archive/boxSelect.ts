@@ -7,14 +7,9 @@ import type { Spot } from "./layout";
 /** The shortest drag, in pixels; shorter movements are clicks. */
 const MIN_DISTANCE = 5;
 
-interface Started {
-  event: PointerEvent;
-  from: Spot;
-}
-
 /** `onEnd` gets the box when the button is released. */
 export function useBoxSelect(enabled: boolean, onEnd: (box: Box, event: PointerEvent) => void) {
-  const started = useRef<Started | null>(null);
+  const started = useRef<{ event: PointerEvent; from: Spot } | null>(null);
   const [box, setBox] = useState<Box | null>(null);
   const dragged = useRef(false);
   const stop = () => {

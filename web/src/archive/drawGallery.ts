@@ -7,7 +7,7 @@ import { type Colouring, colourPosition } from "./colouring";
 import { type Shape, cornerOf } from "./layout";
 import { FADED } from "./mapCanvas";
 import type { Tiles } from "./projection";
-import { BODY_INK, traceBody } from "../replay/bodyPath";
+import { BODY_INK, traceBody } from "../replay/motion";
 
 export interface GalleryPicture {
   shape: Shape;

@@ -95,9 +95,9 @@ describe("a token", () => {
     ["write", null, /^Only an admin/],
     ["admin", "bob", null],
   ])("of scope %s and a resource of %s", (scope, owner, refusal) => {
-    const said = refusalOf(principal(scope), owner === undefined ? undefined : { owner });
-    if (refusal) expect(said).toMatch(refusal);
-    else expect(said).toBeNull();
+    const refused = refusalOf(principal(scope), owner === undefined ? undefined : { owner });
+    if (refusal) expect(refused).toMatch(refusal);
+    else expect(refused).toBeNull();
   });
 
   it("is not refused before it is loaded", () => {

@@ -98,13 +98,10 @@ function Plots({ runs, curves, query }: PlotsProps) {
   return (
     <Card id="curves" kind="wide-curves" title={text.curves}>
       <CurveOptions view={view} />
-      <Curves plots={overlayPlots(oneLinePerRun, drawn, view)} x={NO_X} view={view} />
+      <Curves plots={overlayPlots(oneLinePerRun, drawn, view)} view={view} />
     </Card>
   );
 }
-
-/** Each run has its own x values. */
-const NO_X: readonly number[] = [];
 
 const oneLinePerRun = (curves: Columns): Plot[] =>
   scoresOf(curves).map((plot) => ({ ...plot, series: plot.series.slice(0, 1) }));

@@ -30,7 +30,7 @@ export function FamilyCard({ creature, query }: Props) {
   const hrefOf = (name: string) =>
     sharedSlug && !run ? null : pageUrl(`/creatures/${name}${run ? `?run=${run}` : ""}`);
   const credited = value ? creditOf(value[0].items, creature) : [];
-  const unstored = value?.[0].items.some(({ kept }) => !kept);
+  const unstored = value?.[0].items.some(({ stored }) => !stored);
   const more = value?.[0].more && back < MAX_DEPTH && (
     <button onClick={() => setQuery({ back: String(back + DEPTH_STEP) })}>{text.moreAncestors}</button>
   );
@@ -70,7 +70,7 @@ function selfOf({ sha256, measured, provenance }: Creature): Relative {
   return {
     creature: sha256,
     distance: 0,
-    kept: true,
+    stored: true,
     parents: provenance?.parents ?? [],
     operator: provenance?.operator ?? null,
     generation: provenance?.generation ?? null,

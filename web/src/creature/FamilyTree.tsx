@@ -77,10 +77,10 @@ interface NameProps {
 }
 
 function Name({ relative, most, own, href }: NameProps) {
-  const { creature, kept, fitness } = relative;
+  const { creature, stored, fitness } = relative;
   const title = aboutOf(relative);
   const common = {
-    class: `family-name ${own ? "own" : kept ? "" : "unstored"}`,
+    class: `family-name ${own ? "own" : stored ? "" : "unstored"}`,
     title,
     children: (
       <>
@@ -91,13 +91,13 @@ function Name({ relative, most, own, href }: NameProps) {
       </>
     ),
   };
-  if (own || !kept || href === null) return <span {...common} />;
+  if (own || !stored || href === null) return <span {...common} />;
   return <a href={href} aria-label={title} {...common} />;
 }
 
 /** Describe a relative. */
-function aboutOf({ creature, kept, fitness, operator, generation }: Relative): string {
-  if (!kept) return text.neverElite(shortId(creature));
+function aboutOf({ creature, stored, fitness, operator, generation }: Relative): string {
+  if (!stored) return text.neverElite(shortId(creature));
   const parts = [
     fitness === null ? null : text.fitnessOf(number(fitness)),
     generation === null ? null : text.generationOf(generation),

@@ -26,7 +26,7 @@ describe("a family tree", () => {
     distance,
     parents,
     fitness,
-    kept: true,
+    stored: true,
     operator: "neat",
     generation: 1,
     credit: [],

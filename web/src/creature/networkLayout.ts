@@ -8,18 +8,12 @@ export interface Spot {
   y: number;
 }
 
-export interface Layout {
-  width: number;
-  height: number;
-  spots: Map<number, Spot>;
-}
-
 const [MIN_PITCH, MAX_PITCH] = [84, 130];
 const ROW = 58;
 const MARGIN = { x: 92, y: 36 };
 const SWEEPS = 12;
 
-export function layoutOf({ neurons, links, depth }: Network): Layout {
+export function layoutOf({ neurons, links, depth }: Network) {
   const pitch = Math.max(MIN_PITCH, Math.min(MAX_PITCH, (3.5 * MAX_PITCH) / depth));
   const layers = Array.from({ length: depth + 1 }, (_, layer) =>
     neurons.filter((one) => one.depth === layer),

@@ -9,15 +9,8 @@ export interface PlacedRelative {
   y: number;
 }
 
-export interface FamilyLayout {
-  width: number;
-  height: number;
-  relatives: PlacedRelative[];
-  /** From a parent to its child. */
-  lines: [PlacedRelative, PlacedRelative][];
-  columns: { x: number; title: string }[];
-  hidden: number;
-}
+export type FamilyLayout = ReturnType<typeof familyLayoutOf>;
+type Line = [parent: PlacedRelative, child: PlacedRelative];
 
 /** Size of a name, in pixels: parents, creature and children fit on a phone. */
 export const [COLUMN_WIDTH, ROW_HEIGHT] = [92, 34];
@@ -26,7 +19,7 @@ const GAP = 20;
 const MAX_PER_COLUMN = 8;
 
 /** Children are sorted by fitness, ancestors by distance. */
-export function familyLayoutOf(self: Relative, ancestors: Ancestors, children: Children): FamilyLayout {
+export function familyLayoutOf(self: Relative, ancestors: Ancestors, children: Children) {
   const deepest = Math.max(0, ...ancestors.items.map(({ distance }) => distance));
   const levels = Array.from({ length: deepest }, (_, i) =>
     ancestors.items.filter(({ distance }) => distance === deepest - i),
@@ -51,14 +44,10 @@ export function familyLayoutOf(self: Relative, ancestors: Ancestors, children: C
   };
 }
 
-function linesOf(
-  relatives: PlacedRelative[],
-  self: Relative,
-  { parents }: Ancestors,
-): [PlacedRelative, PlacedRelative][] {
+function linesOf(relatives: PlacedRelative[], self: Relative, { parents }: Ancestors): Line[] {
   const byName = new Map(relatives.map((one) => [one.relative.creature, one]));
   const me = byName.get(self.creature)!;
-  return relatives.flatMap((child): [PlacedRelative, PlacedRelative][] => {
+  return relatives.flatMap((child): Line[] => {
     // Other parents of a child are not shown.
     if (child.x > me.x) return [[me, child]];
     const names = child === me ? parents : child.relative.parents;

@@ -17,23 +17,15 @@ export interface Activations {
   to: number;
 }
 
-interface Inputs {
-  timer: string;
-  period: number;
-  position: string;
-  senses: boolean;
-  recurrent: boolean;
-}
+type Inputs = ReturnType<typeof inputsOf>;
 
-export function inputsOf(control: Spec): Inputs {
-  return {
-    timer: String(control.timer ?? "sine-cosine"),
-    period: Number(control.period),
-    position: String(control.position ?? "signed"),
-    senses: control.sense_energy === true,
-    recurrent: control.recurrent === true,
-  };
-}
+export const inputsOf = (control: Spec) => ({
+  timer: String(control.timer ?? "sine-cosine"),
+  period: Number(control.period),
+  position: String(control.position ?? "signed"),
+  senses: control.sense_energy === true,
+  recurrent: control.recurrent === true,
+});
 
 /** One period of the timer, or the whole task for a linear timer; `energy` is sensed everywhere. */
 export function activationsOf(network: Network, control: Spec, steps: number, energy = 0): Activations {

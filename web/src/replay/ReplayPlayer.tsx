@@ -9,7 +9,7 @@ import { CanvasStage } from "./CanvasStage";
 import { useClock, useKeys } from "./clock";
 import { type Field, fieldOf, fieldsOf } from "./fields";
 import { FluidPainter } from "./fluid";
-import { FieldLegend, SPEEDS, ViewOptions, changeView, replayViewOf } from "./replayView";
+import { type ReplayView, FieldLegend, SPEEDS, ViewOptions, changeView, replayViewOf } from "./replayView";
 import { type Moment, useMoment } from "./moment";
 import { drawScene, sceneOf } from "./scene";
 import { Tracers } from "./tracers";
@@ -50,13 +50,7 @@ export function ReplayPlayer({ films, moment, query }: Props) {
       <div class="stages">
         {films.map(({ replay, name }, i) => (
           <figure key={i}>
-            <Stage
-              {...{ replay, theme, field }}
-              tracing={view.tracers}
-              follow={view.follow}
-              time={moment.time}
-              onClick={playback.toggle}
-            />
+            <Stage {...{ replay, theme, field, view }} time={moment.time} onClick={playback.toggle} />
             {name && <figcaption>{name}</figcaption>}
           </figure>
         ))}
@@ -76,11 +70,7 @@ export function ReplayPlayer({ films, moment, query }: Props) {
   );
 }
 
-interface Playback {
-  moment: Moment;
-  toggle: () => void;
-  step: (by: 1 | -1) => void;
-}
+type Playback = ReturnType<typeof usePlayback>;
 
 /** Move the moment by the clock and by keys. */
 function usePlayback(
@@ -88,7 +78,7 @@ function usePlayback(
   speed: number,
   moment: Moment,
   player: RefObject<HTMLElement | null>,
-): Playback {
+) {
   const last = frames - 1;
   useMoment(moment);
   useClock(moment.playing, (seconds) => {
@@ -136,13 +126,13 @@ interface StageProps {
   replay: Replay;
   theme: Theme;
   field: Field | null;
-  tracing: boolean;
-  follow: boolean;
+  view: ReplayView;
   time: number;
   onClick: () => void;
 }
 
-function Stage({ replay, theme, field, tracing, follow, time, onClick }: StageProps) {
+function Stage({ replay, theme, field, view, time, onClick }: StageProps) {
+  const { follow, tracers: tracing } = view;
   const tracers = useMemo(() => (tracing ? new Tracers(replay) : null), [replay, tracing]);
   const scene = useMemo(() => {
     const painter = field && new FluidPainter(replay, field);

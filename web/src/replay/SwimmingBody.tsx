@@ -3,7 +3,7 @@
 import { useRef } from "preact/hooks";
 import type { Motion } from "../decode/replay";
 import { prepare, useSize, px, useTheme } from "../ui/canvas";
-import { BODY_INK, traceBody } from "./bodyPath";
+import { BODY_INK, traceBody } from "./motion";
 import { useLoop } from "./clock";
 import "./replay.css";
 

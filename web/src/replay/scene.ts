@@ -2,9 +2,8 @@
 
 import type { Replay } from "../decode/replay";
 import { type Size, type Theme, prepare } from "../ui/canvas";
-import { BODY_INK } from "./bodyPath";
 import type { FluidPainter } from "./fluid";
-import { type Point, chainsOf, meanOf, positionsAt, splineOf } from "./motion";
+import { type Point, BODY_INK, chainsOf, meanOf, positionsAt, splineOf } from "./motion";
 import { type Tracers, drawTracers } from "./tracers";
 
 /** Cells between points of the grid, which is fixed in the world. */
@@ -51,9 +50,9 @@ export function drawScene(canvas: HTMLCanvasElement, size: Size, scene: Scene, t
     drawTracers(context, scene.tracers, { time, camera, scale, colour: INK[scene.theme].body });
   }
   for (const shift of tiles(mean, camera, [width, height])) {
-    const moved = (point: Point) => screen([point[0] + shift[0], point[1] + shift[1]]);
-    drawPath(context, [...scene.path.slice(0, Math.floor(time) + 1), mean].map(moved), scene.theme);
-    const lines = scene.chains.map((chain) => chain.map((node) => moved(points[node]!)));
+    const place = (point: Point) => screen([point[0] + shift[0], point[1] + shift[1]]);
+    drawPath(context, [...scene.path.slice(0, Math.floor(time) + 1), mean].map(place), scene.theme);
+    const lines = scene.chains.map((chain) => chain.map((node) => place(points[node]!)));
     drawBody(context, lines, Math.min(11, Math.max(3, 0.6 * scale)), scene.theme);
   }
 }

@@ -49,7 +49,11 @@ export function LogCard({ run, query }: { run: Run; query: URLSearchParams }) {
       )}
       {shown.length > 0 && (
         <div class="log-scroll" tabIndex={0} role="group" aria-label={text.logOrder}>
-          <LogList entries={shown} />
+          <ol class="log" reversed>
+            {shown.toReversed().map((entry) => (
+              <Line key={entry.id} {...entry} />
+            ))}
+          </ol>
         </div>
       )}
     </Card>
@@ -67,16 +71,6 @@ export function textOf(entries: readonly LogEntry[]): string {
   return entries
     .map(({ at, level, attempt, text }) => `${at} ${level} [attempt ${attempt}] ${text}`)
     .join("\n");
-}
-
-function LogList({ entries }: { entries: readonly LogEntry[] }) {
-  return (
-    <ol class="log" reversed>
-      {[...entries].reverse().map((entry) => (
-        <Line key={entry.id} {...entry} />
-      ))}
-    </ol>
-  );
 }
 
 function Line({ at, level, attempt, text: message }: LogEntry) {

@@ -8,7 +8,7 @@ import { hasArchive, useCurvesOf, useExperiments } from "../store/fetch";
 import { useRuns } from "../store/store";
 import { setQuery } from "../store/router";
 import { Curves } from "../charts/curves/Curves";
-import { type CurveView, type OtherRun, arrangePlots, curveViewOf } from "../charts/curves/curveView";
+import { type OtherRun, arrangePlots, curveViewOf } from "../charts/curves/curveView";
 import { REASONS, divergedBy, scoresOf, workOf } from "../charts/curves/plots";
 import { count, percent, shortId, titleOf, words } from "../ui/format";
 import { CurveOptions } from "../charts/curves/CurveOptions";
@@ -40,11 +40,7 @@ export function CurvesCard({ run, curves, query, compared: { ids, others, error 
       {curves && !sharedSlug && <ComparedList {...{ run, ids, others }} />}
       {error && <p class="wrong-text small">{error}</p>}
       {curves ? (
-        <Curves
-          plots={arrangePlots(scoresOf, curves, others, view)}
-          x={xValuesOf(curves, view)}
-          view={view}
-        />
+        <Curves plots={arrangePlots(scoresOf, curves, others, view)} view={view} />
       ) : (
         <p class="quiet waiting">{text.noCurves}</p>
       )}
@@ -58,7 +54,7 @@ export function SearchCard({ run, curves, query, compared }: Props & { curves: C
   if (plots.length === 0 && run.diverged === 0) return null;
   return (
     <Card id="search" kind="wide-curves" title={text.search}>
-      <Curves plots={plots} x={xValuesOf(curves, view)} view={view} />
+      <Curves plots={plots} view={view} />
       <DivergedTable run={run} reasons={divergedBy(curves)} />
     </Card>
   );
@@ -86,8 +82,6 @@ function DivergedTable({ run, reasons }: { run: Run; reasons: [reason: string, c
     </table>
   );
 }
-
-const xValuesOf = (curves: Columns, { over }: CurveView) => curves[over] as readonly number[];
 
 /** The runs to compare from the address, without duplicates and the run itself. */
 export function useComparedRuns(query: URLSearchParams, id: string): ComparedRuns {

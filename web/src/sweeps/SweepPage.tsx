@@ -92,11 +92,8 @@ function CaseCurves({ shown, query, curves }: CurvesProps) {
   const plots = summaryPlotsOf(shown, curves);
   if (shown.length === 0) return <p class="quiet">{text.chooseCase}</p>;
   if (plots.length === 0) return <p class="quiet waiting">{text.noCurves}</p>;
-  return <Curves plots={plots} x={NO_X} view={{ over: "generation", log, smooth: 1 }} />;
+  return <Curves plots={plots} view={{ over: "generation", log, smooth: 1 }} />;
 }
-
-/** Each case has its own x values. */
-const NO_X: readonly number[] = [];
 
 function Head({ sweep }: { sweep: Sweep }) {
   const experiments = useExperiments().value ?? [];

@@ -18,16 +18,12 @@ def ends(body, joints):
 
 
 @pytest.mark.parametrize("name", swimmers.SWIMMERS)
-def test_a_gait_repeats_every_period(name):
+def test_a_gait_repeats_every_period_without_jumps(name):
     swimmer = swimmers.SWIMMERS[name]()
+    body, gait = swimmer.body, swimmer.gait
     assert swimmer.name == name
-    for now, later in zip(swimmer.gait(TIMES), swimmer.gait(TIMES + 3), strict=True):
+    for now, later in zip(gait(TIMES), gait(TIMES + 3), strict=True):
         np.testing.assert_allclose(now, later, atol=1e-9)
-
-
-@pytest.mark.parametrize("name", swimmers.SWIMMERS)
-def test_a_gait_moves_little_in_a_small_part_of_a_period(name):
-    body, gait = swimmers.SWIMMERS[name]().body, swimmers.SWIMMERS[name]().gait
     angle, length = gait(np.linspace(0, 1, 6001))
     assert angle.shape == (6001, len(body.joints))
     assert length.shape == (6001, len(body.edges))
@@ -36,9 +32,10 @@ def test_a_gait_moves_little_in_a_small_part_of_a_period(name):
 
 
 @pytest.mark.parametrize("name", swimmers.SWIMMERS)
-def test_a_swimmer_has_the_stiffness_that_it_is_given(name):
-    body = swimmers.SWIMMERS[name](stretch=0.9, shear=0.8, bend=0.7).body
-    for field, value in (("stretch", 0.9), ("shear", 0.8), ("bend", 0.7)):
+def test_a_swimmer_has_the_given_stiffness(name):
+    stiffness = {"stretch": 0.9, "shear": 0.8, "bend": 0.7}
+    body = swimmers.SWIMMERS[name](**stiffness).body
+    for field, value in stiffness.items():
         np.testing.assert_array_equal(getattr(body, field), value)
 
 
@@ -141,16 +138,12 @@ def test_cilia_turn_at_their_root_alike_to_both_sides_of_the_body(hairs):
     np.testing.assert_allclose(np.ptp(np.abs(angle[:, root]), axis=1), 0, atol=1e-12)
 
 
-def test_hairs_beat_in_mirror_image_on_both_flanks(hairs):
+def test_hairs_sweep_backward_straight_and_come_back_faster_and_curled(hairs):
     _, at = hairs
-    for time in TIMES[::20]:
+    for time in TIMES[::20]:  # In mirror image on both flanks.
         upper, lower = at(time)[:3], at(time)[3:]
         assert np.all(upper[:, 0].imag > 0)
         np.testing.assert_allclose(np.conj(lower[::-1]), upper, atol=1e-9)
-
-
-def test_hairs_sweep_backward_straight_and_come_back_faster_and_curled(hairs):
-    _, at = hairs
     upright = np.array([at(t)[1] for t in TIMES])  # The upper hair in the middle.
     tips = upright[:, -1] - upright[:, 0]
     lean = np.angle(upright[:, 1] - upright[:, 0])
@@ -159,10 +152,6 @@ def test_hairs_sweep_backward_straight_and_come_back_faster_and_curled(hairs):
     power = TIMES <= 0.75
     np.testing.assert_allclose(np.abs(tips[power]), 8, rtol=1e-9)
     assert np.abs(tips[~power]).min() < 0.8 * 8
-
-
-def test_the_tip_of_a_hair_lags_behind_on_its_way_back(hairs):
-    _, at = hairs
     hair = at(0.875)[1]
     heading = np.unwrap(np.angle(np.diff(hair)))
     np.testing.assert_allclose(heading[0], np.pi / 2, atol=1e-9)

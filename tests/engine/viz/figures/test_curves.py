@@ -25,12 +25,8 @@ def printed():
 def runs(made):
     """Five seeds at one viscosity and two at another, the last one unfinished."""
     thin = [made(ELITES, seed=s, best=(s, s**2, 2 * s**2)) for s in range(5)]
-    thick = {"world": {"viscosity": 0.5}}
-    return [
-        *thin,
-        made(ELITES, seed=7, best=(1, 2, 3), **thick),
-        made(ELITES, seed=8, best=(3, 4), **thick),
-    ]
+    thick = [(7, (1, 2, 3)), (8, (3, 4))]
+    return thin + [made(ELITES, seed=s, best=b, world={"viscosity": 0.5}) for s, b in thick]
 
 
 def lines(panel):
@@ -60,10 +56,10 @@ def test_specs_are_told_apart_by_the_fields_in_which_they_differ(runs):
     thick = lines(figure.axes[0])[1]
     np.testing.assert_allclose(thick.get_xdata(), [1, 2])  # As long as both runs went on.
     np.testing.assert_allclose(thick.get_ydata(), [2, 3])
-    told = caption.of_curves(grouped(runs), ["best", "hit_rate", "qd_score"])
-    assert told.startswith("Best fitness, hit rate and QD score: median over seeds (thick)")
-    assert "; medians and bands as far as all seeds went. " in told
-    assert "world viscosity 0.5: seeds 7, 8" in told
+    text = caption.of_curves(grouped(runs), ["best", "hit_rate", "qd_score"])
+    assert text.startswith("Best fitness, hit rate and QD score: median over seeds (thick)")
+    assert "; medians and bands as far as all seeds went. " in text
+    assert "world viscosity 0.5: seeds 7, 8" in text
 
 
 def test_a_run_that_is_given_twice_is_refused(runs):
@@ -92,12 +88,11 @@ def test_coverage_is_drawn_in_per_cent(runs):
 def found(made):
     """Three elites in the lower left, of which the second is fittest, and one far away."""
     places = [(1e-4, 0.0), (2e-4, 0.1), (3e-4, 0.05), (90.0, 0.95)]
-    return made(
-        [
-            {"cell": k, "fitness": f, "bending_effort": x, "straightness": y}
-            for k, ((x, y), f) in enumerate(zip(places, (1.0, 3.0, 2.0, 0.5), strict=True))
-        ]
-    )
+    elites = [
+        {"cell": k, "fitness": f, "bending_effort": x, "straightness": y}
+        for k, ((x, y), f) in enumerate(zip(places, (1.0, 3.0, 2.0, 0.5), strict=True))
+    ]
+    return made(elites)
 
 
 def swimming(length, frames=9):
@@ -115,8 +110,7 @@ def test_the_fittest_of_each_region_is_shown_where_it_belongs(found):
 
 def test_all_bodies_are_drawn_at_one_scale_inside_their_regions(found):
     plan, motions = layout(found, columns=3, rows=2), [swimming(20.0), swimming(5.0)]
-    with style.styled():
-        panel = sheet(found, plan, motions, moments=3).axes[0]
+    panel = sheet(found, plan, motions, moments=3).axes[0]
     spans = []
     for lines in panel.collections:
         x = np.concatenate(lines.get_segments())[:, 0]
@@ -130,9 +124,8 @@ def test_all_bodies_are_drawn_at_one_scale_inside_their_regions(found):
 
 def test_gaits_are_numbered_as_in_the_paper():
     assert numerals(10) == ["i", "ii", "iii", "iv", "v", "vi", "vii", "viii", "ix", "x"]
-    assert [numerals(99)[k - 1] for k in (14, 40, 49, 90, 99)] == [
-        "xiv", "xl", "xlix", "xc", "xcix",
-    ]  # fmt: skip
+    higher = [numerals(99)[k - 1] for k in (14, 40, 49, 90, 99)]
+    assert higher == ["xiv", "xl", "xlix", "xc", "xcix"]
 
 
 def test_a_sheet_over_one_axis_is_refused(found):
@@ -160,26 +153,16 @@ def archive(made):
     for entry, own in enumerate(PARENTS):
         for k, parent in enumerate(own):
             parents[entry, k] = name(parent)
-    columns = {
-        "creature": np.stack([name(entry) for entry in range(7)]),
-        "parents": parents,
-        "generation": np.array(GENERATIONS),
-        "cell": np.array(CELLS),
-        "fitness": np.arange(7.0),
-    }
-    elites = [
-        {"cell": cell, "fitness": float(e)}
-        for cell, e in zip(range(5), (4, 6, 2, 3, 5), strict=True)
-    ]
+    creatures = np.stack([name(entry) for entry in range(7)])
+    columns = {"creature": creatures, "parents": parents, "fitness": np.arange(7.0)}
+    columns |= {"generation": np.array(GENERATIONS), "cell": np.array(CELLS)}
+    elites = [{"cell": cell, "fitness": float(e)} for cell, e in enumerate((4, 6, 2, 3, 5))]
     return made(elites, best=range(1, 6), lineage=columns)
 
 
-def test_elites_are_the_latest_entries_of_their_cells(archive):
-    assert family(archive).tips.tolist() == [4, 6, 2, 3, 5]
-
-
-def test_ancestors_are_those_of_both_parents(archive):
+def test_elites_are_the_latest_entries_and_ancestors_those_of_both_parents(archive):
     found = family(archive)
+    assert found.tips.tolist() == [4, 6, 2, 3, 5]
     assert found.ancestors([5]) == [5, 3, 2, 1, 0]
     assert found.ancestors([4]) == [4, 2, 0]
     assert found.ancestors([5], both=False) == [5, 3, 0]
@@ -194,25 +177,19 @@ def test_no_two_entries_of_a_generation_stand_at_one_height(archive):
     assert places[0] == (places[2] + places[3]) / 2
 
 
-def test_the_chosen_elite_and_all_its_ancestors_are_drawn_in_colour(archive):
-    with style.styled():
-        panel = lineage(archive, cell=4).axes[0]
+def test_the_chosen_elite_and_all_its_ancestors_are_drawn_in_colour_and_counted(archive):
+    panel = lineage(archive, cell=4).axes[0]
     chosen, ring = panel.collections[-2:]
     generations = sorted(int(x) for x, _ in chosen.get_offsets())
     assert generations == [1, 1, 2, 3, 5]
     assert ring.get_offsets()[0][0] == 5
     dashed = [line for line in panel.get_lines() if line.get_linestyle() == "--"]
     assert len(dashed) == 2
+    text, counts = caption.of_lineage(archive, 4, 4), "5 elites (grey) and the 4 ancestors"
+    assert text.startswith(f"Descent of {counts} of the elite of cell 4")
+    assert "Dashed lines lead from second parents." in text
 
 
 def test_an_empty_cell_is_refused_with_those_that_are_not(archive):
     with pytest.raises(ValueError, match="`cell` must be one of the 5 that have an elite"):
         lineage(archive, cell=17)
-
-
-def test_the_caption_counts_ancestors_and_names_the_elite(archive):
-    told = caption.of_lineage(archive, 4, 4)
-    assert told.startswith(
-        "Descent of 5 elites (grey) and the 4 ancestors of the elite of cell 4"
-    )
-    assert "Dashed lines lead from second parents." in told

@@ -10,23 +10,19 @@ import pytest
 
 from microcosmos import spec
 from microcosmos.build import local
+from microcosmos.experiments import table_file
 from microcosmos.viz.figures import drawing, motions, reading
 
 pytestmark = pytest.mark.long
 
+BINS = {"bending_effort": 6, "stretching_effort": 6, "straightness": 2}
 TINY = {
     "experiment": "quality-diversity",
     "world": {"width": 32, "height": 32},
     "body": {"nodes": 12},
     "control": {"period": 30},
     "task": {"steps": 60},
-    "archive": {
-        "descriptors": [
-            {"name": "bending_effort", "bins": 6},
-            {"name": "stretching_effort", "bins": 6},
-            {"name": "straightness", "bins": 2},
-        ]
-    },
+    "archive": {"descriptors": [{"name": n, "bins": b} for n, b in BINS.items()]},
     "search": {"generations": 3, "batch": 16, "block": 8},
 }
 """Evaluated by the program that tests of experiments have compiled."""
@@ -52,17 +48,17 @@ def test_elites_of_a_file_are_simulated_as_they_were_measured(archive):
     np.testing.assert_allclose(np.hypot(*(ends[1] - ends[0])), found.fitness.max(), rtol=1e-3)
 
 
-def test_a_sheet_is_drawn_with_its_progress_told(archive, tmp_path):
-    heard = []
+def test_a_sheet_is_drawn_and_reports_progress(archive, tmp_path):
+    progress = []
     how, out = drawing.Print(), tmp_path / "sheet.svg"
-    drawing.contact(archive, out, how, None, (2, 2), 3, lambda *done: heard.append(done))
-    assert heard == [(k + 1, len(heard)) for k in range(len(heard))]
-    told = (tmp_path / "sheet.caption.txt").read_text()
-    assert f"each of {len(heard)} regions" in told
-    assert "at 3 moments of its 60 steps" in told
+    drawing.contact(archive, out, how, None, (2, 2), 3, lambda *done: progress.append(done))
+    assert progress == [(k + 1, len(progress)) for k in range(len(progress))]
+    text = (tmp_path / "sheet.caption.txt").read_text()
+    assert f"each of {len(progress)} regions" in text
+    assert "at 3 moments of its 60 steps" in text
 
 
-def test_each_command_writes_its_figure_and_its_caption(archive, tmp_path, figure):
+def test_each_command_of_the_help_writes_its_figure_and_its_caption(archive, tmp_path, figure):
     for name, *options in (
         ("archive", "--axes", "straightness,bending_effort", "--latex", "--caption"),
         ("curves", "--against", "generations"),
@@ -71,31 +67,26 @@ def test_each_command_writes_its_figure_and_its_caption(archive, tmp_path, figur
         out = tmp_path / f"{name}.pdf"
         assert str(out) in figure(name, archive, out, *options)
         assert out.read_bytes().startswith(b"%PDF")
-        told = out.with_suffix(".caption.txt").read_text()
-        assert "3 generations of 16 (48 evaluations, seed 0)" in told
+        text = out.with_suffix(".caption.txt").read_text()
+        assert "3 generations of 16 (48 evaluations, seed 0)" in text
     assert (tmp_path / "archive.caption.tex").exists()
+    text = figure("--help")
+    for name in ("file", "archive", "curves", "sheet", "lineage"):
+        assert re.search(rf"\b{name}\b", text)
 
 
-def test_a_file_without_a_command_is_drawn_by_its_kind(archive, tmp_path, figure):
+def test_the_figure_and_the_name_of_its_file_have_defaults(archive, tmp_path, figure):
     figure(archive, tmp_path / "map.png")
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
-
-
-def test_a_name_without_an_output_gets_a_pdf_beside_the_file(archive, figure):
     figure("archive", archive)
     assert archive.with_suffix(".archive.pdf").exists()
 
 
-def test_the_help_names_every_figure(figure):
-    told = figure("--help")
-    for name in ("file", "archive", "curves", "sheet", "lineage"):
-        assert re.search(rf"\b{name}\b", told)
-
-
-def test_mistakes_are_said_with_what_is_needed(archive, tmp_path, figure):
+def test_mistakes_are_refused_with_the_need(archive, tmp_path, figure):
     assert "must end in .pdf" in figure("archive", archive, tmp_path / "map.bmp", code=2)
+    cell = ("--cell", "9999")
     assert "`cell` must be one of" in figure(
-        "lineage", archive, tmp_path / "a.svg", "--cell", "9999", code=2
+        "lineage", archive, tmp_path / "a.svg", *cell, code=2
     )
     assert "seed 0 twice" in figure("curves", archive, archive, tmp_path / "a.svg", code=2)
     assert "FILE... OUT needs" in figure("curves", archive, code=2)
@@ -105,8 +96,6 @@ def test_mistakes_are_said_with_what_is_needed(archive, tmp_path, figure):
 
 
 def test_a_file_whose_run_has_a_table_has_no_map(tmp_path):
-    from microcosmos.experiments import table_file
-
     path = tmp_path / "table.h5"
     rows = table_file.Table(0, (), ("cpu",))
     path.write_bytes(table_file.save('{"experiment": "gaits"}', rows))

@@ -14,11 +14,9 @@ from microcosmos.viz.figures.saving import latex
 
 pytestmark = pytest.mark.long
 
-THREE = (
-    {"name": "bending_effort", "bins": 4},
-    {"name": "straightness", "bins": 5},
-    {"name": "path_length", "bins": 3},
-)
+BINS = {"bending_effort": 4, "straightness": 5, "path_length": 3}
+THREE = [{"name": name, "bins": bins} for name, bins in BINS.items()]
+ONE = [{"cell": 0, "fitness": 1.0}]
 
 
 @pytest.fixture(autouse=True)
@@ -51,7 +49,7 @@ def test_the_fittest_of_elites_in_one_place_is_shown(made):
 
 
 def test_logarithmic_axes_have_decades_and_units(made):
-    panel = maps.archive(made([{"cell": 0, "fitness": 1.0}])).axes[0]
+    panel = maps.archive(made(ONE)).axes[0]
     assert (panel.get_xscale(), panel.get_yscale()) == ("log", "linear")
     assert panel.get_xlabel() == "Bending effort [rad²]"
     ticks = panel.get_xticks()
@@ -59,7 +57,7 @@ def test_logarithmic_axes_have_decades_and_units(made):
 
 
 def test_an_unknown_measure_is_refused_with_the_known_ones(made):
-    found = made([{"cell": 0, "fitness": 1.0}])
+    found = made(ONE)
     with pytest.raises(ValueError, match=r"bending_effort, straightness .*got 'speed'"):
         maps.archive(found, axes=["speed"])
     with pytest.raises(ValueError, match=r"`colour` must be one of fitness.*got 'size'"):
@@ -85,9 +83,8 @@ def test_borders_on_one_axis_lie_midway_between_centroids():
 
 def test_a_tessellation_is_drawn_as_its_cells_with_elites_in_colour(made):
     centroids = np.random.default_rng(5).random((12, 2))
-    found = made(
-        [{"cell": 3, "fitness": 1.0}, {"cell": 8, "fitness": 4.0}], centroids=centroids
-    )
+    elites = [{"cell": 3, "fitness": 1.0}, {"cell": 8, "fitness": 4.0}]
+    found = made(elites, centroids=centroids)
     everything, filled = maps.archive(found).axes[0].collections
     assert (len(everything.get_paths()), len(filled.get_paths())) == (12, 2)
     np.testing.assert_array_equal(filled.get_array(), [1.0, 4.0])
@@ -104,7 +101,7 @@ def test_one_axis_alone_is_drawn_as_bars_as_high_as_the_fittest(made):
 
 
 def test_plugin_measures_have_their_declared_titles(made):
-    """Although nobody has their module here."""
+    """Without their module."""
     plugin = {"source": "0" * 64, "title": "Sway", "unit": "cells"}
     sway = {"name": "mine.sway", "low": 1e-3, "high": 1.0, "scale": "log10", "plugin": plugin}
     far = plugin | {"title": "Straight way"}
@@ -118,14 +115,14 @@ def test_plugin_measures_have_their_declared_titles(made):
     assert figure.axes[0].get_xlabel() == figure.axes[1].get_ylabel() == "Sway [cells]"
     assert figure.axes[1].get_yscale() == "log"
     assert fitness_label(found) == "Straight way [cells]"
-    told = caption.of_archive(found, None)
-    assert "over sway [cells] and straightness;" in told
-    assert "Fitness is “Straight way” (mine.straight) over 500 steps" in told
-    assert "the body “Cross” (mine.cross), controlled by" in told
+    text = caption.of_archive(found, None)
+    assert "over sway [cells] and straightness;" in text
+    assert "Fitness is “Straight way” (mine.straight) over 500 steps" in text
+    assert "the body “Cross” (mine.cross), controlled by" in text
 
 
 def test_a_caption_of_one_axis_names_no_ring(made):
-    found = made([{"cell": 0, "fitness": 1.0}])
+    found = made(ONE)
     assert "ring marks" in caption.of_archive(found, None)
     assert "; the fittest has 1." in caption.of_archive(found, ["straightness"])
 
@@ -136,13 +133,10 @@ def found(made):
     return made(elites, seed=4, world={"width": 48, "height": 48, "viscosity": 0.2})
 
 
-def drawn(found, suffix, monkeypatch, when, **options):
+def drawn(found, suffix, monkeypatch, when):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", str(when))
-    with style.styled():
-        figure = maps.archive(found)
-        return saving.encoded(
-            figure, suffix, caption=caption.of_archive(found, None), **options
-        )
+    text = caption.of_archive(found, None)
+    return saving.encoded(maps.archive(found), suffix, caption=text)
 
 
 @pytest.mark.parametrize("suffix", [".pdf", ".svg", ".png"])
@@ -171,7 +165,7 @@ def test_width_is_that_of_a_column(found):
 
 
 def test_a_caption_states_the_spec(found):
-    told = caption.of_archive(found, None)
+    text = caption.of_archive(found, None)
     for part in (
         "4 elites in 20 cells (20.0 %)",
         "the fittest (8.5)",
@@ -182,34 +176,32 @@ def test_a_caption_states_the_spec(found):
         "48 × 48 cells, ν = 0.2 cells²/step",
         "Microcosmos 0.1.0 on cpu, A Model avx2.",
     ):
-        assert part in told
+        assert part in text
 
 
 def test_a_form_that_is_not_force_free_is_said_to_be(made):
     paper = {"projection": "none", "theta_feedback": 0}
-    told = caption.of_archive(made([{"cell": 0, "fitness": 1.0}], coupling=paper), None)
-    assert "(coupling not force-free)" in told
+    text = caption.of_archive(made(ONE, coupling=paper), None)
+    assert "(coupling not force-free)" in text
 
 
 def test_latex_escapes_every_letter_that_means_something():
-    told = latex("64.8 % of 3 × 4 & x_1^2 #5 {ν} \\ ~ $ cells²")
-    assert told == (
+    text = latex("64.8 % of 3 × 4 & x_1^2 #5 {ν} \\ ~ $ cells²")
+    assert text == (
         r"64.8\,\% of 3 $\times$ 4 \& x\_1\textasciicircum{}2 \#5 \{$\nu$\} "
         r"\textbackslash{} \textasciitilde{} \$ cells$^2$"
     )
-    assert not re.search(r"(?<!\\)[%&#_]", told)
+    assert not re.search(r"(?<!\\)[%&#_]", text)
 
 
 def test_a_published_figure_has_its_caption_beside_it_and_below(found, tmp_path):
-    told = caption.of_archive(found, None)
-    with style.styled():
-        figure = maps.archive(found)
-        high = figure.get_size_inches()[1]
-        written = saving.publish(figure, tmp_path / "map.svg", told, under=True, tex=True)
+    text, figure = caption.of_archive(found, None), maps.archive(found)
+    high = figure.get_size_inches()[1]
+    written = saving.publish(figure, tmp_path / "map.svg", text, under=True, tex=True)
     assert [path.name for path in written] == ["map.svg", "map.caption.txt", "map.caption.tex"]
-    assert written[1].read_text() == told + "\n"
+    assert written[1].read_text() == text + "\n"
     assert r"$\nu$ = 0.2" in written[2].read_text()
     assert figure.get_size_inches()[1] > high
     assert "Archive of 4 elites" in written[0].read_text()
     with pytest.raises(ValueError, match=r"must end in \.pdf"):
-        saving.publish(figure, tmp_path / "map.bmp", told)
+        saving.publish(figure, tmp_path / "map.bmp", text)

@@ -24,9 +24,6 @@ class Reference:
     outputs: dict[int | None, np.ndarray]
     """(genome, output, point) in double precision, by steps; None as `meta` has them."""
 
-    def __len__(self):
-        return len(self.nodes)
-
 
 def read(name: str) -> Reference:
     with np.load(HERE / f"{name}.npz") as file:
@@ -82,11 +79,8 @@ def grow(random: np.random.Generator) -> dict:
             links[next_key, pair[1]] = [True, links[pair][1]]
         elif kind == 2:
             source, target = (list(nodes)[i] for i in random.integers(0, len(nodes), 2))
-            if (
-                target > 2
-                and (source, target) not in links
-                and not leads(links, target, source)
-            ):
+            free = target > 2 and (source, target) not in links
+            if free and not leads(links, target, source):
                 links[source, target] = [True, random.normal()]
         else:
             key = list(nodes)[random.integers(3, len(nodes))]

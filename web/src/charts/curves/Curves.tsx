@@ -12,17 +12,11 @@ import "uplot/dist/uPlot.min.css";
 import "../lineStyle.css";
 import "./curves.css";
 
-interface Props {
-  plots: Plot[];
-  x: readonly number[];
-  view: CurveView;
-}
-
-export function Curves({ plots, x, view }: Props) {
+export function Curves({ plots, view }: { plots: Plot[]; view: CurveView }) {
   return (
     <div class="curves">
       {plots.map((plot) => (
-        <Curve key={plot.title} {...{ plot, x, view }} />
+        <Curve key={plot.title} {...{ plot, view }} />
       ))}
     </div>
   );
@@ -30,13 +24,10 @@ export function Curves({ plots, x, view }: Props) {
 
 const NONE: readonly Band[] = [];
 
-interface CurveProps extends Omit<Props, "plots"> {
-  plot: Plot;
-}
-
-function Curve({ plot: { title, format, series, bands = NONE }, x, view }: CurveProps) {
+function Curve({ plot, view }: { plot: Plot; view: CurveView }) {
+  const { title, format, series, bands = NONE } = plot;
   const host = useRef<HTMLDivElement>(null);
-  const plot = useRef<uPlot | null>(null);
+  const chart = useRef<uPlot | null>(null);
   const { width, height } = useSize(host);
   const theme = useTheme();
   const drawn = width > 0;
@@ -44,22 +35,22 @@ function Curve({ plot: { title, format, series, bands = NONE }, x, view }: Curve
   const form = series
     .map(({ name, colour, dots, dash, faint, edge }) => [name, colour, dots, dash, faint, edge].join(" "))
     .join();
-  const table = useMemo(() => tableOf(series, x, log), [x, log, ...series.flatMap(columnsOf)]);
+  const table = useMemo(() => tableOf(series, log), [log, ...series.flatMap(columnsOf)]);
   const changed = [drawn, theme, form, over, log, format];
 
   useEffect(() => {
     if (!drawn) return;
     const options = optionsOf({ series, bands, format, over, log, ink: colourResolver(host.current!) });
-    plot.current = new uPlot(options, [[], ...series.map(() => [])], host.current!);
-    return () => plot.current?.destroy();
+    chart.current = new uPlot(options, [[], ...series.map(() => [])], host.current!);
+    return () => chart.current?.destroy();
   }, changed);
 
   useEffect(() => {
-    if (drawn) plot.current?.setSize({ width, height });
+    if (drawn) chart.current?.setSize({ width, height });
   }, [width, height, ...changed]);
 
   useEffect(() => {
-    plot.current?.setData(table);
+    chart.current?.setData(table);
   }, [table, ...changed]);
 
   const lines = series.filter(({ faint, edge }) => !faint && !edge);

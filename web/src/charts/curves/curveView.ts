@@ -109,20 +109,14 @@ export function runningMean(y: Column, generation: readonly number[], window: nu
 type Cell = number | null | undefined;
 
 /** Columns for uPlot: undefined without a value, which a line skips; null if a log scale cannot show it, which breaks the line. */
-export function tableOf(
-  series: readonly Series[],
-  x: readonly number[],
-  log: boolean,
-): [x: number[], ...columns: Cell[][]] {
-  const places = new Set(x);
-  for (const each of series) each.x?.forEach((at) => at !== null && places.add(at));
-  const all = [...places].sort((a, b) => a - b);
+export function tableOf(series: readonly Series[], log: boolean): [x: number[], ...columns: Cell[][]] {
+  const places = series.flatMap(({ x = [] }) => x.filter((place) => place !== null));
+  const all = [...new Set(places)].sort((a, b) => a - b);
   const shown = (value: Cell) => (log && value != null && value <= 0 ? null : (value ?? undefined));
   return [
     all,
-    ...series.map((each) => {
-      const at = each.x ?? x;
-      const known = new Map(at.map((place, i) => [place, each.y[i]]));
+    ...series.map(({ x = [], y }) => {
+      const known = new Map(x.map((place, i) => [place, y[i]]));
       return all.map((place) => shown(known.get(place)));
     }),
   ];

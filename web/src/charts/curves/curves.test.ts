@@ -43,7 +43,7 @@ describe("the view of curves", () => {
     const [score] = arrangePlots(scoresOf, curvesOf([1, 2]), others, view);
     expect(score!.series.map(({ colour }) => colour)).toEqual(["--series-1", "--series-2"]);
     expect(score!.series.map(({ other }) => other ?? false)).toEqual([false, true]);
-    expect(tableOf(score!.series, [16, 32], false)).toEqual([
+    expect(tableOf(score!.series, false)).toEqual([
       [16, 32, 64],
       [1, 2, undefined],
       [undefined, 5, 6],
@@ -51,12 +51,12 @@ describe("the view of curves", () => {
   });
 
   it("omits values that are not positive on a log scale", () => {
-    const series = [{ name: "a", colour: "", y: [0, -1, 2] }];
-    expect(tableOf(series, [1, 2, 3], true)).toEqual([
+    const series = [{ name: "a", colour: "", x: [1, 2, 3], y: [0, -1, 2] }];
+    expect(tableOf(series, true)).toEqual([
       [1, 2, 3],
       [null, null, 2],
     ]);
-    expect(tableOf(series, [1, 2, 3], false)[1]).toEqual([0, -1, 2]);
+    expect(tableOf(series, false)[1]).toEqual([0, -1, 2]);
   });
 });
 
@@ -127,7 +127,7 @@ describe("curves over one axis", () => {
       ["run 0", "--series-0", undefined],
       ["run 1", "--series-1", [7, 4]],
     ]);
-    expect(tableOf(series, [], false)).toEqual([
+    expect(tableOf(series, false)).toEqual([
       [16, 32, 48, 64],
       [1, 2, 3, undefined],
       [undefined, 10, undefined, undefined],
@@ -136,9 +136,8 @@ describe("curves over one axis", () => {
   });
 
   it("have a value at every point between the first and the last", () => {
-    const x = [1, 2, 3, 4];
     const column = [null, 5, null, 6];
-    expect(x.map((_, i) => valueAt(x, column, i))).toEqual([null, 5, 5, 6]);
-    expect(valueAt(x, [5, null, null, null], 2)).toBeNull();
+    expect(column.map((_, i) => valueAt(column, i))).toEqual([null, 5, 5, 6]);
+    expect(valueAt([5, null, null, null], 2)).toBeNull();
   });
 });

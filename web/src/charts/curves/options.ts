@@ -112,13 +112,16 @@ function valuesAt(plot: uPlot, series: Series[], format: Plot["format"], idx: nu
     const column = plot.data[i + 1] as (number | null | undefined)[];
     if (faint || edge || column[idx] === null) return [];
     // Between two points a line has the earlier value.
-    const value = dots ? column[idx] : valueAt(plot.data[0] as number[], withNulls(column), idx);
+    const value = dots
+      ? column[idx]
+      : valueAt(
+          column.map((each) => each ?? null),
+          idx,
+        );
     if (value == null) return [];
     return [series.length > 1 ? `${name} ${format(value)}` : format(value)];
   });
 }
-
-const withNulls = (column: (number | null | undefined)[]) => column.map((value) => value ?? null);
 
 const xText = (at: number, over: Axis) =>
   over === "seconds" ? `${number(at)} s` : over === "evaluations" ? count(at) : String(at);

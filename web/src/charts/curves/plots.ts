@@ -11,7 +11,7 @@ export interface Series {
   y: Column;
   /** Dots in place of a line, for rare values. */
   dots?: boolean;
-  /** Its own x values, if it has any. */
+  /** The x values, once the view is known. */
   x?: Column;
   dash?: number[];
   /** Measured values behind a smooth line. */
@@ -113,9 +113,8 @@ function withoutFirst(curves: Curves): Curves {
 }
 
 /** The newest value up to an index; null after the last value. */
-export function valueAt(x: readonly number[], y: Column, i: number): number | null {
-  const last = y.findLastIndex((value) => value !== null);
-  if (i > last || x.length === 0) return null;
+export function valueAt(y: Column, i: number): number | null {
+  if (i > y.findLastIndex((value) => value !== null)) return null;
   return y.slice(0, i + 1).findLast((value) => value !== null) ?? null;
 }
 

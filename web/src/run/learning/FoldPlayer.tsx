@@ -3,11 +3,10 @@
 import { useMemo, useState } from "preact/hooks";
 import type { Target } from "../../api/types";
 import type { Replay } from "../../decode/replay";
-import { BODY_INK } from "../../replay/bodyPath";
 import { CanvasStage } from "../../replay/CanvasStage";
 import { StepRange } from "../../replay/Transport";
 import { useClock } from "../../replay/clock";
-import { type Point, chainsOf, positionsAt } from "../../replay/motion";
+import { type Point, BODY_INK, chainsOf, positionsAt } from "../../replay/motion";
 import { type Size, prepare, prefersReducedMotion, useTheme } from "../../ui/canvas";
 import { text } from "./text";
 
@@ -96,7 +95,7 @@ function MomentPicture({ fold, time, name }: { fold: Fold; time: number; name: s
   );
 }
 
-export interface Fold {
+interface Fold {
   replay: Replay;
   picture: OffscreenCanvas;
   target: Target;

@@ -27,12 +27,9 @@ function axesOf({ generation, size }: Stack): { x: Axis; y: Axis } {
   };
 }
 
-const roomOf = ({ width, height }: Size): Room => ({
-  left: 78,
-  right: width - 14,
-  top: 8,
-  bottom: height - 48,
-});
+const roomOf = ({ width, height }: Size): Room => {
+  return { left: 78, right: width - 14, top: 8, bottom: height - 48 };
+};
 
 /** The generation and the members at a point of the plot. */
 function pointedAt(stack: Stack, room: Room, left: number, top: number): Pointed {

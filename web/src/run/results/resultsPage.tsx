@@ -5,7 +5,7 @@ import { resultsUrl } from "../../api/files";
 import { useResults } from "../../store/fetch";
 import { setQuery } from "../../store/router";
 import { Card } from "../../ui/Page";
-import { Heading, type SortOrder } from "../../ui/Table";
+import { Heading } from "../../ui/Table";
 import { shortId } from "../../ui/format";
 import { type Order, type Column, columnsOf, sortRows } from "./columns";
 import { text } from "./text";
@@ -60,7 +60,7 @@ function ResultTable({ run, rows, order }: { run: Run; rows: ResultRow[]; order:
               <Heading
                 key={column.name}
                 {...column}
-                order={orderOf(column.name, order)}
+                order={order.by !== column.name ? "none" : order.down ? "descending" : "ascending"}
                 onSort={() => sort({ by: column.name, down: order.by === column.name && !order.down })}
               />
             ))}
@@ -74,11 +74,6 @@ function ResultTable({ run, rows, order }: { run: Run; rows: ResultRow[]; order:
       </table>
     </div>
   );
-}
-
-function orderOf(name: string, { by, down }: Order): SortOrder {
-  if (by !== name) return "none";
-  return down ? "descending" : "ascending";
 }
 
 interface RowProps {
