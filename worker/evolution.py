@@ -53,5 +53,5 @@ def compute(attempt: Attempt) -> None:
             attempt.record(report, time.monotonic() - started)
             if attempt.checkpoint_due():
                 attempt.checkpoint(report.generation, experiment.save(state))
-    done, generation = experiment.done(state), experiment.generation(state)
+    done, generation = experiment.done(state), state.generation
     attempt.end(done, generation, lambda: experiment.save(state))
