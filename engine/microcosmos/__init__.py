@@ -27,7 +27,7 @@ _HOME = {
     "audit": "audit",
     "check": "audit",
     "gradient": "audit",
-    "gradient_health": "audit",
+    "report_gradient": "audit",
     "to_pandas": "archive.export",
     "to_ribs": "archive.export",
     "scoring_function": "build",

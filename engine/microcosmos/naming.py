@@ -3,7 +3,7 @@
 from base64 import b64decode, b64encode
 from collections.abc import Iterable, Mapping
 from hashlib import sha256
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import rfc8785
@@ -14,6 +14,30 @@ FORMAT = "microcosmos-creature/1"
 LICENCE = "CC-BY-4.0"
 ACTIVATIONS = ("identity", "sigmoid", "tanh", "relu", "sin", "cos", "gaussian", "abs", "square")
 """Activations, in the order of their numbers in genomes."""
+
+MeasureName = Literal[
+    "displacement",
+    "bending_effort",
+    "stretching_effort",
+    "path_length",
+    "straightness",
+    "rotation",
+    "hidden_nodes",
+    "connections",
+    "energy",
+    "mach",
+    "limited",
+    "reynolds",
+    "mean_speed",
+    "turning",
+    "curvature_mean",
+    "curvature_spread",
+    "symmetry",
+    "power",
+    "efficiency",
+    "nodes",
+]
+"""Names of the measures, in the order in which they are recorded."""
 
 
 def encode(values: np.ndarray) -> str:

@@ -108,7 +108,14 @@ def _place(error: ValueError) -> str:
 def refuse_unstorable(document: Any) -> None:
     """Raise `ProblemError` for values that databases or other readers of JSON cannot hold."""
     _refuse_depth(document)
-    _refuse_text(document)
+    text = json.dumps(document, ensure_ascii=False)
+    try:
+        text.encode()
+    except UnicodeEncodeError as error:
+        found = ascii(text[error.start])
+        raise ProblemError(422, "Not Unicode", f"Text must be Unicode; got {found}.") from None
+    if NUL.search(text):
+        raise ProblemError(422, "Not text", "Text must be without NUL; got \\u0000.")
 
 
 def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -143,17 +150,6 @@ def _refuse_depth(document: Any) -> None:
         if not level:
             return
     raise _too_deep()
-
-
-def _refuse_text(document: Any) -> None:
-    text = json.dumps(document, ensure_ascii=False)
-    try:
-        text.encode()
-    except UnicodeEncodeError as error:
-        found = ascii(text[error.start])
-        raise ProblemError(422, "Not Unicode", f"Text must be Unicode; got {found}.") from None
-    if NUL.search(text):
-        raise ProblemError(422, "Not text", "Text must be without NUL; got \\u0000.")
 
 
 def _too_deep() -> ProblemError:

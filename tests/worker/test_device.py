@@ -10,7 +10,7 @@ import pynvml
 import pytest
 
 from server.workers import registry
-from worker import cpu, device, usage
+from worker import device, usage
 from worker.device import Device, memory
 from worker.heartbeats import Heartbeats
 from worker.usage import Usage
@@ -130,17 +130,17 @@ def test_the_processor_is_used_without_a_gpu(nvml, cards):
     found = device.find(0)
     assert found.memory_bytes > 1 << 20
     assert found.environment == {}
-    assert set(found.threads) == set(cpu.threads())
+    assert set(found.threads) == set(device.threads())
     assert found.name.endswith(f"({len(found.threads)} threads)")
 
 
 def test_threads_are_given_out_evenly_and_shared_if_there_are_too_few():
     for threads, workers in ((8, 1), (8, 2), (8, 3), (7, 7)):
         given = [10 + i for i in range(threads)]
-        shares = [cpu.share(given, i, workers) for i in range(workers)]
+        shares = [device.share_threads(given, i, workers) for i in range(workers)]
         assert [thread for share in shares for thread in share] == given
         assert max(map(len, shares)) - min(map(len, shares)) <= 1
-    assert [cpu.share([4, 5], i, 5) for i in range(5)] == [[4], [5], [4], [5], [4]]
+    assert [device.share_threads([4, 5], i, 5) for i in range(5)] == [[4], [5], [4], [5], [4]]
 
 
 def test_threads_of_a_core_are_neighbours(tmp_path, monkeypatch):
@@ -150,26 +150,26 @@ def test_threads_of_a_core_are_neighbours(tmp_path, monkeypatch):
         topology.mkdir(parents=True)
         (topology / "physical_package_id").write_text(f"{thread % 2}\n")
         (topology / "core_id").write_text(f"{thread // 2 % 2}\n")
-    monkeypatch.setattr(cpu, "TOPOLOGY", tmp_path)
+    monkeypatch.setattr(device, "TOPOLOGY", tmp_path)
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: set(range(8)), raising=False)
-    assert cpu.threads() == [0, 4, 2, 6, 1, 5, 3, 7]
+    assert device.threads() == [0, 4, 2, 6, 1, 5, 3, 7]
 
 
 def test_a_machine_without_processor_information_works(tmp_path, monkeypatch):
-    monkeypatch.setattr(cpu, "CPUINFO", tmp_path / "none")
+    monkeypatch.setattr(device, "CPUINFO", tmp_path / "none")
     monkeypatch.delattr(os, "sched_getaffinity", raising=False)
     monkeypatch.delattr(os, "sched_setaffinity", raising=False)
-    assert cpu.model()
-    assert cpu.threads() == list(range(os.cpu_count()))
-    cpu.pin([0])
+    assert device.cpu_model()
+    assert device.threads() == list(range(os.cpu_count()))
+    device.pin([0])
 
 
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="the system has no affinity")
 def test_child_processes_keep_to_the_workers_threads():
-    one = cpu.threads()[-1]
+    one = device.threads()[-1]
     program = (
-        "import subprocess, sys; from worker import cpu\n"
-        "cpu.pin([int(sys.argv[1])])\n"
+        "import subprocess, sys; from worker import device\n"
+        "device.pin([int(sys.argv[1])])\n"
         "ask = 'import os; print(*os.sched_getaffinity(0))'\n"
         "subprocess.run([sys.executable, '-c', ask], check=True)"
     )

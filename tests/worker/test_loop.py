@@ -14,7 +14,7 @@ from sqlalchemy import select, update
 
 from server.attempts.claim import claim
 from server.local import process_tree
-from server.renderings.storage import RenderingFailed, order
+from server.renderings.storage import RenderingFailed, enqueue
 from server.tables import CANCELLED, Run, Worker
 from server.workers import registry
 from worker import loop, process_setup, supervisor
@@ -88,7 +88,7 @@ def begin(services):
 
 
 def test_a_replay_that_ends_the_renderer_twice_is_given_up_with_a_reason(services, begin):
-    order(services, CREATURE)
+    enqueue(services, CREATURE)
     begin()
     retry_interrupted(services.jobs, services.jobs.renderings)
     assert services.jobs.renderings.count == 1
@@ -96,11 +96,11 @@ def test_a_replay_that_ends_the_renderer_twice_is_given_up_with_a_reason(service
     retry_interrupted(services.jobs, services.jobs.renderings)
     assert services.jobs.renderings.count == 0
     with pytest.raises(RenderingFailed, match="ended the renderer twice"):
-        order(services, CREATURE)
+        enqueue(services, CREATURE)
 
 
 def test_a_long_rendering_counts_as_alive_for_all_its_time(services, begin):
-    order(services, CREATURE)
+    enqueue(services, CREATURE)
     job = begin()
     (execution,) = job.execution_registry.get_execution_ids()
     ends = services.redis.zscore(job.started_job_registry.key, f"{job.id}:{execution}")

@@ -14,7 +14,6 @@ from ..spec import shape
 from . import file as hdf5
 from . import hdf5_guard
 from .creature import parse, scene_of
-from .file import Tree
 
 FORMAT = "microcosmos-creature-hdf5/1"
 
@@ -33,10 +32,10 @@ def _attributes(file: Mapping[str, Any]) -> dict[str, str]:
     return {"format": FORMAT, "sha256": file["sha256"], **texts}
 
 
-def _tree(file: Mapping[str, Any]) -> Tree:
+def _tree(file: Mapping[str, Any]) -> dict[str, Any]:
     body = shape(scene_of(file).body)
     measured = file["measured"]
-    tree: Tree = {
+    tree: dict[str, Any] = {
         "identity": np.bytes_(canonical(file["identity"])),
         "body": {name: getattr(body, name) for name in BODY},
         "genome": _arrays(file["identity"]["genome"]),
@@ -80,8 +79,8 @@ def link(name: str) -> str:
     return re.sub("[%/.\0]", lambda found: f"%{ord(found[0]):02X}", name) or "%"
 
 
-def _arrays(genome: Mapping[str, Any]) -> Tree:
-    found: Tree = {}
+def _arrays(genome: Mapping[str, Any]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
     for name, value in genome.items():
         if name in ("bias", "weight", "values"):
             found[name] = decode(value)

@@ -13,7 +13,12 @@ FORMAT = "microcosmos-archive/1"
 HDF5 = b"\x89HDF\r\n\x1a\n"
 """The first bytes of every HDF5 file."""
 
-Tree = dict[str, Any]
+
+class Tree(dict[str, Any]):
+    """Arrays and groups of a file by name; `ValueError` for a name that is missing."""
+
+    def __missing__(self, name: str) -> Any:
+        raise ValueError(f"the file must hold {name!r}, which is not there")
 
 
 def dump(tree: Mapping[str, Any], attributes: Mapping[str, str]) -> bytes:
@@ -30,11 +35,11 @@ def dump(tree: Mapping[str, Any], attributes: Mapping[str, str]) -> bytes:
         return file.id.get_file_image()
 
 
-def load(data: bytes) -> tuple[Tree, dict[str, str]]:
+def load(data: bytes) -> tuple[Tree, Tree]:
     """Return the arrays and attributes of our file. Raises `ValueError` for any other."""
     try:
         with h5py.File(BytesIO(data), "r") as file:
-            attributes = {name: bytes(value).decode() for name, value in file.attrs.items()}
+            attributes = Tree({n: bytes(x).decode() for n, x in file.attrs.items()})
             tree = _read(file)
     except OSError as error:
         raise ValueError(f"an archive file must be HDF5: {error}") from error
@@ -52,10 +57,8 @@ def _write(group: h5py.Group, tree: Mapping[str, Any]) -> None:
 
 
 def _read(group: h5py.Group) -> Tree:
-    return {
-        name: _read(item) if isinstance(item, h5py.Group) else item[()]
-        for name, item in group.items()
-    }
+    items = group.items()
+    return Tree({n: _read(x) if isinstance(x, h5py.Group) else x[()] for n, x in items})
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,5 @@
 """Checks, audits and measurements of one creature."""
 
-from .derivatives import gradient, gradient_health
+from .derivatives import gradient, report_gradient
 from .physics import audit
 from .reproducibility import Check, check, measurement

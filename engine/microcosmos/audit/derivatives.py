@@ -24,7 +24,7 @@ def gradient(
     horizon: int | None = None,
     segment: int | None = None,
 ) -> tuple[dict[str, float], dict[str, dict[str, np.ndarray]]]:
-    """Measures of a creature, and for each its derivatives by parts of the creature.
+    """Return measures of a creature, and for each its derivatives by parts of the creature.
 
     Names are those of `search.gradients.parts` and of the measures. `horizon` is the number of
     steps; with `segment`, reverse mode keeps so many steps in memory and repeats the others.
@@ -43,11 +43,11 @@ def gradient(
     return dict(zip(of, found.tolist(), strict=True)), slopes
 
 
-def gradient_health(
+def report_gradient(
     file: Mapping[str, Any], of: str = "fitness", by: By = ("genes",), *, starts: int = 8
-) -> search.Health:
+) -> search.GradientReport:
     """Return the report on a creature file's gradient; raises as `gradient` does."""
-    return search.gradient_health(lambda dtype: _creature(file, dtype), of, by, starts=starts)
+    return search.report_gradient(lambda dtype: _creature(file, dtype), of, by, starts=starts)
 
 
 def _creature(file: Mapping[str, Any], dtype: Any) -> tuple[search.Task, search.Actuator]:

@@ -20,7 +20,14 @@ from ..device import compiler_options, device_kind
 from ..filaments import Rest
 from ..genomes import Drive
 from ..viz.replay import CELL_STEPS, actuator_of, unmeasured
-from .variants import body_of, other_delta, reciprocal, refine, tireless, with_other_delta
+from .variants import (
+    body_of,
+    other_delta,
+    reciprocal,
+    refine,
+    strong,
+    with_other_delta,
+)
 
 AGREEING_RANGE = (0.5, 2.0)
 """Range of displacement, relative to the recorded one, that counts as the same swimming.
@@ -81,7 +88,7 @@ def audit(file: Mapping[str, Any]) -> dict[str, Any]:
     body, rest = _developed(scene, driven, rest)
     refined, _ = _simulate_rest(*refine(scene, rest, body))
     other, _ = _simulate_rest(with_other_delta(scene, body), rest)
-    back, _ = _simulate_rest(tireless(scene, body), reciprocal(rest))
+    back, _ = _simulate_rest(strong(scene, body), reciprocal(rest))
     rows = [
         *_simulation_rows(scene, nominal),
         _agreement_row(
@@ -105,7 +112,6 @@ VERDICT_ROWS = ("refined", "delta", "impulse")
 
 
 def _developed(scene: spec.Scene, driven: Drive, rest: Rest) -> tuple[bodies.Body, Rest]:
-    """Return the developed body of a creature, and its rest shapes."""
     try:
         body, joints, edges = body_of(scene, driven)
     except ValueError as error:
@@ -120,27 +126,18 @@ def _simulate_rest(task: search.Task, rest: Rest) -> tuple[Simulation, Rest]:
 
 
 def _simulate(task: search.Task, driven: Drive) -> tuple[Simulation, Rest]:
-    """Return the result, and the applied rest shapes."""
-
     def run(start, inputs):
         begun = replace(driven, start=start, inputs=inputs)
         end, watched = search.simulate(begun, partial(search.watch, driven.world))
-        values = search.motion_of(task, begun, end, watched.observed)
-        path = jnp.sum(watched.observed.node_speed)
-        displacement = watched.observed.centre[-1] - world.centre(driven.world, start)
-        return (
-            displacement,
-            path,
-            jnp.max(watched.mach),
-            values,
-            search.impulse(watched),
-            watched.observed.rest,
-        )
+        seen = watched.observed
+        values, path = search.motion_of(task, begun, end, seen), jnp.sum(seen.node_speed)
+        displacement = seen.centre[-1] - world.centre(driven.world, start)
+        mach, push = jnp.max(watched.mach), search.impulse(watched)
+        return displacement, path, mach, values, push, seen.rest
 
     program = jax.jit(run, compiler_options=compiler_options())
-    displacement, path, mach, values, push, rest = jax.device_get(
-        program(driven.start, driven.inputs)
-    )
+    results = jax.device_get(program(driven.start, driven.inputs))
+    displacement, path, mach, values, push, rest = results
     found = Simulation(
         displacement=np.asarray(displacement, float),
         path=float(path),
@@ -165,7 +162,6 @@ def _row(name: str, quantity: str, value: float, unit: str, bar: str, passed, no
 
 
 def _simulation_rows(scene: spec.Scene, found: Simulation) -> list[dict[str, Any]]:
-    """Return the rows of the recorded simulation, some with an upper limit."""
     pushed = "" if scene.coupling.force_free else ": this form of the coupling lets it"
     fast = "the flow is so fast that it is compressible"
     limits = "limits act: they decide in part how it swims"

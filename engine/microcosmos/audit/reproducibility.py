@@ -61,7 +61,7 @@ def _alone(item: Any) -> Any:
 
 
 def measurement(file: Mapping[str, Any]) -> dict[str, Any]:
-    """The comparison as a JSON document, described in `docs/formats.md`; raises as `check`."""
+    """Return the comparison as JSON, described in `docs/formats.md`; raises as `check`."""
     file = creature.parse(file)
     found = check(file)
     fitness = file["measured"]["fitness"]

@@ -91,9 +91,11 @@ def with_other_delta(scene: spec.Scene, body: bodies.Body | None = None) -> sear
     return _with(scene, body, kernel=other_delta(scene))
 
 
-def tireless(scene: spec.Scene, body: bodies.Body | None = None) -> search.Task:
-    """The scene with actuators of full strength: a soft body lags behind its rest shape, so
-    that its shapes are not reciprocal although the gait is."""
+def strong(scene: spec.Scene, body: bodies.Body | None = None) -> search.Task:
+    """Return the scene with actuators of full strength.
+
+    A soft body lags behind its rest shape: its shapes are not reciprocal although the gait is.
+    """
     return _with(scene, body, nu_c=None)
 
 
@@ -112,6 +114,6 @@ def _with(scene: spec.Scene, body: bodies.Body | None, **form: Any) -> search.Ta
 
 
 def _between(values: np.ndarray) -> np.ndarray:
-    """Values at twice as many times: each, and its mean with the next."""
+    """Return values at twice as many times: each, and its mean with the next."""
     after = np.concatenate([values[1:], values[-1:]])
     return np.stack([values, 0.5 * (values + after)], 1).reshape(-1, values.shape[1])

@@ -77,11 +77,11 @@ def gradient(
 ) -> None:
     """Measure how far the gradient of a creature's fitness or of a measure can be trusted."""
     prepare_engine(module)
-    from ..audit.derivatives import gradient_health
+    from ..audit.derivatives import report_gradient
 
     with failing(file):
         parts = tuple(by or ["genes"])
-        found = gradient_health(parse(file.read_bytes()), of, parts, starts=starts)
+        found = report_gradient(parse(file.read_bytes()), of, parts, starts=starts)
         _write(out, found.document())
     for line in found.lines():
         print(line)

@@ -30,7 +30,7 @@ class Kernel:
 
 
 def peskin(r: Distances) -> Distances:
-    """Peskin's four-point delta (Acta Numerica 11, 479, 2002, eq. 6.27)."""
+    """Weight by Peskin's four-point delta (Acta Numerica 11, 479, 2002, eq. 6.27)."""
     r = jnp.abs(r)
     near, far = r < 1, (r >= 1) & (r < 2)
     a, b = jnp.where(near, r, 0.5), jnp.where(far, r, 1.5)  # Keep both roots positive.
@@ -40,7 +40,7 @@ def peskin(r: Distances) -> Distances:
 
 
 def roma(r: Distances) -> Distances:
-    """Three-point delta: Roma, Peskin and Berger (J. Comput. Phys. 153, 509, 1999, eq. 22)."""
+    """Weight by the three-point delta of Roma, Peskin and Berger (1999)."""
     r = jnp.abs(r)
     near, far = r < 0.5, (r >= 0.5) & (r < 1.5)
     a, b = jnp.where(near, r, 0.25), jnp.where(far, r, 1.0)  # Keep both roots positive.
@@ -50,7 +50,7 @@ def roma(r: Distances) -> Distances:
 
 
 def hat(r: Distances) -> Distances:
-    """Linear interpolation."""
+    """Weight by linear interpolation."""
     return jnp.maximum(1 - jnp.abs(r), 0.0)
 
 
@@ -69,7 +69,7 @@ class Windows(eqx.Module):
     """Divisor of planes when they are read; None: 1."""
 
     def chunks(self, values: Float[Array, "node channel"]) -> Float[Array, "chunk row channel"]:
-        """Values at points, in the same chunks."""
+        """Divide values at points into the same chunks."""
         chunks, rows = self.cells.shape[:2]
         filled = jnp.pad(values, ((0, chunks * rows - self.points), (0, 0)))
         return filled.reshape(chunks, rows, -1)
@@ -93,7 +93,7 @@ def windows(positions: Vectors, size: tuple[int, ...], kernel: Kernel = PESKIN) 
 def interpolate(
     planes: tuple[Plane, ...] | Float[Array, "channel x y"], at: Windows
 ) -> Float[Array, "node channel"]:
-    """J: the values of planes at points."""
+    """Return the values of planes at points (J)."""
     flat = [plane.reshape(-1) for plane in planes]
     if at.density is not None:
         flat = [plane / at.density for plane in flat]
@@ -111,7 +111,7 @@ def interpolate(
 def spread(
     values: Float[Array, "node channel"], at: Windows, size: tuple[int, ...]
 ) -> Float[Array, "channel x y"]:
-    """S: the density that values at points make in the cells."""
+    """Return the density in the cells of values at points (S)."""
     planes = jnp.zeros((values.shape[1], size[0] * size[1]), values.dtype)
 
     def add(planes, chunk):
@@ -127,7 +127,7 @@ def spread(
 
 
 def divided(at: Windows, plane: Plane) -> Windows:
-    """Windows that read J (p/ρ): weights are divided, or where points are many the planes."""
+    """Return windows that read J (p/ρ): weights, or planes of many points, are divided."""
     density = plane.reshape(-1)
     if len(at.cells) == 1:
         return Windows(at.cells, at.weights / density[at.cells], at.points)
@@ -135,7 +135,7 @@ def divided(at: Windows, plane: Plane) -> Windows:
 
 
 def only(at: Windows, present: Bool[Array, "node"] | None) -> Windows:
-    """Windows of which those of absent points are empty."""
+    """Empty the windows of absent points."""
     if present is None:
         return at
     real = at.chunks(present.astype(at.weights.dtype)[:, None])

@@ -42,7 +42,7 @@ def force_free(error: Vectors, beta: Scalars, positions: Vectors, groups: Groups
 
 
 def torque_free(error: Vectors, beta: Scalars, positions: Vectors, groups: Groups) -> Vectors:
-    """The rigid motions whose removal makes Σ β e = 0 and Σ a × β e = 0 for each body."""
+    """Return the rigid motions whose removal makes Σ β e = 0 and Σ a × β e = 0 for a body."""
     translation = force_free(error, beta, positions, groups)
     error = error - translation
     arm = positions - groups.each(_mean(positions, beta, groups))
@@ -99,7 +99,6 @@ def multi_direct_forcing(
 
 
 def _reciprocal(values: Scalars, present: Bool[Array, "node"] | None) -> Scalars:
-    """1 over the values, 0 for nodes that are absent."""
     if present is None:
         return 1.0 / values
     return jnp.where(present, 1.0 / jnp.where(present, values, 1.0), 0.0)

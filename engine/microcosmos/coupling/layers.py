@@ -15,7 +15,7 @@ OFFSET = 0.5
 
 
 def points(positions: Vectors, normals: Vectors, layers: int) -> Float[Array, "point 2"]:
-    """`layers` points for every node, side by side."""
+    """Return `layers` points for every node, side by side."""
     if layers == 1:
         return positions
     beside = jnp.stack([positions + OFFSET * normals, positions - OFFSET * normals], 1)

@@ -7,11 +7,12 @@ from ..archive.report import Report
 from ..search import Stopped
 from .resume_check import OtherDevice
 
-__all__ = ["Experiment", "OtherDevice", "Report", "Stopped"]
-
 
 class Experiment(Protocol):
-    """A run as pure functions of a state, which holds all that the next generation needs."""
+    """A run as pure functions of a state, which holds all that the next generation needs.
+
+    `generation` of a state is the number of completed generations.
+    """
 
     def init(self) -> Any:
         """Return the state before the first generation."""
@@ -19,10 +20,6 @@ class Experiment(Protocol):
 
     def done(self, state: Any) -> bool:
         """Return whether all generations are completed."""
-        ...
-
-    def generation(self, state: Any) -> int:
-        """Generations completed."""
         ...
 
     def advance(self, state: Any, stop: Callable[[], bool] = ...) -> tuple[Any, Report]:

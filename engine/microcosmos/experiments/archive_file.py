@@ -18,7 +18,7 @@ from .. import neat, search
 from ..archive import file
 from ..genomes import Genotype
 from ..version import VERSION
-from .resume_check import OtherDevice, devices_of
+from .resume_check import devices_of
 from .state import (
     CURVES,
     ENDS,
@@ -32,8 +32,6 @@ from .state import (
     start,
 )
 
-__all__ = ["OtherDevice", "restore", "save"]
-
 Module = TypeVar("Module", bound=eqx.Module)
 
 ROWS = ("fitness", "measures", "generation", "slot")
@@ -45,6 +43,19 @@ def save(plan: Plan, state: State) -> bytes:
     state = jax.device_get(state)
     cells = np.flatnonzero(state.elites.occupied)
     elites = jax.tree.map(lambda x: x[cells], state.elites)
+    loop = {
+        "generation": np.int64(state.generation),
+        "evaluations": np.int64(state.evaluations),
+        "diverged": np.int64(state.diverged),
+        "ended": np.int64(state.ended),
+        "counters": vars(state.counters),
+        "nearest_ancestors": state.nearest_ancestors,
+        "emitters": leaves(state.emitters),
+    }
+    if np.isfinite(plan.limits.device_hours):  # Elsewhere a time would change the bytes.
+        loop["device_seconds"] = np.float64(state.device_seconds)
+    if state.unrepeated is not None:
+        loop["unrepeated"] = vars(jax.tree.map(lambda x: x[cells], state.unrepeated))
     tree = {
         "archive": {
             "cell": cells.astype(np.int32),
@@ -55,24 +66,15 @@ def save(plan: Plan, state: State) -> bytes:
             "genomes": vars(elites.genotypes),
             "repeats": vars(jax.tree.map(lambda x: x[cells], state.repeats)),
             **{name: getattr(elites, name) for name in ROWS},
-            **_centroids(state.cells),
         },
         "curves": {name: state.curves[:, i] for i, name in enumerate(CURVES)},
         "emitters": {name: state.outcomes[:, :, i] for i, name in enumerate(OUTCOMES)},
         "lineage": vars(state.lineage),
         "diverged": vars(state.failures) | {"genotypes": vars(state.failures.genotypes)},
-        "loop": {
-            "generation": np.int64(state.generation),
-            "evaluations": np.int64(state.evaluations),
-            "diverged": np.int64(state.diverged),
-            "ended": np.int64(state.ended),
-            **_clock(plan, state),
-            "counters": vars(state.counters),
-            "nearest_ancestors": state.nearest_ancestors,
-            "emitters": leaves(state.emitters),
-            **_unrepeated(state, cells),
-        },
+        "loop": loop,
     }
+    if isinstance(state.cells, search.Voronoi):
+        tree["archive"]["centroids"] = state.cells.centroids
     if state.initial is not None:
         genes = vars(state.initial.genotypes)
         tree["initial"] = {"creature": state.initial.creature, "genomes": genes}
@@ -82,51 +84,45 @@ def save(plan: Plan, state: State) -> bytes:
 def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
     """Return the state that `save` wrote; see `Evolution.restore` for what it raises."""
     tree, attributes = file.load(data)
-    try:
-        devices = devices_of(plan.spec, plan.device, attributes, other_device)
-        return _restore(plan, tree, devices)
-    except KeyError as error:
-        raise ValueError(f"an archive file must hold {error}, which is not there") from error
-
-
-def _restore(plan: Plan, tree: file.Tree, devices: tuple[str, ...]) -> State:
+    devices = devices_of(plan.spec, plan.device, attributes, other_device)
     state, archive, loop = start(plan), tree["archive"], tree["loop"]
-    cells = archive["cell"]
-    rows = {"occupied": np.ones(len(cells), bool), "genotypes": archive["genomes"], **archive}
-    creatures, operators, device_of = state.creatures, state.operators, state.device_of
-    creatures[cells], operators[cells] = archive["creature"], archive["operator"]
-    device_of[cells] = archive["device"]
+    cells, initial, diverged = archive["cell"], tree.get("initial"), tree["diverged"]
+    archive.update(occupied=np.ones(len(cells), bool), genotypes=archive["genomes"])
+    state.creatures[cells] = archive["creature"]
+    state.operators[cells] = archive["operator"]
+    state.device_of[cells] = archive["device"]
     repeats = _placed(state.repeats, cells, archive["repeats"])
     before = "unrepeated" in loop and _placed(state.repeats, cells, loop["unrepeated"])
-    diverged = tree["diverged"]
-    genotypes = _genotypes(state, diverged.pop("genotypes"))
-    taken = State(
+    restored = replace(
+        state,
         generation=int(loop["generation"]),
         evaluations=int(loop["evaluations"]),
         diverged=int(loop["diverged"]),
-        cells=_cells_of(plan, archive),
-        elites=_placed(state.elites, cells, rows),
+        elites=_placed(state.elites, cells, archive),
         counters=neat.Counters(**{n: jnp.asarray(c) for n, c in loop["counters"].items()}),
         emitters=filled(state.emitters, loop["emitters"]),
         nearest_ancestors=loop["nearest_ancestors"],
         repeats=repeats,
-        creatures=creatures,
-        operators=operators,
-        device_of=device_of,
         curves=np.stack([tree["curves"][name] for name in CURVES], 1),
         outcomes=np.stack([tree["emitters"][name] for name in OUTCOMES], 2),
         ended=int(loop["ended"]),
         device_seconds=float(loop.get("device_seconds", 0.0)),
         lineage=Lineage(**tree["lineage"]),
-        failures=Diverged(**diverged, genotypes=genotypes),
+        failures=Diverged(**diverged | {"genotypes": _genotypes(state, diverged["genotypes"])}),
         devices=devices,
         unrepeated=before or None,
-        initial=_initial(state, tree.get("initial")),
+        initial=initial
+        and InitialCreatures(initial["creature"], _genotypes(state, initial["genomes"])),
     )
-    return prolonged(taken) if taken.generation < plan.generations else taken
+    if "centroids" in archive:  # Another machine may have found slightly other ones.
+        restored = replace(restored, cells=search.voronoi(plan.axes, archive["centroids"]))
+    return prolonged(restored) if restored.generation < plan.generations else restored
 
 
 def _attributes(plan: Plan, state: State) -> dict[str, str]:
+    end = None
+    if state.ended or state.generation >= plan.generations:
+        end = {"reason": ENDS[state.ended] or "generations", "generation": state.generation}
     return {
         "format": file.FORMAT,
         "version": VERSION,
@@ -136,39 +132,8 @@ def _attributes(plan: Plan, state: State) -> dict[str, str]:
         "force_free": json.dumps(plan.force_free),
         "operators": json.dumps(search.OPERATORS),
         "statuses": json.dumps(search.STATUSES),
-        "ended": json.dumps(_end(plan, state)),
+        "ended": json.dumps(end),
     }
-
-
-def _centroids(cells: search.Cells) -> dict[str, Any]:
-    return {"centroids": cells.centroids} if isinstance(cells, search.Voronoi) else {}
-
-
-def _cells_of(plan: Plan, archive: dict[str, Any]) -> search.Cells:
-    """Return the run's own cells: another machine may have found slightly other centroids."""
-    if "centroids" not in archive:
-        return plan.cells
-    return search.voronoi(plan.axes, archive["centroids"])
-
-
-def _clock(plan: Plan, state: State) -> dict[str, Any]:
-    """Return the time of evaluation, only if it limits the run."""
-    timed = np.isfinite(plan.limits.device_hours)
-    return {"device_seconds": np.float64(state.device_seconds)} if timed else {}
-
-
-def _unrepeated(state: State, cells: np.ndarray) -> dict[str, Any]:
-    """Repeats before a reevaluation that happened only because the run ended."""
-    if state.unrepeated is None:
-        return {}
-    return {"unrepeated": vars(jax.tree.map(lambda x: x[cells], state.unrepeated))}
-
-
-def _end(plan: Plan, state: State) -> dict[str, Any] | None:
-    if not state.ended and state.generation < plan.generations:
-        return None
-    reason = ENDS[state.ended] or "generations"
-    return {"reason": reason, "generation": state.generation}
 
 
 def _placed(module: Module, cells: np.ndarray, columns: dict[str, Any]) -> Module:
@@ -187,25 +152,19 @@ def _placed(module: Module, cells: np.ndarray, columns: dict[str, Any]) -> Modul
     return replace(module, **{n: placed(x, columns[n]) for n, x in vars(module).items()})
 
 
-def _initial(state: State, group: file.Tree | None) -> InitialCreatures | None:
-    if group is None:
-        return None
-    return InitialCreatures(group["creature"], _genotypes(state, group["genomes"]))
-
-
 def _genotypes(state: State, columns: dict[str, np.ndarray]) -> Genotype:
     form = state.elites.genotypes
     return jax.tree.unflatten(jax.tree.structure(form), [columns[name] for name in vars(form)])
 
 
 def leaves(tree: PyTree[Array]) -> dict[str, np.ndarray]:
-    """Arrays of a tree by their paths."""
+    """Return the arrays of a tree by their paths."""
     found = jax.tree_util.tree_leaves_with_path(tree)
     return {_path_of(path): np.asarray(leaf) for path, leaf in found}
 
 
 def filled(tree: PyTree[Array], arrays: dict[str, np.ndarray]) -> PyTree[Array]:
-    """A tree of the same structure with the arrays of `leaves`."""
+    """Return a tree of the same structure with the arrays of `leaves`."""
     return jax.tree_util.tree_map_with_path(
         lambda path, old: jnp.asarray(arrays[_path_of(path)], old.dtype), tree
     )

@@ -4,6 +4,7 @@ With emitters that draw parents from the archive it is MAP-Elites (Mouret and Cl
 arXiv:1504.04909, 2015); with a population of its own the archive only records.
 """
 
+import json
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -16,8 +17,10 @@ import numpy as np
 from .. import search
 from ..archive.report import Elite, Report
 from ..genomes import Genotype
+from ..search.emitters.population import Population
+from ..search.emitters.tensorneat import TensorNeatState
 from . import archive_file, lineage, reevaluation
-from .offspring import Offspring, Programs, next_offspring, refuse_lacking
+from .offspring import Offspring, Programs, next_offspring
 from .state import CURVES, ENDS, MAX_DIVERGED, Diverged, Plan, State, start
 
 
@@ -32,24 +35,22 @@ class Evolution:
 
     def init(self) -> State:
         """Raise `ValueError` if files of initial creatures are missing."""
-        refuse_lacking(self.plan)
+        named = json.loads(self.plan.spec)["search"].get("initial", [])
+        if named and self.plan.initial is None:
+            count = f"{len(named)} creatures"
+            raise ValueError(f"`search.initial` names {count}, whose files are needed to begin")
         return start(self.plan)
 
     def done(self, state: State) -> bool:
         return bool(state.ended) or state.generation >= self.plan.generations
 
-    def generation(self, state: State) -> int:
-        return state.generation
-
     def advance(
         self, state: State, stop: Callable[[], bool] = search.never
     ) -> tuple[State, Report]:
         offspring = next_offspring(self.plan, self.programs, state, stop)
+        program, genotypes = self.programs.evaluate_block, offspring.children.genotypes
         evaluation = search.evaluate_blocks(
-            self.programs.evaluate_block,
-            offspring.children.genotypes,
-            block=self.plan.block,
-            stop=stop,
+            program, genotypes, block=self.plan.block, stop=stop
         )
         seconds = (time.monotonic() - offspring.began) * jax.local_device_count()
         after, elites, clipped = self._inserted(state, offspring, evaluation)
@@ -63,12 +64,12 @@ class Evolution:
         after = replace(after, curves=np.concatenate([after.curves, row[None]]))
         seconds = after.device_seconds - state.device_seconds
         summary = _summary(self.plan, after, seconds, np.asarray(evaluation.status))
-        return after, _report(after, elites, {**summary, **offspring.taught.summary()})
+        return after, _report(after, elites, {**summary, **offspring.results.summary()})
 
     def _inserted(
         self, state: State, offspring: Offspring, evaluation: search.Evaluation
     ) -> tuple[State, tuple[Elite, ...], int]:
-        """The state with the offspring inserted and recorded, its elites, the clipped ones."""
+        """Return the state with the offspring recorded, new elites, and the number clipped."""
         programs, children = self.programs, offspring.children
         candidates = search.candidates(
             state.generation + 1,
@@ -79,10 +80,10 @@ class Evolution:
         )
         elites, inserted = programs.insert(state.elites, candidates, state.cells)
         outcome = search.emitters.outcome(candidates, inserted)
-        emitters = offspring.kept(programs.tell(offspring.emitters, outcome))
+        emitters = offspring.allowed(programs.tell(offspring.emitters, outcome))
         inserted = jax.device_get(inserted)
         clipped = search.clipped(candidates, state.cells)
-        simulated = offspring.taught.simulated + len(evaluation.fitness)
+        simulated = offspring.results.simulated + len(evaluation.fitness)
         after, new = lineage.record(
             self.plan, state, children, evaluation, inserted, offspring.names
         )
@@ -119,13 +120,10 @@ class Evolution:
         return archive_file.restore(self.plan, data, other_device=other_device)
 
     def _outcomes(self, inserted: search.Inserted) -> np.ndarray:
+        entered, fresh = np.asarray(inserted.entered), np.asarray(inserted.fresh)
+        counts = np.stack([np.ones(len(entered), int), entered & fresh, entered & ~fresh], 1)
         slots = [emitter.slots for emitter in self.plan.emitters]
-        ends = np.cumsum(slots)[:-1]
-        fresh = np.split(np.asarray(inserted.entered & inserted.fresh), ends)
-        better = np.split(np.asarray(inserted.entered & ~inserted.fresh), ends)
-        return np.array(
-            [[n, a.sum(), b.sum()] for n, a, b in zip(slots, fresh, better, strict=True)]
-        )
+        return np.add.reduceat(counts, np.cumsum([0, *slots[:-1]]))
 
 
 def _failures(state: State, genotypes: Genotype, status: np.ndarray) -> Diverged:
@@ -154,7 +152,7 @@ def _ended(plan: Plan, state: State) -> int:
 
 
 def _figures(state: State) -> tuple[float, ...]:
-    """The first columns of `CURVES` for the present archive, summed in double precision."""
+    """Return the first columns of `CURVES`, summed in double precision."""
     occupied = np.asarray(state.elites.occupied)
     fitness = np.asarray(state.elites.fitness, np.float64)[occupied]
     best, mean = (fitness.max(), fitness.mean()) if len(fitness) else (0.0, 0.0)
@@ -178,10 +176,7 @@ def _report(state: State, elites: tuple[Elite, ...], summary: dict[str, Any]) ->
 
 
 def _summary(plan: Plan, state: State, seconds: float, status: np.ndarray) -> dict[str, Any]:
-    """Figures of the last generation beside the columns that every search has.
-
-    `seconds` are those of its evaluation, `status` is that of each creature.
-    """
+    """Return figures of the last generation beside the columns that every search has."""
     values = dict(zip(CURVES, state.curves[-1].tolist(), strict=True))
     found: dict[str, Any] = {"device_seconds": seconds, "clipped": int(values["clipped"])}
     for i, name in enumerate(plan.names):
@@ -190,21 +185,18 @@ def _summary(plan: Plan, state: State, seconds: float, status: np.ndarray) -> di
     for name in ("corrected_qd_score", "corrected_coverage", "hit_rate"):
         if np.isfinite(values[name]):
             found[name] = values[name]
-    found |= _divergences(status) | _species(state)
+    counts = np.bincount(status, minlength=len(search.STATUSES)).tolist()
+    named = list(zip(search.STATUSES, counts, strict=True))[1:]
+    found |= {f"diverged: {reason}": count for reason, count in named if count}
+    found |= _species(state)
     if state.ended:
         found["ended"] = f"{ENDS[state.ended]} after generation {state.generation}"
     return found
 
 
-def _divergences(status: np.ndarray) -> dict[str, int]:
-    counts = np.bincount(status, minlength=len(search.STATUSES)).tolist()
-    named = zip(search.STATUSES, counts, strict=True)
-    return {f"diverged: {name}": count for name, count in list(named)[1:] if count}
-
-
 def _species(state: State) -> dict[str, str]:
-    for kept in state.emitters:
-        if isinstance(kept, search.emitters.Divided):
-            pairs = kept.sizes().items()
+    for emitter in state.emitters:
+        if isinstance(emitter, Population | TensorNeatState):
+            pairs = emitter.sizes().items()
             return {"species": " ".join(f"{number}:{members}" for number, members in pairs)}
     return {}

@@ -28,6 +28,10 @@ class State:
     table: Table
     """One row a fold, once all updates are done."""
 
+    @property
+    def generation(self) -> int:
+        return self.table.generation
+
 
 @dataclass(frozen=True)
 class Folding:
@@ -51,10 +55,7 @@ class Folding:
         return State(self.start, losses, Table(0, (), (self.device,)))
 
     def done(self, state: State) -> bool:
-        return state.table.generation >= self.updates
-
-    def generation(self, state: State) -> int:
-        return state.table.generation
+        return state.generation >= self.updates
 
     def advance(
         self, state: State, stop: Callable[[], bool] = search.never
@@ -64,7 +65,7 @@ class Folding:
         )
         losses = np.concatenate([state.losses, np.asarray(losses)[None]])
         state = replace(state, folds=folds, losses=losses)
-        last = state.table.generation + 1 == self.updates
+        last = state.generation + 1 == self.updates
         rows = tuple(self._row(state, i) for i in range(len(self.names))) if last else ()
         state = replace(state, table=state.table.grown(rows))
         return state, self._report(state, rows)
@@ -85,33 +86,27 @@ class Folding:
     def restore(self, data: bytes, *, other_device: bool = False) -> State:
         table = table_file.restore(self.spec, self.device, data, other_device=other_device)
         tree, _ = file.load(data)
-        try:
-            kept, after = tree["folds"], tree["next"]
-            folds = search.folding.Fold(
-                genes=jnp.asarray(after["genes"]),
-                optimiser=filled(self.start.optimiser, after["optimiser"]),
-                best=jnp.asarray(kept["genes"]),
-                least=jnp.asarray(kept["loss"]),
-                rate_share=jnp.asarray(after["rate_share"]),
-                picture=jnp.asarray(kept["picture"]),
-            )
-            return State(jax.device_get(folds), tree["curves"]["loss"], table)
-        except KeyError as error:
-            raise ValueError(
-                f"a folding's file must hold {error}, which is not there"
-            ) from error
+        best, after = tree["folds"], tree["next"]
+        folds = search.folding.Fold(
+            genes=jnp.asarray(after["genes"]),
+            optimiser=filled(self.start.optimiser, after["optimiser"]),
+            best=jnp.asarray(best["genes"]),
+            least=jnp.asarray(best["loss"]),
+            rate_share=jnp.asarray(after["rate_share"]),
+            picture=jnp.asarray(best["picture"]),
+        )
+        return State(jax.device_get(folds), tree["curves"]["loss"], table)
 
     def best(self, state: State) -> dict[str, Any] | None:
         """Return the fold with the least loss, or None before the last update."""
         if not state.table.rows:
             return None
-        row = state.table.rows[int(np.argmin(state.folds.least))]
-        whole = self._identity(state, int(np.argmin(state.folds.least)))
-        return naming.document(whole, None, row.provenance)
+        best = int(np.argmin(state.folds.least))
+        provenance = state.table.rows[best].provenance
+        return naming.document(self._identity(state, best), None, provenance)
 
     def _identity(self, state: State, fold: int) -> dict[str, Any]:
-        genotype = Vector(jnp.asarray(state.folds.best[fold]))
-        return identity(self.frame, genotype)
+        return identity(self.frame, Vector(jnp.asarray(state.folds.best[fold])))
 
     def _row(self, state: State, fold: int) -> Row:
         course, whole = state.losses[:, fold], self._identity(state, fold)
@@ -125,13 +120,12 @@ class Folding:
         }
         operator = f"folding into {self.names[fold]}"
         provenance = naming.provenance(operator, generation=self.updates)
-        name, canonical = naming.name(whole), naming.canonical(whole)
-        return Row(row, name, canonical, None, provenance)
+        return Row(row, naming.name(whole), naming.canonical(whole), None, provenance)
 
     def _report(self, state: State, rows: tuple[Row, ...]) -> Report:
         now = dict(zip(self.names, state.losses[-1].tolist(), strict=True))
         return Report(
-            generation=state.table.generation,
+            generation=state.generation,
             evaluations=state.losses.size,
             diverged=int(np.count_nonzero(~np.isfinite(state.losses))),
             rows=rows,

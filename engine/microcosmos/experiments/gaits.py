@@ -35,7 +35,7 @@ class Stroke:
 def stroke_rows(
     stroke: Stroke, stop: Callable[[], bool], *, block: int, device: str
 ) -> tuple[Row, ...]:
-    """A row for each viscosity of a stroke; raises `Stopped` between blocks if asked to."""
+    """Return a row for each viscosity; raises `Stopped` between blocks if asked to."""
     found = search.evaluate_blocks(stroke.program, stroke.conditions, block=block, stop=stop)
     points = range(len(found.fitness))
     return tuple(_row(stroke, point, found, block, device) for point in points)
@@ -68,12 +68,12 @@ def _row(stroke: Stroke, point: int, found: search.Evaluation, block: int, devic
         return Row(row)
     identity = stroke.identities[point]
     measured = measurement(measures["displacement"], measures, block=block, device=device)
-    name, canonical = naming.name(identity), naming.canonical(identity)
-    return Row(row, name, canonical, measured, naming.provenance("hand-made"))
+    name, provenance = naming.name(identity), naming.provenance("hand-made")
+    return Row(row, name, naming.canonical(identity), measured, provenance)
 
 
 def stack(points: list[search.Conditions]) -> search.Conditions:
-    """Conditions of many points as NumPy arrays, the point first."""
+    """Stack the conditions of many points as NumPy arrays, the point first."""
     return jax.tree.map(lambda *values: np.stack([np.asarray(v) for v in values]), *points)
 
 

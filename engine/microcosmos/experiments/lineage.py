@@ -32,7 +32,22 @@ def record(
     slots = np.flatnonzero(inserted.entered)
     cells = np.asarray(inserted.cell)[slots]
     forebears = _forebears(names, state.nearest_ancestors, np.asarray(children.parents))
-    elites = _new_elites(plan, state, children, evaluation, slots, cells, forebears[slots])
+    operator, fitness = np.asarray(children.operator), np.asarray(evaluation.fitness)
+    measures = np.asarray(evaluation.measures)
+    elites = tuple(
+        _elite(
+            plan,
+            take(children.genotypes, slot),
+            float(fitness[slot]),
+            measures[slot],
+            cell=int(cell),
+            generation=state.generation + 1,
+            operator=int(operator[slot]),
+            parents=forebears[slot],
+            device=plan.device,
+        )
+        for slot, cell in zip(slots.tolist(), cells, strict=True)
+    )
     new = _entries(plan, elites, forebears[slots])
     creatures, operators = state.creatures.copy(), state.operators.copy()
     device_of, nearest_ancestors = state.device_of.copy(), forebears.copy()
@@ -49,33 +64,6 @@ def record(
         nearest_ancestors=nearest_ancestors,
         lineage=lineage,
     ), elites
-
-
-def _new_elites(
-    plan: Plan,
-    state: State,
-    children: search.Children,
-    evaluation: search.Evaluation,
-    slots: np.ndarray,
-    cells: np.ndarray,
-    parents: np.ndarray,
-) -> tuple[Elite, ...]:
-    operator, fitness = np.asarray(children.operator), np.asarray(evaluation.fitness)
-    measures = np.asarray(evaluation.measures)
-    return tuple(
-        _elite(
-            plan,
-            take(children.genotypes, slot),
-            float(fitness[slot]),
-            measures[slot],
-            cell=int(cell),
-            generation=state.generation + 1,
-            operator=int(operator[slot]),
-            parents=parents[i],
-            device=plan.device,
-        )
-        for i, (slot, cell) in enumerate(zip(slots.tolist(), cells, strict=True))
-    )
 
 
 def _entries(plan: Plan, elites: tuple[Elite, ...], parents: np.ndarray) -> Lineage:
@@ -143,7 +131,7 @@ def measurement(
 def _forebears(
     names: np.ndarray, nearest_ancestors: np.ndarray, parents: np.ndarray
 ) -> np.ndarray:
-    """Recorded creatures (slot, 2, 32) that the children of parents (slot, 2) descend from.
+    """Return recorded creatures (slot, 2, 32) that descendants of parents (slot, 2) come from.
 
     A parent from the archive is recorded. A parent from the last generation may not be: then
     its own nearest recorded ancestors take its place.

@@ -4,10 +4,10 @@ A search with initial creatures evaluates those first, a batch at a time. Their 
 the rest of the last such batch.
 """
 
-import json
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import zip_longest
 from typing import Any
 
 import jax
@@ -33,29 +33,29 @@ class Lessons:
 
 
 @dataclass(frozen=True)
-class Taught:
+class LessonResults:
     """The results of a generation's lessons."""
 
     simulated: int = 0
     """Creatures simulated, forwards and backwards."""
-    sound: int = 0
+    finite: int = 0
     """Creatures with finite slopes."""
     norms: tuple[float, ...] = ()
-    """Lengths of the sound slopes of fitness."""
+    """Lengths of the finite slopes of fitness."""
 
     def summary(self) -> dict[str, float]:
-        """Figures for the report; none if nothing was taught."""
+        """Return figures for the report; none without lessons."""
         if not self.simulated:
             return {}
-        found = {"slopes: sound": self.sound / self.simulated}
+        found = {"slopes: finite": self.finite / self.simulated}
         return found | ({"slopes: length": float(np.median(self.norms))} if self.norms else {})
 
-    def with_lesson(self, slopes: search.Slopes) -> "Taught":
-        sound = np.asarray(slopes.sound)
-        norms = np.linalg.norm(np.asarray(slopes.rows)[sound, 0], axis=-1)
-        return Taught(
-            self.simulated + len(sound),
-            self.sound + int(sound.sum()),
+    def with_lesson(self, slopes: search.Slopes) -> "LessonResults":
+        finite = np.asarray(slopes.finite)
+        norms = np.linalg.norm(np.asarray(slopes.rows)[finite, 0], axis=-1)
+        return LessonResults(
+            self.simulated + len(finite),
+            self.finite + int(finite.sum()),
             self.norms + tuple(norms.tolist()),
         )
 
@@ -80,29 +80,18 @@ class Offspring:
     children: search.Children
     emitters: tuple[Any, ...]
     counters: neat.Counters
-    taught: Taught
+    results: LessonResults
     began: float
     """Start of lessons and evaluation, of the monotonic clock."""
     names: np.ndarray
     """Names of the creatures that parents were drawn from, by cell."""
-    untold: tuple[Any, ...] | None = None
-    """The earlier state of each emitter some of whose children were replaced; else None."""
+    before: tuple[tuple[Any] | None, ...] = ()
+    """The earlier state of each emitter some of whose children were replaced."""
 
-    def kept(self, states: tuple[Any, ...]) -> tuple[Any, ...]:
+    def allowed(self, states: tuple[Any, ...]) -> tuple[Any, ...]:
         """Return the states; an emitter must not learn from children that replaced its own."""
-        if self.untold is None:
-            return states
-        pairs = zip(states, self.untold, strict=True)
-        return tuple(new if before is None else before[0] for new, before in pairs)
-
-
-def refuse_lacking(plan: Plan) -> None:
-    """Raise `ValueError` if the spec names creatures whose files are missing."""
-    named = json.loads(plan.spec)["search"].get("initial", [])
-    if named and plan.initial is None:
-        raise ValueError(
-            f"`search.initial` names {len(named)} creatures, whose files are needed to begin"
-        )
+        pairs = zip_longest(states, self.before)
+        return tuple(old[0] if old else new for new, old in pairs)
 
 
 def next_offspring(
@@ -131,10 +120,10 @@ def _emitted(
     )
     children, began = jax.device_get(children), time.monotonic()
     slots = tuple(emitter.slots for emitter in plan.emitters)
-    children, emitters, taught = _teach(
+    children, emitters, results = _teach(
         programs.lessons, slots, children, emitters, block=plan.block, stop=stop
     )
-    return Offspring(children, emitters, counters, taught, began, names)
+    return Offspring(children, emitters, counters, results, began, names)
 
 
 def _gathered(
@@ -158,26 +147,26 @@ def _replaced(
     initial: InitialCreatures,
     places: np.ndarray,
 ) -> Offspring:
-    children, count = offspring.children, len(places)
+    count = len(places)
 
-    def put(values: Any, new: Any) -> np.ndarray:
-        return np.concatenate([np.asarray(new), np.asarray(values)[count:]])
+    def put(old: Any, new: Any) -> np.ndarray:
+        return np.concatenate([np.asarray(new), np.asarray(old)[count:]])
 
-    own = jax.tree.map(lambda x: x[places], initial.genotypes)
-    parents = np.stack([places, np.full(count, search.NO_PARENT)], 1).astype(np.int32)
-    code = np.full(count, search.OPERATORS.index("fork"), np.int32)
-    old, form = jax.tree.flatten(children)
-    new = jax.tree.leaves((own, parents, code))  # In the order of the fields of `Children`.
-    whole = jax.tree.unflatten(form, [put(*pair) for pair in zip(old, new, strict=True)])
-    ends = np.cumsum([emitter.slots for emitter in plan.emitters])
-    begins = [0, *ends[:-1].tolist()]
+    parents = np.stack([places, np.full(count, search.NO_PARENT)], 1)
+    new = search.Children(
+        genotypes=jax.tree.map(lambda x: x[places], initial.genotypes),
+        parents=jnp.asarray(parents, jnp.int32),
+        operator=jnp.full(count, search.OPERATORS.index("fork"), jnp.int32),
+    )
+    children = jax.tree.map(put, offspring.children, new)
+    begins = np.cumsum([0, *(emitter.slots for emitter in plan.emitters[:-1])]).tolist()
     pairs = zip(state.emitters, begins, strict=True)
     # A population's networks are these very creatures.
-    untold = tuple(
+    before = tuple(
         (kept,) if first < count and not isinstance(kept, Population) else None
         for kept, first in pairs
     )
-    return replace(offspring, children=whole, untold=untold)
+    return replace(offspring, children=children, before=before)
 
 
 def _teach(
@@ -188,8 +177,8 @@ def _teach(
     *,
     block: int,
     stop: Callable[[], bool],
-) -> tuple[search.Children, tuple[Any, ...], Taught]:
-    parts, kept, taught, first = [], [], Taught(), 0
+) -> tuple[search.Children, tuple[Any, ...], LessonResults]:
+    parts, kept, results, first = [], [], LessonResults(), 0
     for lesson, count, state in zip(lessons, slots, states, strict=True):
         offspring = jax.tree.map(lambda x, a=first, b=first + count: x[a:b], children)
         for _ in range(lesson.number if lesson else 0):
@@ -200,11 +189,11 @@ def _teach(
                 lesson.slopes, asked, block=min(block, number), stop=stop
             )
             offspring, state = lesson.learn(state, offspring, found)
-            taught = taught.with_lesson(found)
+            results = results.with_lesson(found)
         parts.append(jax.device_get(offspring))
         kept.append(state)
         first += count
-    if not taught.simulated:
-        return children, states, taught
+    if not results.simulated:
+        return children, states, results
     whole = jax.tree.map(lambda *rows: np.concatenate(rows), *parts)
-    return whole, tuple(kept), taught
+    return whole, tuple(kept), results

@@ -38,23 +38,16 @@ def disturb(
     """Return the conditions in every cell, derived from seed, generation, sample and cell."""
     turn = jax.random.fold_in(jax.random.fold_in(key, generation), SAMPLES + sample)
     keys = jax.vmap(lambda cell: jax.random.fold_in(turn, cell))(jnp.arange(cells))
-    return jax.vmap(lambda key: disturbance(reevaluation.spread, reevaluation.size, key=key))(
-        keys
-    )
+    spread, size = reevaluation.spread, reevaluation.size
+    return jax.vmap(lambda key: disturbance(spread, size, key=key))(keys)
 
 
 def due(plan: Plan, state: State) -> bool:
     """Return whether elites are reevaluated after the state's generation."""
+    if plan.reevaluation is None:
+        return False
     last = bool(state.ended) or state.generation >= plan.generations
-    return plan.reevaluation is not None and (
-        last or state.generation % plan.reevaluation.every == 0
-    )
-
-
-def early(plan: Plan, state: State) -> bool:
-    """Return whether reevaluation happens only because this is the last generation."""
-    assert plan.reevaluation is not None
-    return not state.ended and state.generation % plan.reevaluation.every != 0
+    return last or state.generation % plan.reevaluation.every == 0
 
 
 def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bool]) -> State:
@@ -64,22 +57,30 @@ def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bo
     done = np.asarray(state.elites.occupied)
     cells, repeats = np.flatnonzero(done), state.repeats
     genotypes = jax.tree.map(lambda x: np.asarray(x)[cells], state.elites.genotypes)
+
+    def in_all_cells(rows: np.ndarray) -> np.ndarray:
+        everywhere = np.zeros((plan.cell_count, *rows.shape[1:]), rows.dtype)
+        everywhere[cells] = rows
+        return everywhere
+
     for sample in range(plan.reevaluation.samples):
         changed = programs.disturb(jnp.asarray(state.generation), jnp.asarray(sample))
         changed = jax.tree.map(lambda x: np.asarray(x)[cells], changed)
         found = search.evaluate_blocks(
             programs.evaluate_block, (genotypes, changed), block=plan.block, stop=stop
         )
-        everywhere = jax.tree.map(lambda x: _spread(x, cells, plan.cell_count), found)
+        everywhere = jax.tree.map(in_all_cells, found)
         repeats = programs.add(repeats, jnp.asarray(done), everywhere, state.cells)
     seconds = (time.monotonic() - began) * jax.local_device_count()
-    before = state.repeats if early(plan, state) else None
+    # A run with more generations would not reevaluate here.
+    early = not state.ended and state.generation % plan.reevaluation.every != 0
+    before = state.repeats if early else None
     spent = state.device_seconds + seconds
     return replace(state, repeats=repeats, unrepeated=before, device_seconds=spent)
 
 
 def figures(programs: Programs, state: State) -> tuple[float, float, float]:
-    """Corrected QD score and coverage, and how often a repeat fell into its own cell."""
+    """Return corrected QD score and coverage, and the share of repeats in their own cell."""
     count = np.asarray(state.repeats.count)
     if not count.any():
         return np.nan, np.nan, np.nan
@@ -88,9 +89,3 @@ def figures(programs: Programs, state: State) -> tuple[float, float, float]:
     there = corrected[np.isfinite(corrected)]
     hits = np.asarray(state.repeats.hits).sum() / count.sum()
     return float(there.sum()), len(there) / len(corrected), float(hits)
-
-
-def _spread(rows: np.ndarray, cells: np.ndarray, count: int) -> np.ndarray:
-    everywhere = np.zeros((count, *rows.shape[1:]), rows.dtype)
-    everywhere[cells] = rows
-    return everywhere

@@ -37,15 +37,14 @@ class Trials:
     slope: float | None = None
     """Length of the slope of fitness; None if the present genes alone are tried."""
 
-    def health(self, before: float, fitness: np.ndarray) -> dict[str, float | None]:
-        """The reliability of the gradient: `agreement` is the gain of the shortest trial along
-        it over the gain that the slope predicts."""
+    def gain_ratio(self, before: float, fitness: np.ndarray) -> float | None:
+        """Return the gain of the shortest trial over the gain that the slope predicts."""
         if not self.slope:
-            return {"slope": self.slope, "agreement": None}
+            return None
         shortest = 2 * ((len(self.lengths) - 1) // 2)
         predicted = self.lengths[shortest] * self.slope
-        agreement = (float(fitness[shortest]) - before) / predicted
-        return {"slope": self.slope, "agreement": agreement if np.isfinite(agreement) else None}
+        ratio = (float(fitness[shortest]) - before) / predicted
+        return ratio if np.isfinite(ratio) else None
 
 
 @dataclass(frozen=True)
@@ -57,6 +56,11 @@ class State:
     length: float
     """Length of the longest trial of the next step."""
     table: Table
+
+    @property
+    def generation(self) -> int:
+        """Completed steps, including the first measurement of the creature."""
+        return self.table.generation
 
 
 @dataclass(frozen=True)
@@ -91,11 +95,7 @@ class Refinement:
         return State(genes, -np.inf, self.length, Table(0, (), (self.device,)))
 
     def done(self, state: State) -> bool:
-        return state.table.generation > self.steps
-
-    def generation(self, state: State) -> int:
-        """Completed steps, including the first measurement of the creature."""
-        return state.table.generation
+        return state.generation > self.steps
 
     def advance(
         self, state: State, stop: Callable[[], bool] = search.never
@@ -113,8 +113,8 @@ class Refinement:
             longest = 0 < tried.lengths[best] == tried.lengths[0]
             length = state.length * (2.0 if longest else 1.0)
             state = replace(state, genes=tried.genes[best], fitness=float(found.fitness[best]))
-        health = tried.health(before, np.asarray(found.fitness))
-        row = replace(row, values={**row.values, **health})
+        agreement = tried.gain_ratio(before, np.asarray(found.fitness))
+        row = replace(row, values={**row.values, "slope": tried.slope, "agreement": agreement})
         state = replace(state, length=length, table=state.table.grown((row,)))
         return state, self._report(state, row)
 
@@ -130,11 +130,8 @@ class Refinement:
 
     def restore(self, data: bytes, *, other_device: bool = False) -> State:
         table = table_file.restore(self.spec, self.device, data, other_device=other_device)
-        try:
-            kept = file.load(data)[0]["next"]
-            return State(kept["genes"], float(kept["fitness"]), float(kept["length"]), table)
-        except KeyError as error:
-            raise ValueError(f"a refinement's file must hold {error}, got none") from error
+        after = file.load(data)[0]["next"]
+        return State(after["genes"], float(after["fitness"]), float(after["length"]), table)
 
     def best(self, state: State) -> dict[str, Any] | None:
         if not state.table.rows:
@@ -148,7 +145,7 @@ class Refinement:
         slopes = search.evaluate_blocks(
             self.slopes, self._genotypes(state.genes[None]), block=1, stop=stop
         )
-        rows = np.asarray(slopes.rows[0], np.float64) * bool(slopes.sound[0])
+        rows = np.asarray(slopes.rows[0], np.float64) * bool(slopes.finite[0])
         found = trials_along(state.genes, rows, state.length, self.block)
         if isinstance(self.genotype, Vector):
             return replace(found, genes=np.clip(found.genes, -1.0, 1.0))
@@ -181,7 +178,7 @@ class Refinement:
         )
         first = not state.table.rows
         values = {
-            "step": state.table.generation,
+            "step": state.generation,
             "fitness": float(found.fitness[best]),
             **{name: measures[name] for name in self.names},
         }
@@ -196,7 +193,7 @@ class Refinement:
         )
         refined = naming.provenance(
             "refinement",
-            generation=state.table.generation,
+            generation=state.generation,
             parents=[self.parent],
             seed=(self.provenance or {}).get("seed", 0),
         )
@@ -207,8 +204,8 @@ class Refinement:
     def _report(self, state: State, row: Row) -> Report:
         before = state.table.rows[0].values["fitness"]
         return Report(
-            generation=state.table.generation,
-            evaluations=1 + (1 + self.block) * (state.table.generation - 1),
+            generation=state.generation,
+            evaluations=1 + (1 + self.block) * (state.generation - 1),
             diverged=0,
             best=state.fitness,
             rows=(row,),
@@ -220,12 +217,14 @@ def _unchanged(state: State) -> Row:
     if not state.table.rows:
         raise ValueError("`creature` must be one whose simulation stays finite.")
     last = state.table.rows[-1]
-    return replace(last, values={**last.values, "step": state.table.generation})
+    return replace(last, values={**last.values, "step": state.generation})
 
 
 def trials_along(genes: np.ndarray, rows: np.ndarray, length: float, count: int) -> Trials:
-    """Trials by turns along the slope of fitness, the first of `rows`, and along its part that
-    is orthogonal to the other rows, the slopes of descriptors."""
+    """Return trials by turns along the slope of fitness, and its part that keeps descriptors.
+
+    `rows` are the slopes of fitness, then of descriptors.
+    """
     fitness, descriptors = rows[0], rows[1:]
     ways = np.stack([_unit(fitness), _unit(_without(fitness, descriptors))])
     lengths = length / TRIAL_RATIO ** np.arange((count + 1) // 2)

@@ -1,7 +1,7 @@
 """Check that a run can resume from a file: the same spec, the same kind of device."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 
@@ -10,14 +10,14 @@ class OtherDevice(ValueError):
 
 
 def devices_of(
-    spec: str, device: str, attributes: dict[str, str], other_device: bool
+    spec: str, device: str, attributes: Mapping[str, str], other_device: bool
 ) -> tuple[str, ...]:
     """Return the kinds of device of a file and, last, the present one.
 
     Raises `ValueError` for another spec, and `OtherDevice` for another kind of device unless
     `other_device` allows it.
     """
-    _refuse_other(json.loads(attributes["spec"]), json.loads(spec))
+    _refuse_other(*(dict(_values(json.loads(text))) for text in (attributes["spec"], spec)))
     devices = json.loads(attributes["device"])
     if devices[-1] != device and not other_device:
         raise OtherDevice(
@@ -28,47 +28,29 @@ def devices_of(
 
 
 def _refuse_other(held: dict[str, Any], wanted: dict[str, Any]) -> None:
-    """A search may have more generations than the file's: each follows from those before."""
-    if _without_length(held) != _without_length(wanted):
-        if _unversioned(_without_length(held)) == _unversioned(_without_length(wanted)):
-            raise ValueError(_versions(held, wanted))
+    """Refuse another spec; a search may have more generations, which follow from the file."""
+    before, now = (values.pop("search.generations", 0) for values in (held, wanted))
+    paths = {**held, **wanted}
+    other = [path for path in paths if held.get(path, ...) != wanted.get(path, ...)]
+    if any(path.split(".")[-1] != "source" for path in other):
         raise ValueError("`spec` in the file must be the run's own, got another")
-    before, now = _length(held), _length(wanted)
+    if other:
+        then, present = (values.get(other[0], "none") for values in (held, wanted))
+        raise ValueError(
+            f"`{other[0]}` must be {then[:12]}, the version with which the run was computed, "
+            f"got {present[:12]}: continue with that version, or begin a new run"
+        )
     if now < before:
         raise ValueError(
             f"`search.generations` must be at least the file's {before}, got {now}"
         )
 
 
-def _versions(held: dict[str, Any], wanted: dict[str, Any]) -> str:
-    now = dict(_sources(wanted))
-    path, then = next((path, of) for path, of in _sources(held) if now.get(path) != of)
-    return (
-        f"`{path}` must be {then[:12]}, the version with which the run was computed, got "
-        f"{now.get(path, 'none')[:12]}: continue with that version, or begin a new run"
-    )
-
-
-def _sources(spec: Any, path: str = "") -> Iterator[tuple[str, str]]:
-    parts = spec.items() if isinstance(spec, dict) else enumerate(spec)
-    for name, part in parts:
-        if name == "source":
-            yield f"{path}{name}", part
-        elif isinstance(part, dict | list):
-            yield from _sources(part, f"{path}{name}.")
-
-
-def _unversioned(spec: Any) -> Any:
-    if isinstance(spec, dict):
-        return {name: _unversioned(part) for name, part in spec.items() if name != "source"}
-    return [_unversioned(part) for part in spec] if isinstance(spec, list) else spec
-
-
-def _length(spec: dict[str, Any]) -> int:
-    return spec.get("search", {}).get("generations", 0)
-
-
-def _without_length(spec: dict[str, Any]) -> dict[str, Any]:
-    if "search" not in spec:
-        return spec
-    return {**spec, "search": {**spec["search"], "generations": 0}}
+def _values(part: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield every value of a spec with its dotted path."""
+    items = dict(enumerate(part)) if isinstance(part, list) else part
+    if not isinstance(items, dict) or not items:
+        yield path, part
+        return
+    for name, value in items.items():
+        yield from _values(value, f"{path}.{name}" if path else str(name))

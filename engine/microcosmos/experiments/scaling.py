@@ -35,14 +35,14 @@ def report(state: Table, rows: tuple[Row, ...]) -> Report:
 
 
 def summary(rows: Sequence[Mapping[str, Any]]) -> dict[str, Value]:
-    """Exponents of the time that depends on nodes, and the most memory.
+    """Return exponents of the time that depends on nodes, and the most memory.
 
     The part that depends on nodes is all but the fluid, whose cells do not change. Rows that
     did not stay finite are left out.
     """
-    sound = [row for row in rows if row["status"] == "ok"]
-    ours = [row for row in sound if row["method"] == "microcosmos"]
-    pairs = [row for row in sound if row["method"] == "all-pairs"]
+    finite = [row for row in rows if row["status"] == "ok"]
+    ours = [row for row in finite if row["method"] == "microcosmos"]
+    pairs = [row for row in finite if row["method"] == "all-pairs"]
     memory = [row["memory_bytes"] for row in ours if row["memory_bytes"] is not None]
     counts = sorted(row["nodes"] for row in ours)
     start = min(LINEAR_FROM, counts[-MIN_POINTS]) if len(counts) >= MIN_POINTS else LINEAR_FROM
@@ -95,7 +95,7 @@ class Plan:
 
 
 def step_row(scene: Scene, start: world.State, plan: Plan) -> dict[str, Value]:
-    """A row for one number of nodes; times in seconds for 1,000 steps."""
+    """Measure one number of nodes; times are seconds for 1,000 steps."""
     whole = _compile(_step, scene, start, CHUNK, plan)
     calls = max(1, plan.steps // CHUNK)
     seconds, end = _time(whole, scene, start, calls, plan)
@@ -114,7 +114,7 @@ def step_row(scene: Scene, start: world.State, plan: Plan) -> dict[str, Value]:
 
 
 def pairs_row(positions: Float[Array, "node 2"], size: tuple[int, int], plan: Plan) -> dict:
-    """The same for a repulsion between all pairs of nodes, without fluid or constraints."""
+    """Measure a repulsion between all pairs of nodes, without fluid or constraints."""
 
     def step(scene: None, x: Array) -> Array:
         return x + 1e-3 * _all_pairs(x, size)
@@ -136,10 +136,9 @@ def pairs_row(positions: Float[Array, "node 2"], size: tuple[int, int], plan: Pl
 
 
 def _all_pairs(positions, size: tuple[int, int]):
-    """The gradient of a Gaussian repulsion of one cell's width, summed over all others."""
+    """Return the gradient of a Gaussian repulsion of width one cell, summed over all others."""
 
     def away(one, others, length):
-        """Components apart: XLA is slow on an axis of length two."""
         distance = one - others
         return distance - length * jnp.round(distance / length)
 
@@ -166,7 +165,7 @@ def _fluid(scene: Scene, state: world.State) -> world.State:
 
 
 def _couple(scene: Scene, state: world.State) -> world.State:
-    """Interpolation, forcing and spreading towards a velocity that nodes do not have."""
+    """Interpolate, force and spread towards a velocity that nodes do not have."""
     box = scene.box
     rho, momentum = fluid.density(state.populations), fluid.momentum(state.populations)
     at = coupling.windows(state.positions, box.size, box.form.kernel)
@@ -205,7 +204,6 @@ def _repel(scene: Scene, state: world.State) -> world.State:
 
 
 def _median(part: Step, scene: Scene, start: world.State, plan: Plan) -> float:
-    """Seconds of 1,000 steps of a part."""
     program = _compile(part, scene, start, plan.part_steps, plan)
     found = [_time(program, scene, start, 1, plan)[0] for _ in range(REPEATS)]
     return float(np.median(found)) * REPORTED / plan.part_steps
@@ -232,7 +230,7 @@ def _time(program: Any, scene: Any, start: Any, calls: int, plan: Plan) -> tuple
 
 
 def _memory(program: Any) -> int | None:
-    """Bytes of a program's arguments, results and temporaries, if known."""
+    """Return the bytes of a program's arguments, results and temporaries, if known."""
     found = program.memory_analysis()
     if found is None:
         return None

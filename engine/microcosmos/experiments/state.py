@@ -151,7 +151,7 @@ class Diverged(eqx.Module):
 
 
 class State(eqx.Module):
-    """All that the next generation depends on, and the record of those before."""
+    """The input of the next generation, and the record of those before."""
 
     generation: int
     """Generations completed."""
@@ -238,7 +238,6 @@ def start(plan: Plan) -> State:
 
 
 def _founded(plan: Plan, emitter: search.Emitter, kept: PyTree[Array]) -> PyTree[Array]:
-    """Return the state of an emitter; a population starts from the initial creatures."""
     if plan.initial is None or not isinstance(emitter, PopulationEmitter):
         return kept
     networks = jax.tree.map(jnp.asarray, plan.initial.genotypes)

@@ -5,7 +5,7 @@ a computed table (not one of measured times) gives the same bytes every time.
 """
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -51,9 +51,6 @@ class TableRun:
     def done(self, state: Table) -> bool:
         return state.generation >= self.generations
 
-    def generation(self, state: Table) -> int:
-        return state.generation
-
     def advance(self, state: Table, stop: Callable[[], bool] = never) -> tuple[Table, Report]:
         rows = self.rows(state.generation, stop)
         state = state.grown(rows)
@@ -69,16 +66,15 @@ class TableRun:
         return None  # Rows do not compete.
 
 
-def save(spec: str, table: Table, arrays: file.Tree | None = None) -> bytes:
-    """Rows as columns, numbers as float64, words as bytes; identities as one JSON text.
+def save(spec: str, table: Table, arrays: Mapping[str, Any] | None = None) -> bytes:
+    """Write rows as columns: numbers as float64, words as bytes, identities as one JSON text.
 
     `arrays` are further groups of the file.
     """
-    rows = table.rows
-    names = list(rows[0].values) if rows else []
+    rows, names = table.rows, list(table.rows[0].values) if table.rows else []
     whole = [
         {"creature": row.creature, "measured": row.measured, "provenance": row.provenance}
-        | {"identity": row.identity.decode() if row.identity else None}
+        | {"identity": row.identity and row.identity.decode()}
         for row in rows
     ]
     tree = {
@@ -103,24 +99,14 @@ def save(spec: str, table: Table, arrays: file.Tree | None = None) -> bytes:
 def restore(spec: str, device: str, data: bytes, *, other_device: bool) -> Table:
     """Return the table in a file of the same spec; raises like `archive_file.restore`."""
     tree, attributes = file.load(data)
-    try:
-        devices = devices_of(spec, device, attributes, other_device)
-        loop = tree["loop"]
-        values, creatures = (json.loads(bytes(loop[name])) for name in ("rows", "creatures"))
-        generation = int(loop["generation"])
-    except KeyError as error:
-        raise ValueError(f"a table's file must hold {error}, which is not there") from error
+    devices = devices_of(spec, device, attributes, other_device)
+    loop = tree["loop"]
+    values, creatures = (json.loads(bytes(loop[name])) for name in ("rows", "creatures"))
     rows = tuple(
-        Row(
-            values=row,
-            creature=about["creature"],
-            identity=about["identity"].encode() if about["identity"] else None,
-            measured=about["measured"],
-            provenance=about["provenance"],
-        )
+        Row(row, **about | {"identity": about["identity"] and about["identity"].encode()})
         for row, about in zip(values, creatures, strict=True)
     )
-    return Table(generation, rows, devices)
+    return Table(int(loop["generation"]), rows, devices)
 
 
 def _column(values: list[Any]) -> np.ndarray:

@@ -20,7 +20,7 @@ def splat(positions: Float[Array, "node 2"], size: tuple[int, int], width: float
 
 
 def saturated(density: Plane) -> Plane:
-    """1 − exp(−ρ): the density of what covers a place once or often, from 0 to 1."""
+    """Return 1 − exp(−ρ): nodes that overlap count once, from 0 to 1."""
     return 1 - jnp.exp(-density)
 
 

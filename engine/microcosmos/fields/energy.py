@@ -36,7 +36,7 @@ class Packets:
 
 
 def packets(size: tuple[int, int], what: Packets) -> np.ndarray:
-    """The sum of all packets in a periodic box, each with all images that reach into it."""
+    """Sum all packets in a periodic box, each with all images that reach into it."""
     places = np.random.default_rng(what.seed).uniform(0, size, (what.count, 2))
     planes = []
     for axis in range(2):
@@ -48,14 +48,13 @@ def packets(size: tuple[int, int], what: Packets) -> np.ndarray:
 
 
 def placements(size: tuple[int, int], count: int, seed: int) -> np.ndarray:
-    """(placement, 2) cells by which all packets are moved in each of `count` worlds, the first
-    of which stays as it is."""
+    """Return shifts (placement, 2) of all packets in `count` worlds; the first is 0."""
     drawn = np.random.default_rng([seed, 1]).integers(0, size, (count - 1, 2))
     return np.concatenate([np.zeros((1, 2), int), drawn])
 
 
 def diffuse(field: Plane, diffusion: Float[Array, ""]) -> Plane:
-    """One explicit step of diffusion; the sum over the box stays."""
+    """Take one explicit step of diffusion; the sum over the box stays."""
     around = sum(jnp.roll(field, shift, axis) for axis in (0, 1) for shift in (-1, 1))
     return field + diffusion * (around - 4 * field)
 

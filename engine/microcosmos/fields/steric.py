@@ -35,7 +35,7 @@ class Steric(eqx.Module):
 
 
 def gaussian(density: Plane) -> Gradient:
-    """Gradient after smoothing by a Gaussian of one cell's width, both by Fourier transform."""
+    """Smooth by a Gaussian of width one cell and differentiate, both by Fourier transform."""
     size = density.shape
     kx = 2 * jnp.pi * jnp.fft.fftfreq(size[0], dtype=density.dtype)[:, None]
     ky = 2 * jnp.pi * jnp.fft.rfftfreq(size[1], dtype=density.dtype)[None]
@@ -46,7 +46,7 @@ def gaussian(density: Plane) -> Gradient:
 
 
 def binomial(density: Plane) -> Gradient:
-    """The same with binomial weights, whose variance is one cell too: no transform.
+    """Do the same with binomial weights, whose variance is one cell too: no transform.
 
     Side by side a cell apart, where the difference of neighbours is coarse, lines repel by
     5/32 where the Gaussian's slope is 0.24; from two cells on, by more than with it.
@@ -61,7 +61,7 @@ def binomial(density: Plane) -> Gradient:
 
 
 def capped(displacement: Vectors, limit: Float[Array, ""]) -> Vectors:
-    """Displacements, none longer than `limit`; of those that reach it, sums are not kept."""
+    """Limit the length of displacements; sums over those at the limit change."""
     length = jnp.sqrt(jnp.sum(displacement * displacement, 1, keepdims=True) + 1e-24)
     return displacement * jnp.minimum(1.0, limit / length)
 
@@ -69,7 +69,7 @@ def capped(displacement: Vectors, limit: Float[Array, ""]) -> Vectors:
 def _weighted(
     wide: Float[Array, "_ _"], weights: tuple[float, ...], axis: int
 ) -> Float[Array, "_ _"]:
-    """A stencil along an axis, which takes its margin of three cells away."""
+    """Apply a stencil along an axis, which loses its margin of three cells."""
     first, length = 3 - len(weights) // 2, wide.shape[axis] - 6
     parts = [
         weight * jax.lax.slice_in_dim(wide, start, start + length, axis=axis)

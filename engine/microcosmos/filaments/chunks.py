@@ -20,7 +20,7 @@ def first_chunk(
     edges: Int[np.ndarray, "edge 2"],
     joints: Int[np.ndarray, "joint 2"],
 ) -> tuple[int, int]:
-    """Nodes and edges of the first chunk of equal bodies; all of them where bodies differ.
+    """Return nodes and edges of the first chunk of equal bodies; all of them if bodies differ.
 
     `member` is the body of each node, ascending from 0.
     """

@@ -64,7 +64,7 @@ def edge_angles(positions: Positions, rods: Rods) -> Angles:
 def normals(
     angles: Angles, rods: Rods, nodes: int, present: Bool[Array, "edge"] | None = None
 ) -> Float[Array, "node 2"]:
-    """Unit vectors across the filament at its nodes; zero where edges cancel each other."""
+    """Return unit vectors across the filament at its nodes; zero where edges cancel."""
     across = jnp.stack([-jnp.sin(angles), jnp.cos(angles)], 1)
     if present is not None:
         across = jnp.where(present[:, None], across, 0.0)
@@ -73,12 +73,12 @@ def normals(
 
 
 def follow_geometry(angles: Angles, positions: Positions, rods: Rods) -> Angles:
-    """Angles as the geometry has them, on the branch nearest to what they were."""
+    """Return angles of the geometry, on the branch nearest to the given ones."""
     return angles + wrap(edge_angles(positions, rods) - angles)
 
 
 def bend(angles: Angles, rods: Rods, rest: Rest) -> Angles:
-    """One sweep over the joints: C = θ₂ − θ₁ − θ_rest is halved on both sides."""
+    """Sweep the joints once: C = θ₂ − θ₁ − θ_rest is halved on both sides."""
     for colour in rods.joint_colours:
         difference = colour.sign * (angles[colour.partner] - angles)
         error = wrap(difference - rest.angle[colour.constraint])
@@ -87,7 +87,7 @@ def bend(angles: Angles, rods: Rods, rest: Rest) -> Angles:
 
 
 def stretch(positions: Positions, angles: Angles, rods: Rods, rest: Rest) -> Positions:
-    """One sweep over the edges: length along the tangent, and the director by shear."""
+    """Sweep the edges once: length along the tangent, and the director by shear."""
     directors = jnp.stack([jnp.cos(angles), jnp.sin(angles)], 1) * rest.length[:, None]
     for colour in rods.edge_colours:
         sign = colour.sign[:, None]
@@ -105,7 +105,7 @@ def stretch(positions: Positions, angles: Angles, rods: Rods, rest: Rest) -> Pos
 def project(
     positions: Positions, angles: Angles, rods: Rods, rest: Rest, *, iterations: int
 ) -> tuple[Positions, Angles]:
-    """Positions and angles after `iterations` sweeps of bending, then stretching."""
+    """Return positions and angles after `iterations` sweeps of bending, then stretching."""
     nodes, chunk = len(positions), len(rods.edge_colours[0].partner)
     if chunk == nodes:
         return _sweeps(positions, angles, rods, rest, iterations)

@@ -18,7 +18,7 @@ Inputs = tuple[Populations, Plane, tuple[Plane, Plane], Vectors, Rates]
 def collision(
     f: Populations, rho: Plane, momentum: tuple[Plane, Plane], force: Vectors, rates: Rates
 ) -> Populations:
-    """`collide`, whose reverse is the adjoint below; it has no forward mode."""
+    """Collide with the reverse derivative below; there is no forward mode."""
     return collide(f, rho, momentum, force, rates)
 
 
@@ -27,7 +27,7 @@ def _forward(*inputs) -> tuple[Populations, Inputs]:
 
 
 def adjoint(inputs: Inputs, h: Populations) -> Inputs:
-    """Cotangents of the inputs of `collide` from those of its result."""
+    """Return cotangents of the inputs of `collide` from those of its result."""
     f, rho, momentum, force, rates = inputs
     fx, fy = force[0], force[1]
     jx, jy = momentum[0] + 0.5 * fx, momentum[1] + 0.5 * fy

@@ -24,17 +24,17 @@ class Rates(eqx.Module):
 
 
 def fixed_magic(tau: Scalar) -> Scalar:
-    """Λ = 3/16 at every viscosity; unstable with moving bodies below ν of about 0.01."""
+    """Return Λ = 3/16 at every viscosity; unstable with moving bodies below ν of about 0.01."""
     return jnp.full_like(tau, MAGIC)
 
 
 def capped_magic(tau: Scalar) -> Scalar:
-    """Λ = 3/16, lowered near τ = 1/2 so that the odd relaxation time stays at most 1."""
+    """Return Λ = 3/16, lowered near τ = 1/2: the odd relaxation time stays at most 1."""
     return jnp.minimum(MAGIC, 0.5 * (tau - 0.5))
 
 
 def rates(viscosity: Scalar, magic=capped_magic) -> Rates:
-    """Relaxation rates for a kinematic `viscosity` in cells² a step: τ = 3 ν + 1/2."""
+    """Return relaxation rates for a `viscosity` in cells² a step: τ = 3 ν + 1/2."""
     even_time = 3.0 * viscosity + 0.5
     odd_time = magic(even_time) / (even_time - 0.5) + 0.5
     return Rates(1.0 / even_time, 1.0 / odd_time)
@@ -76,7 +76,7 @@ def stream(f: Populations) -> Populations:
 
 
 def vorticity(u: Vectors) -> Plane:
-    """∂u_y/∂x − ∂u_x/∂y by central differences, in 1/step."""
+    """Return ∂u_y/∂x − ∂u_x/∂y by central differences, in 1/step."""
     dx = jnp.roll(u[1], -1, 0) - jnp.roll(u[1], 1, 0)
     dy = jnp.roll(u[0], -1, 1) - jnp.roll(u[0], 1, 1)
     return 0.5 * (dx - dy)

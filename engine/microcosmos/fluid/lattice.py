@@ -17,17 +17,17 @@ PAIRS = ((1, 2), (3, 4), (5, 6), (7, 8))
 
 
 def density(f: Populations) -> Plane:
-    """Mass a cell, 1 at rest."""
+    """Return the mass a cell, 1 at rest."""
     return 1.0 + deviation(f)
 
 
 def deviation(f: Populations) -> Plane:
-    """Density less 1; small numbers are added first."""
+    """Return the density less 1; small numbers are added first."""
     return f[0] + ((f[1] + f[2]) + (f[3] + f[4])) + ((f[5] + f[6]) + (f[7] + f[8]))
 
 
 def momentum(f: Populations) -> tuple[Plane, Plane]:
-    """Momentum a cell, without the half step of force that Guo's scheme adds."""
+    """Return the momentum a cell, without the half step of force that Guo's scheme adds."""
     diagonal, antidiagonal = f[5] - f[6], f[7] - f[8]
     return (
         (f[1] - f[2]) + (diagonal + antidiagonal),
@@ -36,12 +36,12 @@ def momentum(f: Populations) -> tuple[Plane, Plane]:
 
 
 def along(direction: int, x: Plane, y: Plane) -> Plane:
-    """c_i · (x, y) for an odd `direction`, without multiplying by 0 and ±1."""
+    """Return c_i · (x, y) for an odd `direction`, without multiplying by 0 and ±1."""
     return (x, y, x + y, x - y)[direction // 2]
 
 
 def equilibrium(rho: Plane, u: Vectors) -> Populations:
-    """Second-order equilibrium at density `rho` and velocity `u`, as deviations."""
+    """Return the second-order equilibrium at density `rho` and velocity `u`, as deviations."""
     square = 1.5 * (u[0] * u[0] + u[1] * u[1])
     f = [WEIGHTS[0] * (rho - 1.0 - rho * square)]
     for i, _ in PAIRS:

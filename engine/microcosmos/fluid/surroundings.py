@@ -55,7 +55,7 @@ def advance(
 
 
 def _bounce(streamed: Populations, collided: Populations, solid: Bool[Array, "x y"]):
-    """A population from a solid cell is replaced by its opposite."""
+    """Replace each population from a solid cell by its opposite."""
     out = [streamed[0]]
     for pair in PAIRS:
         for i, opposite in (pair, pair[::-1]):

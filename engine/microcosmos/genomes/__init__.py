@@ -1,8 +1,8 @@
 """Genotypes and encodings: inherited genes, and their development into moving creatures."""
 
 from .control import CPPNControl
-from .cppn import ACTIVATIONS, CPPN, depths, evaluate, minimal
-from .development import OUTPUTS, Controls, develop, linear, respond, sine_cosine
+from .cppn import ACTIVATIONS, CPPN, evaluate, minimal
+from .development import Controls, develop, linear, reading, rest_shape, sine_cosine
 from .direct import Direct
 from .encoding import Drive, Encoding
 from .fold import Fold, added, scaled

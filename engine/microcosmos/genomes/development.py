@@ -61,17 +61,6 @@ def develop(network: CPPN, controls: Controls) -> Rest:
     return rest_shapes(reading(network), controls, network.bias.dtype)
 
 
-def respond(
-    network: CPPN,
-    controls: Controls,
-    timer: Float[Array, "input"],
-    ramp: Float[Array, ""],
-    sensed: Float[Array, "node"],
-) -> Rest:
-    """Return rest angles (joint,) and rest lengths (edge,) at one time, from sensed energy."""
-    return rest_shape(reading(network), controls, timer, ramp, sensed)
-
-
 def reading(network: CPPN) -> Read:
     """Return a feed-forward network as a function."""
     return lambda inputs: evaluate(network, inputs, OUTPUTS)

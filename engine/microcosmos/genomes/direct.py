@@ -9,7 +9,7 @@ from jaxtyping import Array, PRNGKeyArray
 
 from ..world import State, World
 from .development import Controls, actuated
-from .encoding import Drive, Scalar, no_size, shifted
+from .encoding import Drive, Networkless, Scalar, shifted
 from .genotype import Vector, uniform_vector
 from .shaping import Plan, shaped, within
 from .waves import Basis, phases, wave
@@ -19,7 +19,7 @@ CONTROL = ("angles", "lengths")
 
 
 @dataclass(frozen=True)
-class Direct:
+class Direct(Networkless):
     """Genes within ±1, part by part: inherited traits of the body, then its control."""
 
     controls: Controls
@@ -35,7 +35,6 @@ class Direct:
     """Genes of new genotypes lie within ± this."""
     faintest: float = 1.0
     """Lowest factor on the angles and on the lengths of new genotypes; the highest is 1."""
-    room: None = None
 
     def newcomer(self, *, key: PRNGKeyArray) -> Vector:
         """Draw every gene uniformly, then reduce the control by random factors."""
@@ -70,6 +69,3 @@ class Direct:
             found[name] = values[used : used + count]
             used += count
         return found
-
-    def size(self, genotype: Vector) -> tuple[Array, Array]:
-        return no_size()

@@ -53,9 +53,13 @@ class Encoding(Protocol):
         ...
 
 
-def no_size() -> tuple[Array, Array]:
-    """Return the size of a genotype that is no network."""
-    return jnp.zeros((), jnp.int32), jnp.zeros((), jnp.int32)
+class Networkless:
+    """The part of an encoding whose genotypes are vectors and hold no network."""
+
+    room = None
+
+    def size(self, genotype: Any) -> tuple[Array, Array]:
+        return jnp.zeros((), jnp.int32), jnp.zeros((), jnp.int32)
 
 
 def shifted(timer: np.ndarray | Array, phase: Scalar | None) -> Array | np.ndarray:

@@ -9,7 +9,7 @@ from jaxtyping import Array, PRNGKeyArray
 
 from ..filaments import Rest
 from ..world import State, World
-from .encoding import Drive, Scalar, no_size
+from .encoding import Drive, Networkless, Scalar
 from .genotype import Vector
 
 Lengths = Callable[[Array, Array], Array]
@@ -27,7 +27,7 @@ def added(lengths: Array, genes: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Fold:
+class Fold(Networkless):
     """Genes of any size: angles added to the body's, then lengths."""
 
     rest_angle: np.ndarray
@@ -36,7 +36,6 @@ class Fold:
     """(edge,) of the body, in cells."""
     steps: int
     lengths: Lengths = scaled
-    room: None = None
 
     def newcomer(self, *, key: PRNGKeyArray) -> Vector:
         """Return the unchanged body; nothing is drawn."""
@@ -52,6 +51,3 @@ class Fold:
             self.lengths(jnp.asarray(self.rest_length, dtype), genes[joints:]),
         )
         return Drive(world, start, jnp.zeros((self.steps, 0), dtype), lambda *_: rest)
-
-    def size(self, genotype: Vector) -> tuple[Array, Array]:
-        return no_size()

@@ -10,7 +10,7 @@ from jaxtyping import Array, Float, PRNGKeyArray
 
 from ..world import State, World
 from .development import Controls, actuated
-from .encoding import Drive, Scalar, no_size, shifted
+from .encoding import Drive, Networkless, Scalar, shifted
 from .genotype import Vector, uniform_vector
 from .waves import phases
 
@@ -31,13 +31,12 @@ Act = Callable[[Array, Clock], tuple[Array, Array]]
 
 
 @dataclass(frozen=True)
-class PluginEncoding:
+class PluginEncoding(Networkless):
     """A controller; all creatures have the same body."""
 
     controls: Controls
     genes: int
     act: Act
-    room: None = None
 
     def newcomer(self, *, key: PRNGKeyArray) -> Vector:
         return uniform_vector(self.genes, 1.0, key=key)
@@ -57,6 +56,3 @@ class PluginEncoding:
         outputs = self.act(genotype.values.astype(dtype), clock)
         angle, length = (jnp.clip(one.astype(dtype), -1.0, 1.0) for one in outputs)
         return Drive(world, start, actuated(angle, length, controls.ramp, controls))
-
-    def size(self, genotype: Vector) -> tuple[Array, Array]:
-        return no_size()

@@ -71,7 +71,7 @@ class Weights:
         return drive_read(read, controls, world, start)
 
     def size(self, genotype: Vector) -> tuple[Array, Array]:
-        """Hidden nodes and connections, the same for all genotypes."""
+        """Return hidden nodes and connections, the same for all genotypes."""
         sizes = np.array(self.layers.sizes)
         connections = int((sizes[:-1] * sizes[1:]).sum())
         return jnp.asarray(int(sizes[1:-1].sum())), jnp.asarray(connections)

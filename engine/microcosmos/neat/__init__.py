@@ -3,8 +3,8 @@
 from ..genomes import minimal
 from .crossover import crossover
 from .distance import Coefficients, distance
-from .generation import OPERATORS, first_species, next_generation
-from .mutation import Novelty, mutate
+from .generation import first_species, next_generation
+from .mutation import mutate
 from .numbering import Counters, first_counters, number
 from .rates import Rates
 from .settings import PRESETS, Settings

@@ -33,7 +33,7 @@ def neighbours(
 def closure(sets: Sets) -> Sets:
     """Return the nodes that each node reaches, and itself (Warshall, J. ACM 9, 11, 1962)."""
     nodes = sets[0].shape[0]
-    sets = union(sets, singletons(nodes))
+    sets = tuple(a | b for a, b in zip(sets, singletons(nodes), strict=True))
     for word in range(len(sets)):
         first = word * WORD
 
@@ -61,10 +61,6 @@ def members(among: Bool[Array, "node"]) -> Sets:
         jnp.sum(bit[w * WORD : (w + 1) * WORD], dtype=jnp.uint32) for w in range(_words(nodes))
     ]
     return tuple(jnp.broadcast_to(word, (nodes,)) for word in words)
-
-
-def union(one: Sets, other: Sets) -> Sets:
-    return tuple(a | b for a, b in zip(one, other, strict=True))
 
 
 def without(one: Sets, other: Sets) -> Sets:

@@ -9,32 +9,28 @@ from ..genomes import CPPN
 from .rng import draws, rescaled
 from .rows import match
 
-DISABLED = 0.75
-"""Probability that a gene disabled in either parent is disabled in the child."""
-
-HALF = 0.5
-
 
 def crossover(
     fitter: CPPN,
     other: CPPN,
     average: float = 0.0,
-    disabled: float = DISABLED,
+    disabled: float = 0.75,
     *,
     key: PRNGKeyArray,
 ) -> CPPN:
     """Return a child with the structure of the fitter parent, and matching genes of either.
 
     Genes match where their numbers are equal. The child has a cycle only if the fitter parent
-    has. With probability `average`, weights and biases of matching genes are means.
+    has. With probability `average`, weights and biases of matching genes are means, and with
+    probability `disabled` a gene disabled in either parent is disabled in the child.
     """
     mean, swapped, gene = draws((), fitter.bias.shape, fitter.weight.shape, key=key)
     connection = match(
         fitter.innovation, fitter.connection_used, other.innovation, other.connection_used
     )
     node = match(fitter.node_id, fitter.node_used, other.node_id, other.node_used)
-    mean, swapped, taken = mean < average, swapped < HALF, gene < HALF
-    uniform = rescaled(jnp.where(taken, gene, gene - HALF), 0.0, HALF)
+    mean, swapped, taken = mean < average, swapped < 0.5, gene < 0.5
+    uniform = rescaled(jnp.where(taken, gene, gene - 0.5), 0.0, 0.5)
     off = ~fitter.enabled | ((connection >= 0) & ~other.enabled[connection])
     return replace(
         fitter,

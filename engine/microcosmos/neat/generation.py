@@ -35,13 +35,8 @@ class Parentage(eqx.Module):
 def first_species(population: CPPN, settings: Settings) -> Species:
     """Divide the first population, evaluated in generation 0, into species."""
     rows = min(settings.max_species, population.weight.shape[0])
-    return divide(
-        population,
-        no_species(population, rows, settings.threshold),
-        settings.coefficients,
-        nearest=settings.representative == "nearest",
-        generation=jnp.zeros((), int),
-    )
+    empty = no_species(population, rows, settings.threshold)
+    return divide(population, empty, settings, jnp.zeros((), int))
 
 
 def next_generation(
@@ -78,13 +73,7 @@ def next_generation(
     children, novelty = apart((children, novelty))
     children, counters = apart(number(children, novelty, counters))
     species = _represented(population, species, sizes > 0, now, settings, key=species_key)
-    species = divide(
-        children,
-        species,
-        settings.coefficients,
-        nearest=settings.representative == "nearest",
-        generation=generation + 1,
-    )
+    species = divide(children, species, settings, generation + 1)
     code = parentage.mutated + 2 * (parentage.other >= 0)
     return children, species, counters, jnp.stack([parentage.parent, parentage.other], 1), code
 
@@ -115,10 +104,8 @@ def choose_parents(
     abroad = uniform[:, 3] < settings.interspecies
     breeding = jnp.argsort(sizes == 0, stable=True)
     any_ = breeding[below(jnp.sum(sizes > 0), uniform[:, 4])]
-    first, second = (
-        draw(species_of, uniform[:, 0]),
-        draw(jnp.where(abroad, any_, species_of), uniform[:, 1]),
-    )
+    first = draw(species_of, uniform[:, 0])
+    second = draw(jnp.where(abroad, any_, species_of), uniform[:, 1])
     crossed = ~copied & (uniform[:, 2] < settings.crossover)
     fitter = jnp.where(fitness[first] >= fitness[second], first, second)
     lesser = jnp.where(fitness[first] >= fitness[second], second, first)

@@ -13,7 +13,7 @@ from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 from ..genomes import CPPN
 from .rates import Rates, bounded, one_of
 from .rng import Uniform, draws, rescaled
-from .rows import NONE, apart
+from .rows import apart
 from .structure import add_connection, add_node, delete_connection, delete_node
 
 DECISIONS = 10
@@ -30,12 +30,6 @@ class Novelty(eqx.Module):
     node_row: Int[Array, "*batch"]
     split_innovation: Int[Array, "*batch"]
     """Number of the split connection, or −1."""
-
-
-def nothing_new(children: int) -> Novelty:
-    """Return no new genes for any child."""
-    none = jnp.full(children, NONE)
-    return Novelty(none, none, none, none)
 
 
 def mutate(
@@ -58,11 +52,8 @@ def mutate(
         network = delete_connection(network, rates.delete_connection, some[1])
     network = apart(network)
     splittable = network.connection_used & network.enabled
-    vary, link, node = (
-        some[2] < rates.values,
-        some[3] < rates.add_connection,
-        some[4] < rates.add_node,
-    )
+    vary, link = some[2] < rates.values, some[3] < rates.add_connection
+    node = some[4] < rates.add_node
     if rates.separate:
         vary = vary & ~link & ~node
     network = mutate_values(network, vary, rates, inputs, values)
@@ -116,10 +107,8 @@ def _vary(
 ) -> Float[Array, "gene"]:
     """Perturb or redraw genes; one draw decides and, rescaled, gives the step or value."""
     new, either = rates.replace, rates.replace + (1 - rates.replace) * rates.weight
-    again = jnp.where(
-        uniform < new, rescaled(uniform, 0.0, new), rescaled(uniform, new, either)
-    )
-    drawn = rates.draw(again).astype(values.dtype)
+    replaced, perturbed = rescaled(uniform, 0.0, new), rescaled(uniform, new, either)
+    drawn = rates.draw(jnp.where(uniform < new, replaced, perturbed)).astype(values.dtype)
     varied = jnp.where(uniform < either, values + rates.weight_step * drawn, values)
     varied = jnp.where(uniform < new, rates.new_step * drawn, varied)
     return jnp.where(used, bounded(varied, rates), values)

@@ -28,15 +28,12 @@ def first_counters(inputs: int, outputs: int) -> Counters:
 def number(children: CPPN, novelty: Novelty, counters: Counters) -> tuple[CPPN, Counters]:
     """Number the new genes of a batch; added connections come before split ones."""
     take = jax.vmap(lambda values, row: values[row])
-    ends = [
-        jnp.where(
-            novelty.connection_row < 0,
-            NONE,
-            take(children.node_id, take(rows, novelty.connection_row)),
-        )
-        for rows in (children.source, children.target)
-    ]
-    added, many_added = ranks(*ends)
+
+    def ends(rows):
+        numbers = take(children.node_id, take(rows, novelty.connection_row))
+        return jnp.where(novelty.connection_row < 0, NONE, numbers)
+
+    added, many_added = ranks(ends(children.source), ends(children.target))
     split, many_split = ranks(novelty.split_innovation, novelty.split_innovation)
     node = counters.node + split
     first = counters.innovation + many_added + 2 * split
@@ -44,14 +41,10 @@ def number(children: CPPN, novelty: Novelty, counters: Counters) -> tuple[CPPN, 
         children.innovation, novelty.connection_row, counters.innovation + added
     )
     innovation = _assign(innovation, novelty.split_row, first)
-    innovation = _assign(
-        innovation, jnp.where(novelty.split_row < 0, NONE, novelty.split_row + 1), first + 1
-    )
-    children = replace(
-        children,
-        innovation=innovation,
-        node_id=_assign(children.node_id, novelty.node_row, node),
-    )
+    second = jnp.where(novelty.split_row < 0, NONE, novelty.split_row + 1)
+    innovation = _assign(innovation, second, first + 1)
+    node_id = _assign(children.node_id, novelty.node_row, node)
+    children = replace(children, innovation=innovation, node_id=node_id)
     return children, Counters(
         counters.innovation + many_added + 2 * many_split, counters.node + many_split
     )

@@ -90,11 +90,8 @@ def drop_node(network: CPPN, node: Int[Array, ""]) -> CPPN:
     columns = {
         n: jnp.take(getattr(network, n), order, mode="fill", fill_value=0) for n in CONNECTIONS
     }
-    later = (node >= 0) & (columns["source"] > node), (node >= 0) & (columns["target"] > node)
-    columns["source"], columns["target"] = (
-        columns["source"] - later[0],
-        columns["target"] - later[1],
-    )
+    for end in ("source", "target"):
+        columns[end] = columns[end] - ((node >= 0) & (columns[end] > node))
     return _shifted(replace(network, **columns), NODES, node)
 
 

@@ -1,7 +1,7 @@
 """Settings of a NEAT population, and two presets."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Literal
 
@@ -102,7 +102,8 @@ stagnant population keeps all species (the paper keeps two after 20 generations,
 XOR less often), weights stay within 8, the best species never stagnates, at most 50 species.
 """
 
-TENSORNEAT = Settings(
+TENSORNEAT = replace(
+    PAPER,
     rates=Rates(
         weight=0.2,
         weight_step=0.15,
@@ -121,12 +122,8 @@ TENSORNEAT = Settings(
     coefficients=Coefficients(excess=1.0, disjoint=1.0, weight=0.4, totals=True),
     population=1000,
     threshold=2.0,
-    target_species=0,
-    threshold_step=0.0,
     max_species=10,
     representative="nearest",
-    stagnation=15,
-    population_stagnation=0,
     species_elitism=2,
     allotment="rank",
     inertia=0.5,
@@ -137,8 +134,6 @@ TENSORNEAT = Settings(
     crossover=1.0,
     interspecies=0.0,
     crossover_only=0.0,
-    average=0.0,
-    disabled=0.75,
 )
 """The defaults of TensorNEAT 0.1.0, as far as they apply to our networks."""
 

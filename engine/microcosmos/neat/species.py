@@ -10,6 +10,7 @@ from jaxtyping import Array, Bool, Float, Int
 
 from ..genomes import CPPN
 from .distance import Coefficients, distance
+from .settings import Settings
 
 UNASSIGNED = -1
 
@@ -66,7 +67,7 @@ def assign(
     rows = representatives.weight.shape[0]
 
     def join(row, state: Assignment, founder=None) -> Assignment:
-        one = _row(state.representatives, row)
+        one = jax.tree.map(lambda x: x[row], state.representatives)
         far = jax.vmap(lambda n: distance(n, one, coefficients))(population).astype(dtype)
         fits = far < threshold if founder is None else (far < threshold) | founder
         joins = (state.of == UNASSIGNED) & fits
@@ -91,29 +92,18 @@ def assign(
     def unfinished(state: Assignment) -> Bool[Array, ""]:
         return (state.count < rows) & jnp.any(state.of == UNASSIGNED)
 
-    state = _unassigned(individuals, representatives, count)
+    nobody = jnp.full(individuals, UNASSIGNED)
+    far, no_members = jnp.full(individuals, jnp.inf, dtype), jnp.zeros(rows, nobody.dtype)
+    none = (nobody, jnp.zeros_like(nobody), far, no_members)
+    state = Assignment(representatives, count.astype(nobody.dtype), *none)
     state = jax.lax.fori_loop(0, state.count, join, state)
     state = jax.lax.while_loop(unfinished, found, state)
     return state._replace(of=jnp.where(state.of == UNASSIGNED, state.nearest, state.of))
 
 
-def _unassigned(individuals: int, representatives: CPPN, count: Int[Array, ""]) -> Assignment:
-    nobody = jnp.full(individuals, UNASSIGNED)
-    rows, dtype = representatives.weight.shape[0], representatives.weight.dtype
-    return Assignment(
-        representatives=representatives,
-        count=count.astype(nobody.dtype),
-        of=nobody,
-        nearest=jnp.zeros_like(nobody),
-        least=jnp.full(individuals, jnp.inf, dtype),
-        closest=jnp.zeros(rows, nobody.dtype),
-    )
-
-
 def no_species(population: CPPN, rows: int, threshold: float) -> Species:
     """Return empty species for a first population."""
-    dtype = population.weight.dtype
-    individuals = population.weight.shape[0]
+    individuals, dtype = population.weight.shape[0], population.weight.dtype
     return Species(
         representatives=jax.tree.map(
             lambda x: jnp.zeros((rows, *x.shape[1:]), x.dtype), population
@@ -132,26 +122,23 @@ def no_species(population: CPPN, rows: int, threshold: float) -> Species:
 
 
 def divide(
-    population: CPPN,
-    species: Species,
-    coefficients: Coefficients,
-    *,
-    nearest: bool,
-    generation: Int[Array, ""],
+    population: CPPN, species: Species, settings: Settings, generation: Int[Array, ""]
 ) -> Species:
     """Divide a population, to be evaluated in `generation`, into species.
 
-    Species without members end. With `nearest`, the member nearest to a representative becomes
-    the next representative.
+    Species without members end. The member nearest to a representative becomes the next one,
+    if the settings ask for it.
     """
     species = compacted(species)
     before = jnp.sum(species.alive)
-    state = assign(population, species.representatives, before, species.threshold, coefficients)
+    state = assign(
+        population, species.representatives, before, species.threshold, settings.coefficients
+    )
     row = jnp.arange(species.alive.shape[0])
     new = (row >= before) & (row < state.count)
     members = jnp.zeros_like(species.members).at[state.of].add(1)
     representatives = state.representatives
-    if nearest:
+    if settings.representative == "nearest":
         representatives = jax.tree.map(
             lambda old, all_: jnp.where(_column(members > 0, old), all_[state.closest], old),
             representatives,
@@ -190,10 +177,6 @@ def compacted(species: Species) -> Species:
         members=jnp.where(alive, species.members[order], 0),
         of=jnp.where(species.of < 0, UNASSIGNED, place[species.of]),
     )
-
-
-def _row(networks: CPPN, row) -> CPPN:
-    return jax.tree.map(lambda x: x[row], networks)
 
 
 def _column(flags, values):

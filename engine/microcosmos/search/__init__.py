@@ -20,7 +20,7 @@ from .evaluation import (
     never,
     simulate,
 )
-from .gradient_report import Health, gradient_health
+from .gradient_report import GradientReport, report_gradient
 from .gradients import Slopes, slopes
 from .insertion import (
     Elites,

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Bool, Float, Int
+from jaxtyping import Array, Float, Int
 from scipy.spatial import KDTree
 
 Measures = Float[Array, "row measure"]
@@ -25,7 +25,7 @@ class Axis(eqx.Module):
     logarithmic: bool = eqx.field(static=True)
 
     def place(self, value: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
-        """Values from 0 to 1 on the axis' own scale, cut at the ends."""
+        """Map values to 0 to 1 on the axis' own scale, cut at the ends."""
         low, high = self.low, self.high
         value = jnp.clip(value, low, high)
         if self.logarithmic:
@@ -100,7 +100,7 @@ Cells = Grid | Voronoi
 
 
 def voronoi(axes: tuple[Axis, ...], centroids: Float[np.ndarray, "cell axis"]) -> Voronoi:
-    """Cells around centroids. Raises `ValueError` if they do not fit the axes."""
+    """Build cells around centroids. Raises `ValueError` if they do not fit the axes."""
     centroids = np.asarray(centroids, np.float32)
     if centroids.ndim != 2 or centroids.shape[1] != len(axes) or len(centroids) < 2:
         raise ValueError(
@@ -113,14 +113,8 @@ def voronoi(axes: tuple[Axis, ...], centroids: Float[np.ndarray, "cell axis"]) -
 
 
 def places(measures: Measures, axes: tuple[Axis, ...]) -> Places:
-    """Descriptors from 0 to 1 on the axes' own scales."""
+    """Return descriptors from 0 to 1 on the axes' own scales."""
     return jnp.stack([axis.place(measures[:, axis.measure]) for axis in axes], 1)
-
-
-def sound(measures: Measures, axes: tuple[Axis, ...]) -> Bool[Array, "row"]:
-    """Return whether all descriptors are finite."""
-    chosen = jnp.stack([measures[:, axis.measure] for axis in axes], 1)
-    return jnp.all(jnp.isfinite(chosen), 1)
 
 
 def boxes(cells: int, axes: int) -> int:
@@ -129,7 +123,7 @@ def boxes(cells: int, axes: int) -> int:
 
 
 def candidates(centroids: np.ndarray) -> np.ndarray | None:
-    """The centroids that can be nearest to a place in each box, ascending; the last repeated.
+    """Return the centroids that can be nearest to a place in each box, the last repeated.
 
     None if the lists would be too long. From the middle m of a box with half diagonal h, no
     nearest centroid of a place in it is farther than |m − c| + 2 h, c being nearest to m.

@@ -31,20 +31,22 @@ Points = Float[np.ndarray, "point axis"]
 def centroids(cells: int, axes: int, seed: int) -> Points:
     """Return float32 centroids, the same for the same arguments; from disk if cached."""
     path = folder() / f"{name(cells, axes, seed)}.npy"
-    kept = _kept(path, (cells, axes))
-    if kept is not None:
-        return kept
+    cached = _cached(path, (cells, axes))
+    if cached is not None:
+        return cached
     found = lloyd(cells, axes, seed).astype(np.float32)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        write_whole(path, _npy(found))
+        file = BytesIO()
+        np.save(file, found)
+        write_whole(path, file.getvalue())
     except OSError:  # Without the cache the result is the same.
         pass
     return found
 
 
 def lloyd(cells: int, axes: int, seed: int) -> Points:
-    """Centroids by Lloyd's algorithm: each becomes the mean of its nearest samples."""
+    """Return centroids by Lloyd's algorithm: each becomes the mean of its nearest samples."""
     random = np.random.Generator(np.random.PCG64(seed))
     points = spread(cells, axes, random.random(axes))
     samples = spread(max(MIN_SAMPLES, SAMPLES * cells), axes, random.random(axes))
@@ -60,7 +62,7 @@ def lloyd(cells: int, axes: int, seed: int) -> Points:
 
 
 def spread(count: int, axes: int, shift: Float[np.ndarray, "axis"]) -> Points:
-    """Evenly spread points: shift + n (1/φ, 1/φ² …) modulo 1, with φ^(axes + 1) = φ + 1.
+    """Spread points evenly: shift + n (1/φ, 1/φ² …) modulo 1, with φ^(axes + 1) = φ + 1.
 
     The additive recurrence of Roberts (2018), "The unreasonable effectiveness of quasirandom
     sequences"; on one axis it is that of the golden ratio.
@@ -87,16 +89,10 @@ def name(cells: int, axes: int, seed: int) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _kept(path: Path, shape: tuple[int, int]) -> Points | None:
+def _cached(path: Path, shape: tuple[int, int]) -> Points | None:
     try:
         found = np.load(path, allow_pickle=False)
     except (OSError, ValueError, EOFError):
         return None
     right = found.shape == shape and found.dtype == np.float32
     return found if right and np.all((found >= 0) & (found <= 1)) else None
-
-
-def _npy(values: np.ndarray) -> bytes:
-    file = BytesIO()
-    np.save(file, values)
-    return file.getvalue()

@@ -126,7 +126,7 @@ def simulate(
 
 
 def motion_of(task: Task, driven: Drive, end: State, observed: Measures) -> dict[str, Any]:
-    """Measures of any actuator's motion."""
+    """Return measures of any actuator's motion."""
     length = task.length if driven.length is None else driven.length
     values = motion(driven.world, driven.start, end, observed, length)
     if not task.plugin_measures:
@@ -152,7 +152,7 @@ def fitness_of(task: Task, values: Mapping[str, Any]) -> Scalar:
 
 
 def status(world: World, end: State, measures: Float[Array, "measure"]) -> Int[Array, ""]:
-    """0 if the evaluation is feasible, else the code of the reason."""
+    """Return 0 if the evaluation is feasible, else the code of the reason."""
     u = flow(world, end)
     last = jnp.sqrt(jnp.max(jnp.sum(u * u, 0)))
     fastest = jnp.maximum(measures[MEASURES.index("mach")], units.mach(last))

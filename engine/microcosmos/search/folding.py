@@ -1,7 +1,8 @@
 """Folding: gradient descent of a filament's rest shape towards a picture.
 
 As in the Microcosmos paper: the loss is the mean squared difference at the end between the
-density of nodes, splatted as Gaussians, and the picture.
+density of nodes, splatted as Gaussians, and the picture. Steps are those of Adam (Kingma and
+Ba, ICLR 2015, algorithm 1, with its defaults).
 """
 
 from collections.abc import Callable
@@ -11,14 +12,42 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Float, Int
 
 from .. import fields
 from ..genomes import Vector
-from .adam import Adam, begin, descend
 from .evaluation import Task, drive, simulate
 
 Plane = Float[Array, "x y"]
+
+BETA_1, BETA_2, EPSILON = 0.9, 0.999, 1e-8
+
+Slopes = Float[Array, "*block gene"]
+
+
+class Adam(eqx.Module):
+    """Moments of the slopes so far."""
+
+    count: Int[Array, "*block"]
+    mean: Slopes
+    square: Slopes
+
+
+def begin(genes: Float[Array, "gene"]) -> Adam:
+    none = jnp.zeros_like(genes)
+    return Adam(jnp.zeros((), jnp.int32), none, none)
+
+
+def descend(
+    adam: Adam, slope: Float[Array, "gene"], rate: float | Float[Array, ""]
+) -> tuple[Float[Array, "gene"], Adam]:
+    """Return the descending change of genes, and the new state."""
+    count = adam.count + 1
+    mean = BETA_1 * adam.mean + (1 - BETA_1) * slope
+    square = BETA_2 * adam.square + (1 - BETA_2) * slope * slope
+    n = count.astype(slope.dtype)
+    towards, spread = mean / (1 - BETA_1**n), square / (1 - BETA_2**n)
+    return -rate * towards / (jnp.sqrt(spread) + EPSILON), Adam(count, mean, square)
 
 
 class Fold(eqx.Module):
@@ -56,7 +85,7 @@ def loss(descent: Descent, genes: Float[Array, "gene"], picture: Plane) -> Float
 
 
 def unfolded(descent: Descent, picture: Plane) -> Fold:
-    """A filament before the first update."""
+    """Return a filament before the first update."""
     assert descent.task.encoding is not None
     genes = descent.task.encoding.newcomer(key=jax.random.key(0)).values
     least = jnp.full((), jnp.inf, genes.dtype)
@@ -64,28 +93,28 @@ def unfolded(descent: Descent, picture: Plane) -> Fold:
 
 
 def update(descent: Descent, fold: Fold) -> tuple[Fold, Float[Array, ""]]:
-    """One step of Adam (Kingma and Ba, ICLR 2015), and the loss before it.
+    """Return the fold after one step of Adam, and the loss before it.
 
     If loss or slope are not finite, the loss is NaN, and the next step starts from the
     best genes at half the rate.
     """
     found, slope = jax.value_and_grad(partial(loss, descent))(fold.genes, fold.picture)
-    sound = jnp.isfinite(found) & jnp.all(jnp.isfinite(slope))
-    better = sound & (found < fold.least)
+    finite = jnp.isfinite(found) & jnp.all(jnp.isfinite(slope))
+    better = finite & (found < fold.least)
     best = jnp.where(better, fold.genes, fold.best)
     rate = descent.rate * fold.rate_share
-    change, moved = descend(fold.optimiser, jnp.where(sound, slope, 0.0), rate)
-    genes = jnp.where(sound, fold.genes + change, best)
+    change, moved = descend(fold.optimiser, jnp.where(finite, slope, 0.0), rate)
+    genes = jnp.where(finite, fold.genes + change, best)
     optimiser = jax.tree.map(
-        lambda new, fresh: jnp.where(sound, new, fresh), moved, begin(best)
+        lambda new, fresh: jnp.where(finite, new, fresh), moved, begin(best)
     )
     least = jnp.where(better, found, fold.least)
-    rate_share = jnp.where(sound, 1.0, 0.5) * fold.rate_share
-    loss_before = jnp.where(sound, found, jnp.nan)
+    rate_share = jnp.where(finite, 1.0, 0.5) * fold.rate_share
+    loss_before = jnp.where(finite, found, jnp.nan)
     return Fold(genes, optimiser, best, least, rate_share, fold.picture), loss_before
 
 
 def start(descent: Descent, pictures: Float[np.ndarray, "fold x y"]) -> Fold:
-    """All folds before the first update, as NumPy arrays."""
+    """Return all folds before the first update, as NumPy arrays."""
     block = jax.vmap(lambda picture: unfolded(descent, picture))(jnp.asarray(pictures))
     return jax.device_get(block)

@@ -15,8 +15,6 @@ from jax.flatten_util import ravel_pytree
 from jaxtyping import Array, Float
 
 from ..device import compiler_options
-from ..genomes import Drive
-from ..world import Measures, State
 from . import gradients
 from .evaluation import Actuator, Task, drive, mapped, motion_of, simulate
 from .reevaluation import Disturbance, Spread, disturbance, moved
@@ -32,7 +30,7 @@ Build = Callable[[Any], tuple[Task, Actuator]]
 
 
 @dataclass(frozen=True)
-class Health:
+class GradientReport:
     """The report on the gradient of one measure by some parts."""
 
     of: str
@@ -69,14 +67,13 @@ class Health:
         ]
 
 
-def gradient_health(
+def report_gradient(
     build: Build,
     of: str = "fitness",
     by: tuple[str, ...] = ("genes",),
     *,
     starts: int = 8,
-    seed: int = 0,
-) -> Health:
+) -> GradientReport:
     """Return the report for a creature; `build(dtype)` makes its task and actuator."""
     with jax.enable_x64(True):
         task, actuator = build(jnp.dtype("float64"))
@@ -90,11 +87,12 @@ def gradient_health(
     norms = {}
     for horizon in (max(1, round(share * steps)) for share in HORIZONS):
         norms[horizon] = _length(_gradient(task, actuator, of, horizon)(values)[1])
-    others = np.asarray(_from_other_starts(task, actuator, of, starts, seed)(values))
+    others = np.asarray(_from_other_starts(task, actuator, of, starts)(values))
     size = np.abs(own) / max(np.abs(own).sum(), 1e-30)
     lengths = np.linalg.norm(others, axis=1) * _length(own)
-    end, observed = _simulated(driven)
-    return Health(
+    options = compiler_options()
+    end, observed = jax.jit(lambda: simulate(driven), compiler_options=options)()
+    return GradientReport(
         of=of,
         by=by,
         value=float(found),
@@ -105,10 +103,6 @@ def gradient_health(
         starts=starts,
         limited=float(motion_of(task, driven, end, observed)["limited"]),
     )
-
-
-def _simulated(driven: Drive) -> tuple[State, Measures]:
-    return jax.jit(lambda: simulate(driven), compiler_options=compiler_options())()
 
 
 def _length(vector: Any) -> float:
@@ -149,11 +143,11 @@ def _error(program: Callable, values: gradients.Values, sizes: tuple[float, ...]
 
 
 def _from_other_starts(
-    task: Task, actuator: Actuator, of: str, starts: int, seed: int
+    task: Task, actuator: Actuator, of: str, starts: int
 ) -> Callable[[gradients.Values], Float[Array, "start value"]]:
     """Return the program from values to gradients with other phases, places and directions."""
     spread = Spread(viscosity=0.0, energy=False)
-    keys = jax.random.split(jax.random.key(seed), starts)
+    keys = jax.random.split(jax.random.key(0), starts)
     size = task.world.size
     draws = jax.vmap(lambda key: disturbance(spread, size, key=key))(keys)
 

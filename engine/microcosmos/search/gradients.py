@@ -94,7 +94,7 @@ def measures(
     horizon: int | None = None,
     segment: int | None = None,
 ) -> Float[Array, "output"]:
-    """Fitness and measures of the creature with parts changed, after `horizon` steps.
+    """Return fitness and measures of the creature with parts changed, after `horizon` steps.
 
     Raises `ValueError` for names that are unknown or have no derivative.
     """
@@ -143,7 +143,7 @@ def value_and_jacobian(
 
 
 def genes_of(actuator: Any) -> Float[Array, "gene"]:
-    """Genes as one vector: a network's weights and biases, or a vector's values."""
+    """Return genes as one vector: a network's weights and biases, or a vector's values."""
     if isinstance(actuator, Vector):
         return jnp.asarray(actuator.values)
     return jnp.concatenate([jnp.asarray(actuator.weight), jnp.asarray(actuator.bias)])
@@ -162,22 +162,22 @@ class Slopes(eqx.Module):
     """Derivatives by genes: of fitness first, then of every descriptor."""
 
     rows: Float[Array, "*block output gene"]
-    sound: Bool[Array, "*block"]
+    finite: Bool[Array, "*block"]
     """True if the simulation and all derivatives stayed finite."""
 
 
 def slopes(
     task: Task, genotype: Genotype, descriptors: tuple[str, ...], segment: int | None = None
 ) -> Slopes:
-    """Derivatives of fitness and of descriptors, by name, of one creature."""
+    """Return derivatives of fitness and of descriptors, by name, of one creature."""
     values = parts(task, genotype, ("genes",))
     of = ("fitness", *descriptors)
     found, rows = value_and_jacobian(task, genotype, values, of, segment=segment)
-    sound = jnp.all(jnp.isfinite(found)) & jnp.all(jnp.isfinite(rows["genes"]))
-    return Slopes(jnp.nan_to_num(rows["genes"]), sound)
+    finite = jnp.all(jnp.isfinite(found)) & jnp.all(jnp.isfinite(rows["genes"]))
+    return Slopes(jnp.nan_to_num(rows["genes"]), finite)
 
 
 def unit(rows: Float[Array, "*block gene"]) -> Float[Array, "*block gene"]:
-    """Rows of length 1; those of length 0 stay."""
+    """Scale rows to length 1; those of length 0 stay."""
     length = jnp.sqrt(jnp.sum(rows * rows, -1, keepdims=True) + 1e-30)
     return rows / length

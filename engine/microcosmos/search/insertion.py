@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int, UInt32
 
 from ..genomes import Genotype, words
-from .cells import Cells, sound
+from .cells import Cells
 
 MAX_INT = np.int32(np.iinfo(np.int32).max)
 SIGN_BIT = np.uint32(1 << 31)
@@ -28,7 +28,7 @@ class Elites(eqx.Module):
 
 
 def no_elites(cells: int, measures: int, genotype: Genotype) -> Elites:
-    """An archive without any elite, for genotypes shaped as the one given."""
+    """Return an archive without any elite, for genotypes shaped as the given one."""
     return Elites(
         occupied=jnp.zeros(cells, bool),
         fitness=jnp.zeros(cells, jnp.float32),
@@ -44,13 +44,13 @@ def candidates(
     genotypes: Genotype,
     fitness: Float[Array, "row"],
     measures: Float[Array, "row measure"],
-    sound: Bool[Array, "row"],
+    feasible: Bool[Array, "row"],
 ) -> Elites:
-    """The creatures of a generation as candidates; those that are not `sound` never enter."""
+    """Return the creatures of a generation as candidates; infeasible ones never enter."""
     rows = len(fitness)
     slots = jnp.arange(rows, dtype=jnp.int32)
     generations = jnp.full(rows, generation, jnp.int32)
-    return Elites(sound, fitness, measures, generations, slots, genotypes)
+    return Elites(feasible, fitness, measures, generations, slots, genotypes)
 
 
 class Inserted(eqx.Module):
@@ -66,7 +66,7 @@ class Inserted(eqx.Module):
 
 
 def clipped(candidates: Elites, cells: Cells) -> int:
-    """Count the sound candidates beyond an end of an axis; its outer bins take them."""
+    """Count the feasible candidates beyond an end of an axis; its outer bins take them."""
     beyond = np.zeros(len(candidates.occupied), bool)
     for axis in cells.axes:
         value = np.asarray(candidates.measures)[:, axis.measure]
@@ -84,7 +84,8 @@ def insert(archive: Elites, candidates: Elites, cells: Cells) -> tuple[Elites, I
     """
     count, rows = archive.occupied.shape[0], candidates.occupied.shape[0]
     able = candidates.occupied & jnp.isfinite(candidates.fitness)
-    able &= sound(candidates.measures, cells.axes)
+    descriptors = jnp.stack([candidates.measures[:, axis.measure] for axis in cells.axes], 1)
+    able &= jnp.all(jnp.isfinite(descriptors), 1)
     cell = jnp.where(able, cells.of(candidates.measures), count)
     there = jnp.minimum(cell, count - 1)
     fresh = able & ~archive.occupied[there]
@@ -102,18 +103,18 @@ def insert(archive: Elites, candidates: Elites, cells: Cells) -> tuple[Elites, I
 
 
 def insert_program(*, donate: bool = False) -> Callable[..., tuple[Elites, Inserted]]:
-    """`insert`, compiled. With `donate` the old archive is overwritten and must not be used."""
+    """Compile `insert`; with `donate` it overwrites the old archive, which must not be used."""
     return jax.jit(insert, donate_argnums=(0,) if donate else ())
 
 
 def digest(genotypes: Genotype) -> UInt32[Array, "row 2"]:
-    """64 bits that depend on every used gene, −0 counting as 0."""
+    """Return 64 bits that depend on every used gene, −0 counting as 0."""
     found = words(genotypes)
     return jnp.stack([_mix(found, salt) for salt in (0x9E3779B9, 0x85EBCA6B)], 1)
 
 
 def _mix(words: UInt32[Array, "row word"], salt: int) -> UInt32[Array, "row"]:
-    """A sum of avalanched words (the finaliser of MurmurHash3), each salted by its place."""
+    """Sum avalanched words (the finaliser of MurmurHash3), each salted by its place."""
     place = (jnp.arange(words.shape[1], dtype=jnp.uint32) + 1) * jnp.uint32(salt)
     h = words ^ place[None]
     h = (h ^ (h >> 16)) * jnp.uint32(0x85EBCA6B)
@@ -175,7 +176,7 @@ def _untied(
 
 
 def _rank(elites: Elites) -> tuple[Int[Array, "row"], ...]:
-    """Keys of the order at equal fitness, most important first; smaller is better."""
+    """Return the keys of the order at equal fitness, first keys first; smaller is better."""
     ordered = jax.lax.bitcast_convert_type(digest(elites.genotypes) ^ SIGN_BIT, jnp.int32)
     return ordered[:, 0], ordered[:, 1], elites.generation, elites.slot
 

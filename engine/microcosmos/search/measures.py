@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, get_args
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -10,48 +10,28 @@ from jaxtyping import Array, Bool, Float
 
 from .. import units
 from ..filaments import Rest
+from ..naming import MeasureName
 from ..world import Measures, State, World, centre, edges_there, joints_there, mean
 
-MOTION = (
-    "displacement",
-    "bending_effort",
-    "stretching_effort",
-    "path_length",
-    "straightness",
-    "rotation",
-)
-MEASURES = (
-    *MOTION,
-    "hidden_nodes",
-    "connections",
-    "energy",
-    "mach",
-    "limited",
-    "reynolds",
-    "mean_speed",
-    "turning",
-    "curvature_mean",
-    "curvature_spread",
-    "symmetry",
-    "power",
-    "efficiency",
-    "nodes",
-)
+MEASURES: tuple[str, ...] = get_args(MeasureName)
 """Measures of every elite, in this order; units in `docs/formats.md`."""
+
+MOTION = MEASURES[:6]
+"""Measures of the motion alone."""
 
 Curvature = Float[Array, "time joint"]
 Scalar = Float[Array, ""]
 
 
 def observe(state: State, measures: Measures) -> Measures:
-    """The observations of a step: its measures without the force, a row for each body."""
+    """Return the measures of a step without the force, a row for each body."""
     return replace(measures, force=None)
 
 
 def motion(
     world: World, start: State, end: State, observed: Measures, length: Scalar | float
 ) -> dict[str, Any]:
-    """The measures of a motion; `observed` has time first, `length` is the body's, in cells."""
+    """Measure a motion; `observed` has time first, `length` is the body's, in cells."""
     first, steps = centre(world, start), len(observed.node_speed)
     moved = jnp.diff(jnp.concatenate([first[None], observed.centre]), axis=0)
     displacement, path = _norm(observed.centre[-1] - first), jnp.sum(_norm(moved))
@@ -83,7 +63,7 @@ def motion(
 
 
 def effort(rest: Float[Array, "time item"], kept: Bool[Array, "item"] | None = None) -> Scalar:
-    """Σ over time and items of the squared change from one step to the next."""
+    """Sum over time and items the squared change from one step to the next."""
     changes = jnp.diff(rest, axis=0) ** 2
     return jnp.sum(changes if kept is None else jnp.where(kept[None], changes, 0.0))
 
@@ -91,7 +71,7 @@ def effort(rest: Float[Array, "time item"], kept: Bool[Array, "item"] | None = N
 def curvature(
     found: Curvature, kept: Bool[Array, "joint"] | None = None
 ) -> tuple[Scalar, Scalar]:
-    """Mean and standard deviation of |curvature| over time and joints, 1/cells."""
+    """Return mean and standard deviation of |curvature| over time and joints, 1/cells."""
     size = jnp.abs(found)
     average = jnp.mean(mean(size.T, kept))
     squares = jnp.mean(mean((size.T - average) ** 2, kept))
@@ -99,7 +79,7 @@ def curvature(
 
 
 def symmetry(found: Curvature, kept: Bool[Array, "joint"] | None = None) -> Scalar:
-    """Correlation of the joints' bending with its mirror along the body, −1 to 1.
+    """Correlate the joints' bending with its mirror along the body, −1 to 1.
 
     Σ c(t, j) c(t, J − 1 − j) / Σ c(t, j)², with the curvature c less its mean over time.
     1: both halves bend alike at all times, like a jellyfish; −1: they bend oppositely, in S
@@ -164,7 +144,7 @@ class Measure:
 def motion_for_plugins(
     world: World, start: State, end: State, observed: Measures, measures: dict[str, Any]
 ) -> Motion:
-    """A simulation in the form that measures of plug-ins take."""
+    """Return a simulation in the form that measures of plug-ins take."""
     first = mean(start.angles, edges_there(world))
     return Motion(
         path=jnp.concatenate([centre(world, start)[None], observed.centre]),

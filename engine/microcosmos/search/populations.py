@@ -23,7 +23,7 @@ Marks = Bool[np.ndarray, "genome row"]
 def cppns(
     nodes: Nodes, links: Links, activations: Sequence[str], inputs: int, outputs: int
 ) -> tuple[CPPN, Bool[np.ndarray, "genome"]]:
-    """Feed-forward genomes as networks, and which of them compute every output.
+    """Convert feed-forward genomes to networks; also return which of them compute every output.
 
     The others, whose outputs are NaN, become networks of inputs and outputs alone.
     """
@@ -72,7 +72,7 @@ def _put_links(network: CPPN, links: Links, linked: Marks, source: Rows, target:
 
 
 def _rows(nodes: Nodes, keys: Float[np.ndarray, "genome link"]) -> Rows:
-    """Rows of the nodes with these keys; 0 for an unused link."""
+    """Return the rows of the nodes with these keys; 0 for an unused link."""
     return np.argmax(nodes[:, None, :, 0] == keys[:, :, None], axis=2)
 
 
@@ -92,7 +92,7 @@ def _live(
 
 
 def _activation(nodes: Nodes, names: Sequence[str], linear: Bool[np.ndarray, "node"]) -> Rows:
-    """Our numbers for indices of TensorNEAT's list, whose −1 is the identity."""
+    """Convert indices of TensorNEAT's list, whose −1 is the identity, to our numbers."""
     known = list(ACTIVATIONS)
     identity = known.index("identity")
     number = np.array([*map(known.index, names), identity])

@@ -68,7 +68,7 @@ def no_repeats(cells: int, measures: int) -> Repeats:
 
 
 def disturbance(spread: Spread, size: tuple[int, int], *, key: PRNGKeyArray) -> Disturbance:
-    """One draw, uniform within the spread."""
+    """Draw a disturbance, uniform within the spread."""
     phase_key, turn_key, shift_key, viscosity_key, energy_key = jax.random.split(key, 5)
     sides = jnp.asarray(size, jnp.float32)
     whole = 2 * jnp.pi
@@ -122,25 +122,25 @@ def add(
 
     `found` has a row for each cell; rows that are not `done` are ignored.
     """
-    old, sound = repeats, done & (found.status == 0)
-    n = old.count - old.failed + sound
-    share = jnp.where(sound, 1 / jnp.maximum(n, 1), 0.0)
-    step = jnp.where(sound, found.fitness - old.fitness, 0.0)
-    strayed = jnp.where(sound[:, None], found.measures - old.measures, 0.0)
+    old, feasible = repeats, done & (found.status == 0)
+    n = old.count - old.failed + feasible
+    share = jnp.where(feasible, 1 / jnp.maximum(n, 1), 0.0)
+    step = jnp.where(feasible, found.fitness - old.fitness, 0.0)
+    strayed = jnp.where(feasible[:, None], found.measures - old.measures, 0.0)
     mean = old.fitness + share * step
     cell = jnp.arange(done.shape[0])
     return Repeats(
         count=old.count + done,
-        failed=old.failed + (done & ~sound),
-        hits=old.hits + (sound & (cells.of(found.measures) == cell)),
+        failed=old.failed + (done & ~feasible),
+        hits=old.hits + (feasible & (cells.of(found.measures) == cell)),
         fitness=mean,
-        squares=old.squares + jnp.where(sound, step * (found.fitness - mean), 0.0),
+        squares=old.squares + jnp.where(feasible, step * (found.fitness - mean), 0.0),
         measures=old.measures + share[:, None] * strayed,
     )
 
 
 def corrected(elites: Elites, repeats: Repeats, cells: Cells) -> Float[Array, "cell"]:
-    """Fitness of the corrected archive, NaN in empty cells.
+    """Return the fitness of the corrected archive, NaN in empty cells.
 
     It places every reevaluated elite by its mean descriptors and keeps the best mean fitness of
     each cell.

@@ -18,8 +18,6 @@ from ..genomes import ACTIVATIONS, CPPN
 from ..neat import Settings
 from .populations import cppns
 
-COMMAND = "make tensorneat"
-
 State = Any
 """TensorNEAT's: a pytree of arrays by name, one of them (`species`) such a state itself."""
 
@@ -27,15 +25,6 @@ State = Any
 def available() -> bool:
     """Return whether the package can be imported."""
     return find_spec("tensorneat") is not None
-
-
-def require() -> None:
-    """Raise `ValueError` with the command to install the package, unless it is there."""
-    if not available():
-        raise ValueError(
-            "`neat.backend` tensorneat needs the package tensorneat (GPL-3), which is not "
-            f"installed; install it with: {COMMAND}"
-        )
 
 
 @dataclass(frozen=True)
@@ -64,7 +53,7 @@ class Backend:
         return self.next_state(state, jnp.asarray(np.where(np.isnan(values), -np.inf, values)))
 
     def to_arrays(self, state: State) -> dict[str, np.ndarray]:
-        """Everything in a state by name, those of species behind `species.`."""
+        """Return everything in a state by name, that of species behind `species.`."""
         return _flat(state, "")
 
     def from_arrays(self, arrays: Mapping[str, np.ndarray | Array]) -> State:
@@ -76,7 +65,7 @@ class Backend:
         return states.State(**plain, species=states.State(**species))
 
     def population(self, state: State) -> tuple[CPPN, Bool[np.ndarray, "individual"]]:
-        """The genomes as our networks, and which of them compute every output; see `cppns`."""
+        """Return the genomes as our networks, and which compute every output; see `cppns`."""
         nodes, connections = self.ask(state)
         names, ends = self.meta["activation_names"], ("num_inputs", "num_outputs")
         return cppns(nodes, connections, names, *(self.meta[end] for end in ends))
@@ -85,11 +74,15 @@ class Backend:
 def build(
     settings: Settings, inputs: int, outputs: int, max_nodes: int, max_connections: int
 ) -> Backend:
-    """TensorNEAT with those of our settings that it has; it allots by rank.
+    """Build TensorNEAT with those of our settings that it has; it allots by rank.
 
     Raises `ValueError` if it is not installed, or cannot follow the settings.
     """
-    require()
+    if not available():
+        raise ValueError(
+            "`neat.backend` tensorneat needs the package tensorneat (GPL-3), which is not "
+            "installed; install it with: make tensorneat"
+        )
     if settings.rates.recurrent:
         raise ValueError("`neat.backend` tensorneat needs feed-forward networks, got recurrent")
     names = tuple(ACTIVATIONS)
@@ -166,7 +159,7 @@ def _genome(
 
 
 def _function(name: str) -> Callable:
-    """TensorNEAT's function of that name; ours is registered if it has none."""
+    """Return TensorNEAT's function of that name; register ours if it has none."""
     known = import_module("tensorneat.common").ACT
     if name not in known.name2jnp:
         known.add_func(name, ACTIVATIONS[name])

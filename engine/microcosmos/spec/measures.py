@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from ..naming import MeasureName as Name
+
 Scale = Literal["log10", "linear"]
 
 

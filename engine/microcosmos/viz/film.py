@@ -30,7 +30,7 @@ SAMPLES = 12
 def gif(
     replay: Replay, *, width: int = 320, frames: int = 125, rate: int = 20, **options: Any
 ) -> bytes:
-    """A looping film of at most `frames` frames, `rate` a second.
+    """Return a looping film of at most `frames` frames, `rate` a second.
 
     A GIF counts hundredths of a second; viewers show a frame for at least two. `options` are
     those of `frame`.
@@ -42,47 +42,35 @@ def gif(
     image = require("PIL.Image")
     numbers = range(0, replay.frames, -(-replay.frames // frames))
     pictures = [frame(replay, k, width=width, **options) for k in numbers]
-    palette = _palette(pictures)
+    # One palette for all pictures, so that still parts do not flicker.
+    some = np.concatenate(pictures[:: -(-len(pictures) // SAMPLES)])
+    palette = image.fromarray(some).quantize(256, image.Quantize.MEDIANCUT)
     first, *others = (
         image.fromarray(picture).quantize(palette=palette, dither=image.Dither.NONE)
         for picture in pictures
     )
-    out = io.BytesIO()
-    duration = 10 * round(100 / rate)
-    first.save(
-        out, "GIF", save_all=True, append_images=others, duration=duration, loop=0, disposal=1
-    )
+    out, moving = io.BytesIO(), {"save_all": True, "append_images": others, "loop": 0}
+    first.save(out, "GIF", **moving, duration=10 * round(100 / rate), disposal=1)
     return out.getvalue()
 
 
 def mp4(replay: Replay, *, width: int = 480, rate: int = 25, **options: Any) -> bytes:
-    """A film in H.264 of all frames, `rate` a second, that browsers stream.
+    """Return a film in H.264 of all frames, `rate` a second, that browsers stream.
 
     `options` are those of `frame`.
     """
     if not 1 <= rate <= 120:
         raise ValueError(f"`rate` must be from 1 to 120 frames a second, got {rate}.")
     pictures = (frame(replay, k, width=width, **options) for k in range(replay.frames))
-    _refuse_without_encoder()
-    with tempfile.TemporaryDirectory() as folder:  # The index is moved to the front at the end.
-        path = Path(folder) / "film.mp4"
-        _encode(pictures, path, rate)
-        return path.read_bytes()
-
-
-def _palette(pictures: list[np.ndarray]) -> Any:
-    """An image with one palette for all pictures, so that still parts do not flicker."""
-    some = pictures[:: -(-len(pictures) // SAMPLES)]
-    image = require("PIL.Image")
-    return image.fromarray(np.concatenate(some)).quantize(256, image.Quantize.MEDIANCUT)
-
-
-def _refuse_without_encoder() -> None:
     if ENCODER not in require("av").codecs_available:
         raise ValueError(
             f"An MP4 needs PyAV with {ENCODER}, which this one was built without; "
             "make a GIF instead."
         )
+    with tempfile.TemporaryDirectory() as folder:  # The index is moved to the front at the end.
+        path = Path(folder) / "film.mp4"
+        _encode(pictures, path, rate)
+        return path.read_bytes()
 
 
 def _encode(pictures: Iterator[np.ndarray], path: Path, rate: int) -> None:
@@ -105,8 +93,6 @@ def _encode(pictures: Iterator[np.ndarray], path: Path, rate: int) -> None:
 
 
 MAKERS = {".png": strip, ".gif": gif, ".mp4": mp4}
-NEEDS = {".png": ("PIL.Image",), ".gif": ("PIL.Image",), ".mp4": ("PIL.Image", "av")}
-"""Optional modules of each kind of file."""
 
 
 def check(path: Path) -> None:
@@ -114,8 +100,9 @@ def check(path: Path) -> None:
     kind = path.suffix.lower()
     if kind not in MAKERS:
         raise ValueError(f"`path` must end in {', '.join(MAKERS)}, got {str(path)!r}.")
-    for module in NEEDS[kind]:
-        require(module)
+    require("PIL.Image")
+    if kind == ".mp4":
+        require("av")
 
 
 def export(data: bytes, path: str | Path, **options: Any) -> None:

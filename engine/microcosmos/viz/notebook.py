@@ -39,7 +39,7 @@ def show(creature: Mapping[str, Any] | bytes | Replay, **options: Any) -> Film:
 
 
 def filmed(positions: Any, edges: Any, vorticity: Any, *, every: int = 1) -> Replay:
-    """A replay of frames from your own simulation, `every` steps apart.
+    """Return a replay of frames from your own simulation, `every` steps apart.
 
     `positions` are (frame, node, 2) in cells, unwrapped, `edges` (edge, 2) node numbers and
     `vorticity` (frame, x, y) in 1/step.

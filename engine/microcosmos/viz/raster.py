@@ -30,12 +30,12 @@ class View:
         return np.array(self.shape[::-1]) / self.size
 
     def pixels(self, points: np.ndarray) -> np.ndarray:
-        """Points (..., 2) in cells as (column, row); the first pixel's middle is at 0.5."""
+        """Map points (..., 2) in cells to (column, row); the first pixel's middle is at 0.5."""
         away = (points - self.centre) * [1, -1]
         return (away + np.array(self.size) / 2) * self.scale
 
     def sampled(self, field: np.ndarray) -> np.ndarray:
-        """A periodic field (x, y) at the picture's pixels (row, column).
+        """Sample a periodic field (x, y) at the picture's pixels (row, column).
 
         Between cells it is Catmull and Rom's cubic spline, which keeps the cells' values.
         """
@@ -46,7 +46,7 @@ class View:
 
 
 def view(size: tuple[int, int], width: int, centre: np.ndarray) -> View:
-    """A view of `width` pixels, and as high as the box is; both are even, as films need."""
+    """Return a view of `width` pixels, and as high as the box; both are even, as films need."""
     if width < 16 or width % 2:
         raise ValueError(f"`width` must be an even number of pixels from 16, got {width}.")
     height = 2 * max(8, round(width * size[1] / size[0] / 2))
@@ -114,7 +114,7 @@ def frame(
     follow: bool = False,
     way: bool = True,
 ) -> np.ndarray:
-    """Frame `number` (from the end where negative) as pixels (row, column, 3) of uint8.
+    """Draw frame `number` (from the end if negative) as pixels (row, column, 3) of uint8.
 
     The camera rests in the middle of the box, or follows the mean position of the nodes.
     `way` draws the path of each creature's mean position, with a ring at its start.
@@ -122,7 +122,9 @@ def frame(
     number, colours = frame_number(replay, number), theme_of(theme)
     middle = replay.positions[number].mean(0, dtype=float)
     seen = view(replay.size, width, middle if follow else np.array(replay.size) / 2)
-    picture = _water(replay, number, seen, theme)
+    # The strongest vorticity has the colours at the ends.
+    share = seen.sampled(replay.levels[number]) * np.float32(replay.quantum / replay.strongest)
+    picture = _table(theme)[np.rint(255 * np.clip(share, -1, 1)).astype(np.int16) + 255]
     dots = seen.pixels(_grid(seen))
     _blend(picture, colours.ink, 0.22 * coverage(distance(dots, dots, seen.shape, 2), 2))
     if way:
@@ -152,12 +154,6 @@ def theme_of(name: str) -> Theme:
     return THEMES[name]
 
 
-def _water(replay: Replay, number: int, seen: View, theme: str) -> np.ndarray:
-    """The colours (row, column, 3) of the vorticity; the strongest has those at the ends."""
-    share = seen.sampled(replay.levels[number]) * np.float32(replay.quantum / replay.strongest)
-    return _table(theme)[np.rint(255 * np.clip(share, -1, 1)).astype(np.int16) + 255]
-
-
 @lru_cache
 def _table(theme: str) -> np.ndarray:
     anchors = np.array(THEMES[theme].vorticity).T
@@ -177,7 +173,7 @@ def _grid(seen: View) -> np.ndarray:
 
 
 def _curves(replay: Replay, number: int) -> np.ndarray:
-    """Short lines (2, line, 2), from and to, along the splines through the nodes.
+    """Return short lines (2, line, 2), from and to, along the splines through the nodes.
 
     Catmull and Rom's spline runs through a node that joins two edges; it ends at others.
     """
@@ -215,24 +211,22 @@ BATCH = 4096
 def distance(
     starts: np.ndarray, ends: np.ndarray, shape: tuple[int, int], reach: float
 ) -> np.ndarray:
-    """The distance (row, column) from each pixel's middle to the nearest line, at most `reach`.
+    """Return distances (row, column) of pixels' middles to the nearest line, up to `reach`.
 
     Lines are (line, 2) points (column, row) in pixels, the first pixel's middle at 0.5. The
     picture is periodic.
     """
     field = np.full(shape[0] * shape[1], reach, np.float32)
     starts, ends = _pieces(starts, ends)
-    around = np.arange(
-        -int(np.ceil(reach + PIECE / 2)) - 1, int(np.ceil(reach + PIECE / 2)) + 2
-    )
+    side = int(np.ceil(reach + PIECE / 2)) + 1
+    around = np.arange(-side, side + 1)
     for first in range(0, len(starts), BATCH):
         a, b = (points[first : first + BATCH] for points in (starts, ends))
         pixels = np.floor((a + b) / 2).astype(int)[:, :, None] + around  # (piece, 2, place)
         column = (pixels[:, 0] + 0.5 - a[:, :1]).astype(np.float32)[:, None, :]
         row = (pixels[:, 1] + 0.5 - a[:, 1:]).astype(np.float32)[:, :, None]
-        places = (pixels[:, 1] % shape[0] * shape[1])[:, :, None] + (pixels[:, 0] % shape[1])[
-            :, None, :
-        ]
+        rows, columns = pixels[:, 1] % shape[0], pixels[:, 0] % shape[1]
+        places = (rows * shape[1])[:, :, None] + columns[:, None, :]
         np.minimum.at(field, places.ravel(), _to_line(column, row, b - a).ravel())
     return field.reshape(shape)
 
@@ -247,7 +241,7 @@ def coverage(distances: np.ndarray, width: float) -> np.ndarray:
 
 
 def _to_line(column: np.ndarray, row: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """Distances (piece, row, column) from points to a line from the origin to `along`."""
+    """Return distances (piece, row, column) from points to the line from 0 to `along`."""
     x, y = along.astype(np.float32).T[:, :, None, None]
     square = np.maximum(x**2 + y**2, np.float32(1e-12))
     share = np.clip((column * x + row * y) / square, 0, 1)

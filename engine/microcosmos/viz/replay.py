@@ -63,9 +63,8 @@ def record(file: Mapping[str, Any]) -> bytes:
         raise creature.CreatureError("identity", needed, "one that diverges")
     present = film.present
     edges, joints = graph_among(scene, present)
-    scales = {
-        name: float(np.max(np.abs(getattr(film, name)), initial=0.0)) or 1.0 for name in LEVELS
-    }
+    planes = {name: getattr(film, name) for name in LEVELS}
+    scales = {n: float(np.max(np.abs(x), initial=0.0)) or 1.0 for n, x in planes.items()}
     header = {
         "format": REPLAY_FORMAT,
         "creature": file["sha256"],
@@ -89,7 +88,7 @@ def record(file: Mapping[str, Any]) -> bytes:
         np.asarray(film.positions[:, present], "<f4"),
         np.asarray(film.rest.angle[:, there[1]], "<f4"),
         np.asarray(film.rest.length[:, there[0]], "<f4"),
-        *(_levels(getattr(film, name), scales[name], kind) for name, kind in LEVELS.items()),
+        *(_levels(planes[name], scales[name], kind) for name, kind in LEVELS.items()),
     )
 
 
@@ -116,8 +115,7 @@ def _comparison(
 
 
 def watchable(scene: Scene) -> Scene:
-    """The scene, without plug-in measures if they are missing here: the motion does not depend
-    on them."""
+    """Return the scene, without plug-in measures if these are missing: motion needs none."""
     try:
         build_measures(scene)
     except plugins.Missing:
@@ -132,14 +130,14 @@ def unmeasured(scene: Scene) -> Scene:
 
 
 def present_parts(scene: Scene, present: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Masks of the edges and joints whose nodes are all present."""
+    """Return masks of the edges and joints whose nodes are all present."""
     body = shape(scene.body)
     edges = np.all(present[body.edges], axis=1)
     return edges, np.all(edges[body.joints], axis=1)
 
 
 def graph_among(scene: Scene, present: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Edges (edge, 2) and joints (joint, 2) that are present, renumbered."""
+    """Return edges (edge, 2) and joints (joint, 2) that are present, renumbered."""
     edges, joints = present_parts(scene, present)
     body = shape(scene.body)
     return (
@@ -149,7 +147,7 @@ def graph_among(scene: Scene, present: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def interval(scene: Scene, network_nodes: int) -> int:
-    """Steps between frames.
+    """Return the number of steps between frames.
 
     Raises `creature.CreatureError` if the simulation is too long or too large.
     """
@@ -228,11 +226,8 @@ def _filmed(
         u = world.flow(task.world, state)
         return state.positions, vorticity(u), u, state.energy if changes else None
 
-    def go_on(state, given):
-        return search.simulate(replace(driven, start=state, inputs=given))
-
     def advance(state, given):
-        end, seen = go_on(state, given)
+        end, seen = search.simulate(replace(driven, start=state, inputs=given))
         return end, (frame(end), seen)
 
     whole = jax.tree.map(
@@ -240,7 +235,7 @@ def _filmed(
     )
     left = jax.tree.map(lambda x: x[frames * every :], driven.inputs)
     end, (shown, seen) = jax.lax.scan(advance, driven.start, whole)
-    end, last = go_on(end, left)
+    end, last = search.simulate(replace(driven, start=end, inputs=left))
     seen = jax.tree.map(
         lambda x, y: jnp.concatenate([x.reshape(-1, *x.shape[2:]), y]), seen, last
     )
@@ -248,7 +243,8 @@ def _filmed(
         lambda first, rest: jnp.concatenate([first[None], rest]), frame(driven.start), shown
     )
     if energy is None:
-        energy = _unchanging(driven.start.energy, task.world.size)
+        start = driven.start.energy
+        energy = jnp.zeros((0, *task.world.size)) if start is None else start[None]
     before = np.maximum(np.arange(frames + 1) * every - 1, 0)
     rest = jax.tree.map(lambda x: x[before], seen.rest)
     present = driven.world.present
@@ -257,12 +253,8 @@ def _filmed(
     return Film(positions, curl, velocity, energy, rest, present), end, seen
 
 
-def _unchanging(energy: Array | None, size: tuple[int, int]) -> Array:
-    return jnp.zeros((0, *size)) if energy is None else energy[None]
-
-
 def _mean_motion(task: search.Task, driven: Drive) -> dict[str, Any]:
-    """Mean measures over all placements of energy; the film shows the first one."""
+    """Average measures over all placements of energy; the film shows the first one."""
 
     def motion(shift: Array) -> dict[str, Any]:
         moved = search.elsewhere(driven, shift)

@@ -124,8 +124,8 @@ def read_replay(data: bytes) -> Replay:
         found = np.frombuffer(data, kind, prod(shape), start).reshape(shape)
         arrays.append(found.astype(np.float32) if kind == "<f4" else found)
         start += found.nbytes
-    sound = all(np.isfinite(found).all() for found in arrays)
-    _need(sound, "positions", "finite numbers", "others")
+    valid = all(np.isfinite(found).all() for found in arrays)
+    _need(valid, "positions", "finite numbers", "others")
     positions, angles, lengths, levels, velocity, energy = arrays
     speed, most = (header[name]["scale"] for name in ("velocity", "energy"))
     flow = velocity * np.float32(speed / 127), energy * np.float32(most / 255)
@@ -158,8 +158,8 @@ def _check(header: dict[str, Any]) -> None:
         plane: Any = header.get(field)
         _need(isinstance(plane, dict), field, "an object with its scale", plane)
         scale = plane.get("scale")
-        sound = isinstance(scale, int | float) and 0 < scale < float("inf")
-        _need(sound, f"{field}.scale", "a positive number", scale)
+        valid = isinstance(scale, int | float) and 0 < scale < float("inf")
+        _need(valid, f"{field}.scale", "a positive number", scale)
     planes, frames = header["energy"].get("frames"), header["frames"]
     _need(planes in (0, 1, frames), "energy.frames", f"0, 1 or {frames}", planes)
     if "member" in header:
@@ -185,10 +185,10 @@ def _is_count(value: Any) -> bool:
     return type(value) is int and value >= 1
 
 
-def _is_pair(value: Any, sound: Callable[[Any], bool]) -> bool:
-    return isinstance(value, list) and len(value) == 2 and all(map(sound, value))
+def _is_pair(value: Any, valid: Callable[[Any], bool]) -> bool:
+    return isinstance(value, list) and len(value) == 2 and all(map(valid, value))
 
 
-def _need(sound: bool, field: str, needed: str, got: object) -> None:
-    if not sound:
+def _need(valid: bool, field: str, needed: str, got: object) -> None:
+    if not valid:
         raise ReplayError(field, needed, got)

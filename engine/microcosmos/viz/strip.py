@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..optional import require
-from .raster import frame, frame_number, theme_of
+from .raster import frame, theme_of
 from .replay_file import Replay
 
 GAP = 8
@@ -17,7 +17,7 @@ LETTERS = 14
 
 
 def png(replay: Replay, number: int, **options: Any) -> bytes:
-    """One frame as a PNG; `options` are those of `frame`."""
+    """Draw one frame as a PNG; `options` are those of `frame`."""
     return encoded(frame(replay, number, **options))
 
 
@@ -30,7 +30,7 @@ def strip(
     theme: str = "light",
     **options: Any,
 ) -> bytes:
-    """`count` moments from the first frame to the last, each with its step, as a PNG.
+    """Draw `count` moments from the first frame to the last, each with its step, as a PNG.
 
     They lie side by side, or in rows of `columns`; `width` is one panel's and `options` are
     those of `frame`.
@@ -44,15 +44,16 @@ def strip(
     tall = high + 2 * GAP + LETTERS
     rows = -(-count // columns)
     shape = rows * tall + GAP, columns * (wide + GAP) + GAP, 3
-    sheet = np.full(shape, theme_of(theme).halo, np.uint8)
-    corners = []
+    sheet = require("PIL.Image").fromarray(np.full(shape, theme_of(theme).halo, np.uint8))
+    font = require("PIL.ImageFont").load_default(LETTERS)
+    draw, ink = require("PIL.ImageDraw").Draw(sheet), theme_of(theme).ink
     for place, panel in enumerate(panels):
         top = place // columns * tall + GAP
         left = place % columns * (wide + GAP) + GAP
-        sheet[top : top + high, left : left + wide] = panel
-        corners.append((left, top + high + GAP // 2))
-    captions = [f"step {replay.step(k):,}" for k in numbers]
-    return encoded(_written(sheet, corners, captions, theme_of(theme).ink))
+        sheet.paste(require("PIL.Image").fromarray(panel), (left, top))
+        corner, caption = (left, top + high + GAP // 2), f"step {replay.step(numbers[place]):,}"
+        draw.text(corner, caption, fill=ink, font=font, anchor="lt")
+    return encoded(np.asarray(sheet))
 
 
 def moments(replay: Replay, count: int) -> list[int]:
@@ -60,22 +61,8 @@ def moments(replay: Replay, count: int) -> list[int]:
     if not 1 <= count <= replay.frames:
         raise ValueError(f"`count` must be from 1 to {replay.frames} frames, got {count}.")
     if count == 1:
-        return [frame_number(replay, -1)]
+        return [replay.frames - 1]
     return [round(k * (replay.frames - 1) / (count - 1)) for k in range(count)]
-
-
-def _written(
-    sheet: np.ndarray,
-    corners: list[tuple[int, int]],
-    texts: list[str],
-    ink: tuple[int, int, int],
-) -> np.ndarray:
-    image = require("PIL.Image").fromarray(sheet)
-    font = require("PIL.ImageFont").load_default(LETTERS)
-    draw = require("PIL.ImageDraw").Draw(image)
-    for corner, text in zip(corners, texts, strict=True):
-        draw.text(corner, text, fill=ink, font=font, anchor="lt")
-    return np.asarray(image)
 
 
 def encoded(picture: np.ndarray) -> bytes:
@@ -92,7 +79,7 @@ MOMENT = 2 / 3
 
 
 def preview(replay: Replay, theme: str = "light") -> bytes:
-    """One moment as a PNG of 1200 × 630 pixels, the creature in the middle.
+    """Draw one moment as a PNG of 1200 × 630 pixels, the creature in the middle.
 
     It is cut from the periodic box, or shows the whole box if that would cut the creature.
     """
@@ -103,15 +90,11 @@ def preview(replay: Replay, theme: str = "light") -> bytes:
     width = fills if (reach < (WIDTH, HEIGHT)).all() else min(WIDTH, HEIGHT * wide / high)
     even = max(16, 2 * int(np.ceil(width / 2)))
     picture = frame(replay, number, width=even, theme=theme, follow=True)
-    return encoded(_placed(picture, theme_of(theme).halo))
-
-
-def _placed(picture: np.ndarray, around: tuple[int, int, int]) -> np.ndarray:
-    sheet = np.full((HEIGHT, WIDTH, 3), around, np.uint8)
+    sheet = np.full((HEIGHT, WIDTH, 3), theme_of(theme).halo, np.uint8)
     rows, columns = picture.shape[:2]
     high, wide = min(rows, HEIGHT), min(columns, WIDTH)
     top, left = (HEIGHT - high) // 2, (WIDTH - wide) // 2
     above, beside = (rows - high) // 2, (columns - wide) // 2
     cut = picture[above : above + high, beside : beside + wide]
     sheet[top : top + high, left : left + wide] = cut
-    return sheet
+    return encoded(sheet)

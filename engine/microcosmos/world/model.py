@@ -100,7 +100,7 @@ class Measures(eqx.Module):
 
 
 def at_rest(world: World, positions: Vectors) -> State:
-    """A fluid at rest with bodies at `positions`, and the initial energy."""
+    """Return a fluid at rest with bodies at `positions`, and the initial energy."""
     planes = tuple(jnp.zeros(world.size, positions.dtype) for _ in range(9))
     angles = filaments.edge_angles(positions, world.rods)
     if world.energy is None:

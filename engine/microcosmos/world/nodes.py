@@ -38,7 +38,7 @@ def collect(world: World, state: State, at: coupling.Windows) -> State:
 
 
 def repel(world: World, positions: Vectors) -> tuple[Vectors, Vectors]:
-    """Steric displacement within bodies, and of each body as a whole.
+    """Return steric displacements within bodies, and of each body as a whole.
 
     Forces on the fluid sum to zero over a body, which would remove its mean displacement; so
     the mean moves the body after the fluid's response. It is taken before displacements are

@@ -10,25 +10,25 @@ from .model import State, World
 
 
 def there(world: World, layers: int = 1) -> Bool[Array, "point"] | None:
-    """Mask of the points of present nodes; None: all."""
+    """Return the mask of points of present nodes; None: all."""
     if world.present is None or layers == 1:
         return world.present
     return jnp.repeat(world.present, layers)
 
 
 def edges_there(world: World) -> Bool[Array, "edge"] | None:
-    """Mask of edges with both ends; None: all."""
+    """Return the mask of edges with both ends; None: all."""
     return None if world.present is None else jnp.all(world.present[world.rods.edges], 1)
 
 
 def joints_there(world: World) -> Bool[Array, "joint"] | None:
-    """Mask of joints with both edges; None: all."""
+    """Return the mask of joints with both edges; None: all."""
     edges, joints = edges_there(world), world.rods.joints
     return None if edges is None or joints is None else jnp.all(edges[joints], 1)
 
 
 def grown_rods(rods: filaments.Rods, present: Bool[Array, "node"]) -> filaments.Rods:
-    """Rods without constraints on absent nodes."""
+    """Remove the constraints on absent nodes."""
     assert rods.joints is not None
     edges = jnp.all(present[rods.edges], 1)
     return replace(

@@ -32,7 +32,7 @@ def rollout(
     remember: Callable[[World, State, Any], PyTree[Array]] = keep,
     segment: int | None = None,
 ) -> tuple[State, Any]:
-    """The state after all steps of `inputs` (time first), and the observations after each.
+    """Return the state after all steps of `inputs` (time first), and observations of each.
 
     In each step `remember` sets the state's memory, then `control` makes the rest shape from
     the world, the state and the inputs. With `segment`, reverse mode keeps the state only after
@@ -57,7 +57,7 @@ def rollout(
         return jnp.concatenate([many.reshape(-1, *many.shape[2:]), few])
 
     # Within a loop no other code could share the repeated results.
-    again = jax.checkpoint(partial(jax.lax.scan, advance), prevent_cse=False)
-    state, seen = jax.lax.scan(again, state, jax.tree.map(cut, inputs))
+    segments = jax.checkpoint(partial(jax.lax.scan, advance), prevent_cse=False)
+    state, seen = jax.lax.scan(segments, state, jax.tree.map(cut, inputs))
     state, last = jax.lax.scan(advance, state, jax.tree.map(lambda x: x[whole:], inputs))
     return state, jax.tree.map(joined, seen, last)

@@ -26,7 +26,7 @@ class Motion(eqx.Module):
 
 
 def step(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measures]:
-    """One step: the fluid carries the bodies, constraints move them, the fluid responds."""
+    """Take one step: the fluid carries bodies, constraints move them, the fluid responds."""
     if not world.form.fluid:
         return step_alone(world, state, rest)
     rho, momentum = fluid.density(state.populations), fluid.momentum(state.populations)
@@ -63,7 +63,7 @@ def step(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measu
 
 
 def step_alone(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measures]:
-    """One step without a fluid: repulsion and constraints move the bodies."""
+    """Take one step without a fluid: repulsion and constraints move the bodies."""
     push, drift = repel(world, state.positions)
     motion = move(world, state, rest, push)
     positions = state.positions + motion.target + drift

@@ -7,7 +7,7 @@ import pytest
 
 from microcosmos import bodies, neat, spec
 from microcosmos.archive import creature
-from microcosmos.audit.derivatives import gradient, gradient_health
+from microcosmos.audit.derivatives import gradient, report_gradient
 from microcosmos.audit.physics import audit
 from microcosmos.audit.variants import reciprocal, refine
 from microcosmos.build import build_encoding, build_stroke, build_task, frame
@@ -115,7 +115,7 @@ def file():
 
 @pytest.mark.long
 def test_the_report_agrees_with_finite_differences_and_tells_of_time_and_starts(file):
-    report = gradient_health(file, starts=3)
+    report = report_gradient(file, starts=3)
     assert report.errors["float64"] <= 1e-6
     assert report.errors["float32"] <= 1e-2
     assert list(report.norms) == [15, 30, 60]

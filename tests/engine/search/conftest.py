@@ -24,7 +24,7 @@ def outcome_of():
     def make(genotypes, fitness, **changes):
         fitness = jnp.asarray(fitness, jnp.float32)
         yes, nowhere = jnp.ones(len(fitness), bool), jnp.zeros(len(fitness), jnp.int32)
-        flags = {"sound": yes, "entered": yes, "fresh": ~yes, "cell": nowhere}
+        flags = {"feasible": yes, "entered": yes, "fresh": ~yes, "cell": nowhere}
         measures = jnp.zeros((len(fitness), 1))
         given = {"measures": measures, "improvement": fitness} | flags | changes
         return search.Outcome(genotypes=genotypes, fitness=fitness, **given)

@@ -188,12 +188,12 @@ def emitter():
 def state_after(outcome_of):
     """A function that gives an emitter's state after an outcome of six children."""
 
-    def tell(emitter, fitness, cell, sound=(True,) * 6, **changes):
+    def tell(emitter, fitness, cell, feasible=(True,) * 6, **changes):
         state = emitter.init(key=jax.random.key(0))
         z = jax.random.normal(jax.random.key(1), (6, 2))
-        sound = jnp.asarray(sound)
-        flags = {"sound": sound, "entered": sound, "fresh": sound}
-        place = jnp.where(sound, jnp.asarray(cell), 4)
+        feasible = jnp.asarray(feasible)
+        flags = {"feasible": feasible, "entered": feasible, "fresh": feasible}
+        place = jnp.where(feasible, jnp.asarray(cell), 4)
         outcome = outcome_of(Vector(jnp.zeros((6, 2))), fitness, cell=place, **flags)
         return emitter.tell(replace(state, **{"z": z} | changes), outcome)
 
@@ -217,8 +217,8 @@ def test_thresholds_follow_fitness_above_them_at_the_learning_rate(emitter, stat
 
 def test_diverged_children_rank_last_and_move_no_threshold(emitter, state_after):
     fitness = [np.nan, np.inf, 3.0, 2.0, 1.5, 1.2]
-    sound = [False, False, True, True, True, True]
-    found = state_after(emitter(), fitness, [0, 0, 1, 1, 2, 3], sound=sound)
+    feasible = [False, False, True, True, True, True]
+    found = state_after(emitter(), fitness, [0, 0, 1, 1, 2, 3], feasible=feasible)
     assert np.isfinite(found.thresholds).all()
     assert np.isfinite(found.distribution.mean).all()
     assert found.thresholds[0] == 1.0

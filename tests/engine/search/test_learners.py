@@ -9,7 +9,7 @@ import pytest
 
 from microcosmos import neat, search
 from microcosmos.genomes import Vector, minimal
-from microcosmos.search import adam, emitters
+from microcosmos.search import emitters, folding
 from microcosmos.search.gradients import CONSTANT, genes_of
 from microcosmos.spec.emitters import WITHOUT_GRADIENT
 
@@ -34,8 +34,8 @@ def emitted(emitter, state, elites):
     return emit(state, elites, COUNTERS)
 
 
-def slopes(rows, sound=True):
-    return search.Slopes(jnp.asarray(rows, jnp.float32)[None], jnp.asarray([sound]))
+def slopes(rows, finite=True):
+    return search.Slopes(jnp.asarray(rows, jnp.float32)[None], jnp.asarray([finite]))
 
 
 def test_children_of_cma_mega_are_theta_and_combinations_of_unit_slopes():
@@ -89,7 +89,7 @@ def test_cma_mega_restarts_if_nothing_enters_and_stays_if_slopes_are_invalid(out
     emitter = mega()
     elites = archive(Vector(jnp.full(GENES, 0.2)), True)
     children, state = emitted(emitter, emitter.init(key=KEYS[0]), elites)
-    children, state = emitter.learn(state, children, slopes(np.ones((3, GENES)), sound=False))
+    children, state = emitter.learn(state, children, slopes(np.ones((3, GENES)), finite=False))
     np.testing.assert_allclose(children.genotypes.values, 0.2, atol=1e-7)
     nothing = {"entered": jnp.zeros(SLOTS, bool)}
     outcome = outcome_of(children.genotypes, np.zeros(SLOTS), **nothing)
@@ -110,15 +110,15 @@ def test_a_lesson_is_one_step_of_the_given_length_up_the_requested_slope(lamarck
     children, state = emitted(lamarckian, lamarckian.init(key=KEYS[0]), archive(parent, True))
     before = np.asarray(jax.vmap(genes_of)(children.genotypes))
     rows = np.random.default_rng(1).normal(size=(SLOTS, 3, before.shape[1]))
-    sound = np.arange(SLOTS) != 2
-    slopes = search.Slopes(jnp.asarray(rows, jnp.float32), jnp.asarray(sound))
+    finite = np.arange(SLOTS) != 2
+    slopes = search.Slopes(jnp.asarray(rows, jnp.float32), jnp.asarray(finite))
     learnt, _ = jax.jit(lamarckian.learn)(state, children, slopes)
     moved = np.asarray(jax.vmap(genes_of)(learnt.genotypes)) - before
-    np.testing.assert_allclose(np.linalg.norm(moved, axis=1), 0.25 * sound, atol=1e-4)
+    np.testing.assert_allclose(np.linalg.norm(moved, axis=1), 0.25 * finite, atol=1e-4)
     unit = rows / np.linalg.norm(rows, axis=2, keepdims=True)
     direction = np.einsum("so,sog->sg", np.asarray(state.weights), unit)
     gain = np.sum(moved * direction, 1)
-    assert (gain[sound] > 0).all()
+    assert (gain[finite] > 0).all()
     numbers = (np.asarray(one.genotypes.innovation) for one in (learnt, children))
     assert np.array_equal(*numbers)
     assert {search.OPERATORS[i] for i in np.asarray(children.operator)} == {"lamarckian"}
@@ -136,23 +136,23 @@ def test_the_spec_knows_which_measures_have_no_slope():
 
 def test_the_first_step_is_as_long_as_the_rate_whatever_the_slope(float64):
     slope = jnp.asarray([1e-3, -5.0, 200.0])
-    change, _ = adam.descend(adam.begin(slope), slope, 0.04)
+    change, _ = folding.descend(folding.begin(slope), slope, 0.04)
     np.testing.assert_allclose(change, [-0.04, 0.04, -0.04], rtol=1e-4)
 
 
 def test_a_slope_that_stays_is_followed_at_the_rate(float64):
-    slope, state = jnp.asarray([0.3]), adam.begin(jnp.zeros(1))
+    slope, state = jnp.asarray([0.3]), folding.begin(jnp.zeros(1))
     for _ in range(50):
-        change, state = adam.descend(state, slope, 0.1)
+        change, state = folding.descend(state, slope, 0.1)
         np.testing.assert_allclose(change, [-0.1], rtol=1e-6)
     assert state.count == 50
 
 
 def test_means_are_those_of_the_paper(float64):
     slopes = np.random.default_rng(0).normal(size=(7, 4))
-    state = adam.begin(jnp.zeros(4))
+    state = folding.begin(jnp.zeros(4))
     for slope in slopes:
-        change, state = adam.descend(state, jnp.asarray(slope), 0.01)
+        change, state = folding.descend(state, jnp.asarray(slope), 0.01)
     weights = 0.9 ** np.arange(6, -1, -1), 0.999 ** np.arange(6, -1, -1)
     mean = weights[0] @ slopes / weights[0].sum()
     square = weights[1] @ slopes**2 / weights[1].sum()
@@ -161,8 +161,8 @@ def test_means_are_those_of_the_paper(float64):
 
 def test_adam_finds_the_minimum_of_an_ill_conditioned_square(float64):
     scale, at = jnp.asarray([1.0, 100.0]), jnp.asarray([3.0, -2.0])
-    state = adam.begin(at)
+    state = folding.begin(at)
     for _ in range(800):
-        change, state = adam.descend(state, 2 * scale * at, 0.05)
+        change, state = folding.descend(state, 2 * scale * at, 0.05)
         at = at + change
     assert np.abs(at).max() < 1e-2

@@ -8,7 +8,6 @@ from .emitter import (
     NO_PARENT,
     OPERATORS,
     Children,
-    Divided,
     Emitter,
     Learner,
     Outcome,

@@ -67,7 +67,7 @@ class CmaMae:
 
     def tell(self, state: Climb, outcome: Outcome) -> Climb:
         here = state.thresholds[jnp.minimum(outcome.cell, self.cells - 1)]
-        height = jnp.where(outcome.sound, outcome.fitness - here, -jnp.inf)
+        height = jnp.where(outcome.feasible, outcome.fitness - here, -jnp.inf)
         order = jnp.argsort(-height, stable=True)
         strategy = es.strategy(state.z.shape[1], self.slots)
         distribution = es.update(state.distribution, state.z, order, strategy)
@@ -82,7 +82,7 @@ class CmaMae:
     def _followed(
         self, thresholds: Float[Array, "cell"], outcome: Outcome, above: Bool[Array, "slot"]
     ) -> Float[Array, "cell"]:
-        """After k children of mean fitness f in a cell: t + (1 − (1 − α)ᵏ) (f − t)."""
+        """Return t + (1 − (1 − α)ᵏ) (f − t) after k children of mean fitness f in a cell."""
         cell = jnp.where(above, outcome.cell, self.cells)
         fitness = jnp.where(above, outcome.fitness, 0.0)
         none = jnp.zeros_like(thresholds)

@@ -68,7 +68,7 @@ class CmaMega:
     def emit(
         self, state: Ascent, archive: Elites, counters: Counters, *, keys: Keys
     ) -> tuple[Children, Ascent, Counters]:
-        """θ for every slot until slopes are known; newcomers while the archive is empty."""
+        """Return θ in each slot until slopes are known; newcomers into an empty archive."""
         chosen = draw(archive, key=jax.random.fold_in(keys[0], 1))
         genotypes = archive.genotypes
         assert isinstance(genotypes, Vector)
@@ -96,7 +96,7 @@ class CmaMega:
         self, state: Ascent, children: Children, slopes: Slopes
     ) -> tuple[Children, Ascent]:
         assert isinstance(children.genotypes, Vector)
-        rows = jnp.where(slopes.sound[0], unit(slopes.rows[0]), 0.0)
+        rows = jnp.where(slopes.finite[0], unit(slopes.rows[0]), 0.0)
         values = jnp.clip(state.theta[None] + state.weights @ rows, -1.0, 1.0)
         values = jnp.where(state.due, values, children.genotypes.values)
         return replace(children, genotypes=Vector(values)), replace(state, slopes=rows)
@@ -104,7 +104,7 @@ class CmaMega:
     def tell(self, state: Ascent, outcome: Outcome) -> Ascent:
         """Rank by what entered, those in empty cells first; move θ and adapt."""
         gain = jnp.where(outcome.fresh, outcome.fitness, outcome.improvement)
-        gain = jnp.where(outcome.sound, gain, -jnp.inf)
+        gain = jnp.where(outcome.feasible, gain, -jnp.inf)
         order = jnp.lexsort((-gain, ~(outcome.fresh & outcome.entered)))
         strategy = es.strategy(self.outputs, self.slots)
         best = state.weights[order[: len(strategy.weights)]]

@@ -11,38 +11,33 @@ from jaxtyping import Array, Int, PRNGKeyArray
 from ...genomes import Genotype
 from ...neat import Counters
 from ..insertion import Elites
-from .emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
+from .emitter import NO_PARENT, OPERATORS, Children, Keys, Stateless
 
 Newcomer = Callable[..., Any]
 """`newcomer(key=...)` makes a random genotype."""
 
 
 def draw(archive: Elites, *, key: PRNGKeyArray) -> Int[Array, ""]:
-    """An occupied cell, each equally likely; 0 where there is none."""
+    """Draw an occupied cell, each equally likely; 0 where there is none."""
     total = jnp.sum(archive.occupied)
     rank = jax.random.randint(key, (), 0, jnp.maximum(1, total))
     return jnp.argmax(jnp.cumsum(archive.occupied) > rank)
 
 
-def genotype(archive: Elites, cell: Int[Array, ""]) -> Genotype:
-    """Return the genotype of a cell's elite."""
-    return jax.tree.map(lambda x: x[cell], archive.genotypes)
-
-
 def newcomers(newcomer: Newcomer, keys: Keys) -> Children:
-    """Random genotypes, a key for each slot."""
+    """Draw random genotypes, one for each key."""
     genotypes = jax.vmap(lambda key: newcomer(key=key))(keys)
     return orphans(genotypes, keys.shape[0], "random")
 
 
 def orphans(genotypes: Genotype, slots: int, name: str) -> Children:
-    """Children of an operator without known parents."""
+    """Return children of an operator without known parents."""
     parents = jnp.full((slots, 2), NO_PARENT, jnp.int32)
     return Children(genotypes, parents, jnp.full(slots, OPERATORS.index(name), jnp.int32))
 
 
 def children(genotypes: Genotype, parents: list[Int[Array, "slot"]], name: str) -> Children:
-    """Children of an operator and one or two parents, given as cells."""
+    """Return children of an operator and one or two parents, given as cells."""
     first, second = (*parents, jnp.full_like(parents[0], NO_PARENT))[:2]
     pairs = jnp.stack([first, second], 1).astype(jnp.int32)
     return Children(genotypes, pairs, jnp.full(len(first), OPERATORS.index(name), jnp.int32))
@@ -55,19 +50,13 @@ def either(archive: Elites, varied: Children, fresh: Children) -> Children:
 
 
 @dataclass(frozen=True)
-class Random:
+class Random(Stateless):
     """New random genotypes in every generation."""
 
     slots: int
     newcomer: Newcomer
 
-    def init(self, *, key: PRNGKeyArray) -> None:
-        return None
-
     def emit(
         self, state: None, archive: Elites, counters: Counters, *, keys: Keys
     ) -> tuple[Children, None, Counters]:
         return newcomers(self.newcomer, keys), None, counters
-
-    def tell(self, state: None, outcome: Outcome) -> None:
-        return None

@@ -33,7 +33,7 @@ NO_PARENT = -1
 
 Keys = Key[Array, "slot"]
 
-Kept = PyTree[Array | np.ndarray]
+State = PyTree[Array | np.ndarray]
 """The state of an emitter."""
 
 
@@ -55,7 +55,7 @@ class Outcome(eqx.Module):
     genotypes: Genotype
     fitness: Float[Array, "slot"]
     measures: Float[Array, "slot measure"]
-    sound: Bool[Array, "slot"]
+    feasible: Bool[Array, "slot"]
     """True if the evaluation is feasible."""
     cell: Int[Array, "slot"]
     entered: Bool[Array, "slot"]
@@ -69,18 +69,9 @@ def outcome(candidates: Elites, inserted: Inserted) -> Outcome:
         genotypes=candidates.genotypes,
         fitness=candidates.fitness,
         measures=candidates.measures,
-        sound=candidates.occupied,
+        feasible=candidates.occupied,
         **vars(inserted),
     )
-
-
-@runtime_checkable
-class Divided(Protocol):
-    """The state of an emitter with a population that is divided into species."""
-
-    def sizes(self) -> dict[int, int]:
-        """Members of each species of the last children, by its number."""
-        ...
 
 
 @runtime_checkable
@@ -92,19 +83,29 @@ class Emitter(Protocol):
         """Children a generation."""
         ...
 
-    def init(self, *, key: PRNGKeyArray) -> Kept:
+    def init(self, *, key: PRNGKeyArray) -> State:
         """Return the state before the first generation."""
         ...
 
     def emit(
-        self, state: Kept, archive: Elites, counters: Counters, *, keys: Keys
-    ) -> tuple[Children, Kept, Counters]:
-        """Children, with a key for each slot; new genes are numbered by `counters`."""
+        self, state: State, archive: Elites, counters: Counters, *, keys: Keys
+    ) -> tuple[Children, State, Counters]:
+        """Return children, one for each key; `counters` number new genes."""
         ...
 
-    def tell(self, state: Kept, outcome: Outcome) -> Kept:
+    def tell(self, state: State, outcome: Outcome) -> State:
         """Return the state once its children are measured and inserted."""
         ...
+
+
+class Stateless:
+    """The part of an emitter that has no state and learns nothing."""
+
+    def init(self, *, key: PRNGKeyArray) -> None:
+        return None
+
+    def tell(self, state: None, outcome: Outcome) -> None:
+        return None
 
 
 @runtime_checkable
@@ -116,24 +117,24 @@ class Learner(Emitter, Protocol):
         """Lessons in a generation."""
         ...
 
-    def asks(self, state: Kept, children: Children) -> Genotype:
-        """Genotypes, their number first, whose derivatives are wanted."""
+    def asks(self, state: State, children: Children) -> Genotype:
+        """Return the genotypes whose derivatives are wanted, their number first."""
         ...
 
-    def learn(self, state: Kept, children: Children, slopes: Slopes) -> tuple[Children, Kept]:
+    def learn(self, state: State, children: Children, slopes: Slopes) -> tuple[Children, State]:
         """Return the children and the state after a lesson."""
         ...
 
 
 def emit(
     emitters: tuple[Emitter, ...],
-    states: tuple[Kept, ...],
+    states: tuple[State, ...],
     archive: Elites,
     counters: Counters,
     generation: Int[Array, ""],
     *,
     key: PRNGKeyArray,
-) -> tuple[Children, tuple[Kept, ...], Counters]:
+) -> tuple[Children, tuple[State, ...], Counters]:
     """Return the children of all emitters, one after another, and the emitters' new states.
 
     Every slot has its own key, derived from the seed, the generation and the slot.
@@ -153,8 +154,8 @@ def emit(
 
 
 def tell(
-    emitters: tuple[Emitter, ...], states: tuple[Kept, ...], outcome: Outcome
-) -> tuple[Kept, ...]:
+    emitters: tuple[Emitter, ...], states: tuple[State, ...], outcome: Outcome
+) -> tuple[State, ...]:
     """Return the state of each emitter after the outcome of its own children."""
     after, first = [], 0
     for emitter, state in zip(emitters, states, strict=True):

@@ -1,4 +1,4 @@
-"""NEAT whose children learn by gradients before evaluation and pass the result on.
+"""NEAT whose children take gradient steps before evaluation; offspring inherit the result.
 
 Topology by mutation, weights by gradient steps: each child climbs a random combination of
 fitness and descriptors, as the emitters of OMG-MEGA do (Fontaine and Nikolaidis, NeurIPS 2021,
@@ -64,11 +64,11 @@ class Lamarckian:
     def learn(
         self, state: Directions, children: Children, slopes: Slopes
     ) -> tuple[Children, Directions]:
-        """Move each child a step; those without sound slopes stay."""
+        """Move each child a step; those without finite slopes stay."""
         networks = children.genotypes
         assert isinstance(networks, CPPN)
         way = unit(jnp.sum(state.weights[:, :, None] * unit(slopes.rows), 1))
-        way = jnp.where(slopes.sound[:, None], way, 0.0)
+        way = jnp.where(slopes.finite[:, None], way, 0.0)
         genes = jax.vmap(genes_of)(networks) + self.step * way
         return replace(children, genotypes=jax.vmap(with_genes)(networks, genes)), state
 

@@ -82,7 +82,7 @@ def restarted(
 def draw(
     distribution: Distribution, *, keys: Key[Array, "child"]
 ) -> tuple[Float[Array, "child gene"], Float[Array, "child gene"]]:
-    """Children, and the z of each."""
+    """Draw children; also return the z of each."""
     mean, m = distribution.mean, distribution.m
     z = jax.vmap(lambda key: jax.random.normal(key, mean.shape, mean.dtype))(keys)
     return mean[None] + distribution.sigma * (z @ m.T), z

@@ -9,12 +9,12 @@ from jaxtyping import Array, Int, PRNGKeyArray
 from ... import neat
 from ...genomes import CPPN
 from ..insertion import Elites
-from .elites import Newcomer, children, draw, either, genotype, newcomers
-from .emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
+from .elites import Newcomer, children, draw, either, newcomers
+from .emitter import NO_PARENT, OPERATORS, Children, Keys, Stateless
 
 
 @dataclass(frozen=True)
-class Neat:
+class Neat(Stateless):
     """Mutated elites, each equally likely, some of them crossed with another one first."""
 
     slots: int
@@ -23,9 +23,6 @@ class Neat:
     inputs: int
     crossover: float = 0.0
     """Probability that a child has two parents."""
-
-    def init(self, *, key: PRNGKeyArray) -> None:
-        return None  # Numbers of genes are counted for all emitters together.
 
     def emit(
         self, state: None, archive: Elites, counters: neat.Counters, *, keys: Keys
@@ -49,9 +46,6 @@ class Neat:
         counters = jax.tree.map(lambda a, b: jnp.where(any_elite, a, b), numbered, counters)
         return either(archive, varied, newcomers(self.newcomer, keys)), None, counters
 
-    def tell(self, state: None, outcome: Outcome) -> None:
-        return None
-
     def _crossed(self, archive: Elites, cell: Int[Array, ""], *, key: PRNGKeyArray):
         whether, which, cross_key = jax.random.split(jax.random.fold_in(key, 1), 3)
         other = draw(archive, key=which)
@@ -66,6 +60,6 @@ class Neat:
 
 
 def _network(archive: Elites, cell: Int[Array, ""]) -> CPPN:
-    network = genotype(archive, cell)
+    network = jax.tree.map(lambda x: x[cell], archive.genotypes)
     assert isinstance(network, CPPN)
     return network

@@ -14,7 +14,7 @@ from ..insertion import Elites
 from .elites import Newcomer, orphans
 from .emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
 
-AROSE = np.array(
+CODES = np.array(
     [OPERATORS.index(name) for name in ("copy", "neat", "crossover", "crossover")], np.int32
 )
 """Our operator code for each of NEAT's."""
@@ -30,6 +30,7 @@ class Population(eqx.Module):
     """Generations emitted so far."""
 
     def sizes(self) -> dict[int, int]:
+        """Return the number of members of each living species, by its number."""
         alive = np.asarray(self.species.alive)
         rows = (np.asarray(self.species.number), np.asarray(self.species.members))
         return dict(zip(*(row[alive].tolist() for row in rows), strict=True))
@@ -69,7 +70,7 @@ class Neat:
         cells = archive.occupied.shape[0]
         first = orphans(state.networks, self.slots, "random"), state.species, counters
 
-        def bear():
+        def breed():
             networks, species, numbered, parents, code = neat.next_generation(
                 state.networks,
                 state.fitness,
@@ -82,12 +83,12 @@ class Neat:
                 generation=state.age - 1,
             )
             parents = jnp.where(parents < 0, NO_PARENT, parents + cells).astype(jnp.int32)
-            return Children(networks, parents, jnp.asarray(AROSE)[code]), species, numbered
+            return Children(networks, parents, jnp.asarray(CODES)[code]), species, numbered
 
-        children, species, counters = jax.lax.cond(state.age > 0, bear, lambda: first)
+        children, species, counters = jax.lax.cond(state.age > 0, breed, lambda: first)
         fitness = jnp.full_like(state.fitness, -jnp.inf)
         grown = Population(children.genotypes, fitness, species, state.age + 1)
         return children, grown, counters
 
     def tell(self, state: Population, outcome: Outcome) -> Population:
-        return replace(state, fitness=jnp.where(outcome.sound, outcome.fitness, -jnp.inf))
+        return replace(state, fitness=jnp.where(outcome.feasible, outcome.fitness, -jnp.inf))

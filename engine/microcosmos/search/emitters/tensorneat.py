@@ -13,7 +13,7 @@ from .elites import orphans
 from .emitter import Children, Keys, Outcome
 
 
-class Foreign(eqx.Module):
+class TensorNeatState(eqx.Module):
     """TensorNEAT's state; its population is the one emitted last."""
 
     arrays: dict[str, np.ndarray] | dict[str, Array]
@@ -39,26 +39,26 @@ class TensorNeat:
     backend: Backend
     seed: int
 
-    def init(self, *, key: PRNGKeyArray) -> Foreign:
-        return self._untold(self.backend.setup(self.seed), 0)
+    def init(self, *, key: PRNGKeyArray) -> TensorNeatState:
+        return self._unmeasured(self.backend.setup(self.seed), 0)
 
     def emit(
-        self, state: Foreign, archive: Elites, counters: Counters, *, keys: Keys
-    ) -> tuple[Children, Foreign, Counters]:
+        self, state: TensorNeatState, archive: Elites, counters: Counters, *, keys: Keys
+    ) -> tuple[Children, TensorNeatState, Counters]:
         """Return the first population, then the one that it makes of the one before."""
         theirs = self.backend.from_arrays(state.arrays)
         if state.age > 0:
             theirs = self.backend.tell(theirs, np.asarray(state.fitness))
         networks, _ = self.backend.population(theirs)
         children = orphans(networks, self.slots, "tensorneat")
-        return children, self._untold(theirs, int(state.age) + 1), counters
+        return children, self._unmeasured(theirs, int(state.age) + 1), counters
 
-    def tell(self, state: Foreign, outcome: Outcome) -> Foreign:
+    def tell(self, state: TensorNeatState, outcome: Outcome) -> TensorNeatState:
         _, whole = self.backend.population(self.backend.from_arrays(state.arrays))
-        sound = np.asarray(outcome.sound) & whole
-        fitness = np.where(sound, outcome.fitness, -np.inf).astype(np.float32)
+        feasible = np.asarray(outcome.feasible) & whole
+        fitness = np.where(feasible, outcome.fitness, -np.inf).astype(np.float32)
         return replace(state, fitness=fitness)
 
-    def _untold(self, theirs: State, age: int) -> Foreign:
-        unmeasured = np.full(self.slots, -np.inf, np.float32)
-        return Foreign(self.backend.to_arrays(theirs), unmeasured, np.array(age, np.int32))
+    def _unmeasured(self, theirs: State, age: int) -> TensorNeatState:
+        arrays, unmeasured = self.backend.to_arrays(theirs), np.full(self.slots, -np.inf, "f4")
+        return TensorNeatState(arrays, unmeasured, np.array(age, np.int32))

@@ -10,11 +10,11 @@ from ...genomes import Vector
 from ...neat import Counters
 from ..insertion import Elites
 from .elites import Newcomer, children, draw, either, newcomers
-from .emitter import Children, Keys, Outcome
+from .emitter import Children, Keys, Stateless
 
 
 @dataclass(frozen=True)
-class IsoLine:
+class IsoLine(Stateless):
     """x + σ₁ N(0, I) + σ₂ (y − x) N(0, 1): Vassiliades and Mouret, GECCO 2018, eq. 3.
 
     Parents are elites, each equally likely. Genes stay within −1 and 1. Without a line it is
@@ -26,20 +26,13 @@ class IsoLine:
     iso: float
     line: float = 0.0
 
-    def init(self, *, key: PRNGKeyArray) -> None:
-        return None
-
     def emit(
         self, state: None, archive: Elites, counters: Counters, *, keys: Keys
     ) -> tuple[Children, None, Counters]:
         values, *cells = jax.vmap(lambda key: self._child(archive, key=key))(keys)
-        parents = cells if self.line else cells[:1]
-        name = "iso+line" if self.line else "gaussian"
+        parents, name = (cells, "iso+line") if self.line else (cells[:1], "gaussian")
         varied = children(Vector(values), parents, name)
         return either(archive, varied, newcomers(self.newcomer, keys)), None, counters
-
-    def tell(self, state: None, outcome: Outcome) -> None:
-        return None
 
     def _child(
         self, archive: Elites, *, key: PRNGKeyArray

@@ -53,7 +53,9 @@ class QdaxEmitter:
         with jax.numpy_rank_promotion("allow"):
             empty = needed("core.containers.mapelites_repertoire").MapElitesRepertoire
             empty = empty.init_default(genes[0], jnp.asarray(self.cells.centres))
-            state = self.emitter.init(_raw(key), empty, genes, fitness, place, {})
+            state = self.emitter.init(
+                jax.random.key_data(key), empty, genes, fitness, place, {}
+            )
         none = jnp.zeros(self.slots, bool)
         state = jax.tree.map(jnp.asarray, state)
         return Pending(state, genes, fitness, place, none, jnp.zeros((), bool))
@@ -66,7 +68,7 @@ class QdaxEmitter:
             learnt = jax.lax.cond(
                 state.due, lambda: self._learnt(state, repertoire), lambda: state.emitter
             )
-            genes, _ = self.emitter.emit(repertoire, learnt, _raw(keys[0]))
+            genes, _ = self.emitter.emit(repertoire, learnt, jax.random.key_data(keys[0]))
         bred = orphans(Vector(jnp.clip(genes, -1.0, 1.0)), self.slots, self.operator)
         children = either(archive, bred, newcomers(self.newcomer, keys))
         due = jnp.any(archive.occupied)
@@ -79,7 +81,7 @@ class QdaxEmitter:
             genes=outcome.genotypes.values,
             fitness=outcome.fitness,
             place=places(outcome.measures, self.cells.axes),
-            sound=outcome.sound & jnp.isfinite(outcome.fitness),
+            sound=outcome.feasible & jnp.isfinite(outcome.fitness),
         )
 
     def _learnt(self, state: Pending, repertoire: Any) -> PyTree[Array]:
@@ -99,7 +101,7 @@ class QdaxEmitter:
 def cma_me(
     slots: int, newcomer: Newcomer, cells: Cells, *, step: float, emitters: int
 ) -> QdaxEmitter:
-    """CMA-ME's improvement emitters (Fontaine et al., GECCO 2020), which take turns."""
+    """Build CMA-ME's improvement emitters (Fontaine et al., GECCO 2020), which take turns."""
     genes = jax.eval_shape(lambda: newcomer(key=jax.random.key(0))).values.shape[-1]
     one = needed("core.emitters.cma_improvement_emitter").CMAImprovementEmitter(
         batch_size=slots,
@@ -180,7 +182,3 @@ def _beyond(networks: CPPN, counters: Counters) -> Counters:
         jnp.maximum(counters.innovation, jnp.max(used) + 1),
         jnp.maximum(counters.node, jnp.max(nodes) + 1),
     )
-
-
-def _raw(key: PRNGKeyArray) -> Array:
-    return jax.random.key_data(key)

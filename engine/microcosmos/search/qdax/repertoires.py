@@ -39,7 +39,7 @@ def scoring_function(
     cells: Cells,
     slopes: Callable[[Genotype], Slopes] | None = None,
 ) -> Callable:
-    """QDax's protocol around an evaluation of a batch: fitness, descriptors, extra scores.
+    """Wrap an evaluation of a batch in QDax's protocol: fitness, descriptors, extra scores.
 
     Genotypes are networks, or plain arrays of genes from −1 to 1. Diverged creatures have
     fitness −inf, so that no repertoire takes them. With `slopes` the extra scores hold unit
@@ -51,13 +51,13 @@ def scoring_function(
         plain = isinstance(genotypes, jax.Array | np.ndarray)
         genotypes = Vector(jnp.asarray(genotypes)) if plain else genotypes
         found = evaluate(genotypes)
-        sound = (found.status == 0) & jnp.isfinite(found.fitness)
-        fitness = jnp.where(sound, found.fitness, -jnp.inf)
-        place = jnp.where(sound[:, None], places(found.measures, cells.axes), 0.0)
+        feasible = (found.status == 0) & jnp.isfinite(found.fitness)
+        fitness = jnp.where(feasible, found.fitness, -jnp.inf)
+        place = jnp.where(feasible[:, None], places(found.measures, cells.axes), 0.0)
         extra = {"measures": found.measures, "status": found.status}
         if slopes is not None:
             known = slopes(genotypes)
-            rows = jnp.where(known.sound[:, None, None], unit(known.rows), 0.0)
+            rows = jnp.where(known.finite[:, None, None], unit(known.rows), 0.0)
             extra["normalized_grads"] = jnp.swapaxes(rows, 1, 2)
         return fitness, place, extra
 
@@ -65,7 +65,7 @@ def scoring_function(
 
 
 def order(cells: Cells) -> Int[np.ndarray, "cell"]:
-    """Our number of each of QDax's cells: its grids swap the first two descriptors."""
+    """Return our number of each of QDax's cells: its grids swap the first two descriptors."""
     shape = tuple(axis.bins for axis in cells.axes)
     if not isinstance(cells, Grid) or len(shape) < 2:
         return np.arange(cells.count)
@@ -73,7 +73,7 @@ def order(cells: Cells) -> Int[np.ndarray, "cell"]:
 
 
 def to_repertoire(elites: Elites, cells: Cells) -> Any:
-    """A `MapElitesRepertoire` of the same elites; see `from_repertoire` for the way back."""
+    """Return a `MapElitesRepertoire` of the same elites; `from_repertoire` is the way back."""
     rows = order(cells)
     there, genotypes = elites.occupied[rows], elites.genotypes
     genes = genotypes.values if isinstance(genotypes, Vector) else genotypes
@@ -89,7 +89,7 @@ def to_repertoire(elites: Elites, cells: Cells) -> Any:
 
 
 def from_repertoire(repertoire: Any, cells: Cells, measures: int) -> Elites:
-    """Our elites of a repertoire over the same cells.
+    """Return our elites of a repertoire over the same cells.
 
     Without measures of ours among its extra scores, its descriptors give those measures and
     the others are NaN.

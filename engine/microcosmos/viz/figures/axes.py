@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from ...archive.export import unit as place_on
+from ...spec import Descriptor
 from ...spec.measures import MEASURES
 from .reading import Archive
 
@@ -25,13 +26,13 @@ class Axis:
     bins: int
 
     def places(self, values: np.ndarray) -> np.ndarray:
-        """Places of values, cut at the ends."""
+        """Return places of values, cut at the ends."""
         scale = "log10" if self.logarithmic else "linear"
         own = {"low": self.low, "high": self.high, "scale": scale}
         return np.clip(place_on(np.asarray(values, np.float64), own), 0, 1)
 
     def values(self, places: np.ndarray) -> np.ndarray:
-        """Values of places; the inverse of `places`."""
+        """Return values of places; the inverse of `places`."""
         low, high = self.low, self.high
         if self.logarithmic:
             return 10 ** (np.log10(low) + places * (np.log10(high) - np.log10(low)))
@@ -70,36 +71,26 @@ def chosen(archive: Archive, names: list[str] | None) -> list[Axis]:
                 f"measured ({', '.join(n for n in archive.measures if n not in own)}); "
                 f"got {name!r}."
             )
-    return [
-        _own(archive, own[name]) if name in own else _other(archive, name) for name in names
-    ]
+    return [_axis(archive, name, own.get(name)) for name in names]
 
 
-def _own(archive: Archive, axis: Any) -> Axis:
-    bins = axis.bins if archive.centroids is None else BINS
-    return Axis(
-        axis.name, label(archive, axis.name), axis.low, axis.high, axis.scale == "log10", bins
-    )
-
-
-def _other(archive: Archive, name: str) -> Axis:
-    """Return the axis of another measure, its ends rounded outwards."""
-    known, values = MEASURES.get(name), archive.measures[name].astype(float)
+def _axis(archive: Archive, name: str, own: Descriptor | None) -> Axis:
+    """Return the axis of a measure; without one of the archive's `own`, round its ends."""
     title = label(archive, name)
+    if own is not None:
+        bins = own.bins if archive.centroids is None else BINS
+        return Axis(name, title, own.low, own.high, own.scale == "log10", bins)
+    known, values = MEASURES.get(name), archive.measures[name].astype(float)
     if known is not None and known.scale == "log10":
         found = np.log10(np.clip(values, known.low, None))
         low, high = np.floor(found.min() + 1e-9), np.ceil(found.max() - 1e-9)
         return Axis(name, title, 10.0**low, 10.0 ** max(high, low + 1), True, BINS)
-    step = _round(max(np.ptp(values), 1e-9 * abs(values.max()), 1e-12) / 8)
+    least = max(np.ptp(values), 1e-9 * abs(values.max()), 1e-12) / 8
+    power = 10.0 ** np.floor(np.log10(least))
+    step = next(m * power for m in (1, 2, 5, 10) if m * power >= least * (1 - 1e-9))
     low = step * np.floor(values.min() / step + 1e-9)
     high = max(step * np.ceil(values.max() / step - 1e-9), low + step)
     return Axis(name, title, float(low), float(high), False, BINS)
-
-
-def _round(least: float) -> float:
-    """Return the next 1, 2 or 5 times a power of ten."""
-    power = 10.0 ** np.floor(np.log10(least))
-    return next(m * power for m in (1, 2, 5, 10) if m * power >= least * (1 - 1e-9))
 
 
 def dress(panel: Any, axes: list[Axis]) -> None:
@@ -107,9 +98,8 @@ def dress(panel: Any, axes: list[Axis]) -> None:
     from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
     for axis, which in zip(axes, "xy", strict=False):
-        getattr(panel, f"set_{which}scale")("log" if axis.logarithmic else "linear")
-        getattr(panel, f"set_{which}lim")(axis.low, axis.high)
-        getattr(panel, f"set_{which}label")(axis.label)
+        panel.set(**{f"{which}scale": "log" if axis.logarithmic else "linear"})
+        panel.set(**{f"{which}lim": (axis.low, axis.high), f"{which}label": axis.label})
         ruler = getattr(panel, f"{which}axis")
         if axis.logarithmic:
             ruler.set_major_locator(LogLocator(10, numticks=9))

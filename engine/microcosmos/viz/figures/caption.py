@@ -12,12 +12,6 @@ from .groups import Group
 from .reading import Archive, Search
 from .sheet import Layout
 
-FITNESS = {
-    "displacement": "Fitness is the displacement of the mean node",
-    "energy": "Fitness is the energy collected",
-}
-
-
 NAMES = {"best": "best fitness", "mean": "mean fitness", "qd_score": "QD score"}
 """Names of curves that differ from those of their columns."""
 
@@ -38,7 +32,7 @@ def of_archive(found: Archive, names: list[str] | None) -> str:
 
 
 def of_curves(groups: Sequence[Group], shown: Sequence[str]) -> str:
-    """The caption of curves; of several specs it states the first and the differences."""
+    """Return the caption of curves: the first spec, and what differs in others."""
     several = any(len(group.runs) > 1 for group in groups)
     first = _listed([NAMES.get(name, name.replace("_", " ")) for name in shown])
     first = first[0].upper() + first[1:]
@@ -100,10 +94,10 @@ def _fitness(spec: Search) -> str:
     task = spec.task
     if task.plugin:
         return f"Fitness is “{task.plugin.title}” ({task.fitness})"
-    both = f"Fitness is displacement + {task.energy_weight:g} × energy collected"
-    return FITNESS.get(
-        task.fitness, both if "+" in task.fitness else f"Fitness is {task.fitness}"
-    )
+    return "Fitness is " + {
+        "displacement": "the displacement of the mean node",
+        "energy": "the energy collected",
+    }.get(task.fitness, f"displacement + {task.energy_weight:g} × energy collected")
 
 
 def _emitters(spec: Search) -> str:
@@ -127,27 +121,23 @@ def _body(spec: Search) -> str:
 
 
 def _control(spec: Search) -> str:
-    control = spec.control
-    name = control.encoding
-    said = {"cppn": "CPPN", "cppn-body": "CPPN for body and control"}.get(
-        name, f"{name} encoding"
-    )
+    control, names = spec.control, {"cppn": "CPPN", "cppn-body": "CPPN for body and control"}
+    name = names.get(control.encoding, f"{control.encoding} encoding")
     timer = getattr(control, "timer", "sine-cosine")
     period = f"period {control.period:g} steps" if timer == "sine-cosine" else "linear timer"
-    return f"controlled by a {said} ({period})"
+    return f"controlled by a {name} ({period})"
 
 
 def _fluid(spec: Search) -> str:
     if not spec.world.fluid:
         return " without a fluid"
-    said = f", ν = {spec.world.viscosity:g} cells²/step"
-    return said if spec.coupling.force_free else said + " (coupling not force-free)"
+    viscosity = f", ν = {spec.world.viscosity:g} cells²/step"
+    return viscosity + " (coupling not force-free)" * (not spec.coupling.force_free)
 
 
 def _device(devices: Sequence[str]) -> str:
-    """Platform and model, without the software."""
-    said = [", ".join(device.split(", ")[:2]) for device in devices]
-    return " and ".join(dict.fromkeys(said))
+    models = [", ".join(device.split(", ")[:2]) for device in devices]  # Without the software.
+    return " and ".join(dict.fromkeys(models))
 
 
 def _seeds(seeds: Sequence[int]) -> str:

@@ -22,15 +22,15 @@ def curves(
     against: str = "evaluations",
     width: float = 178.0,
 ) -> Any:
-    """A panel for each of `shown`, against `evaluations` or `generations`.
+    """Draw a panel for each of `shown`, against `evaluations` or `generations`.
 
     Each group has the median over its seeds, a band between the quartiles, and thin lines for
     single runs.
     """
-    names = _known(shown, groups)
+    _refuse_unknown(shown, groups)
     figure = blank(width, max(45.0, 0.72 * width / len(shown)) + 7 * (len(groups) > 1))
     panels = figure.subplots(1, len(shown), squeeze=False)[0]
-    for panel, name in zip(panels, names, strict=True):
+    for panel, name in zip(panels, shown, strict=True):
         for number, group in enumerate(groups):
             _group(panel, group, name, against, number)
         _dress(panel, name, against, groups)
@@ -42,7 +42,7 @@ def curves(
     return figure
 
 
-def _known(shown: Sequence[str], groups: Sequence[Group]) -> Sequence[str]:
+def _refuse_unknown(shown: Sequence[str], groups: Sequence[Group]) -> None:
     runs = [run for group in groups for run in group.runs]
     there = [name for name in runs[0].curves if all(name in run.curves for run in runs)]
     if not shown:
@@ -50,12 +50,12 @@ def _known(shown: Sequence[str], groups: Sequence[Group]) -> Sequence[str]:
     for name in shown:
         if name not in there:
             raise ValueError(f"`shown` must be of {', '.join(there)}, got {name!r}.")
-    return shown
 
 
 def _group(panel: Any, group: Group, name: str, against: str, number: int) -> None:
     colour, dash = COLOURS[number % len(COLOURS)], DASHES[number % len(DASHES)]
-    values = [_scaled(run.curves[name], name) for run in group.runs]
+    factor = 100 if name in ("coverage", "corrected_coverage", "hit_rate") else 1  # Per cent.
+    values = [factor * run.curves[name] for run in group.runs]
     places = [_places(run.curves, against) for run in group.runs]
     if len(values) > 1:
         for x, y in zip(places, values, strict=True):
@@ -64,17 +64,9 @@ def _group(panel: Any, group: Group, name: str, against: str, number: int) -> No
     along = np.median(np.stack([x[: len(middle)] for x in places]), axis=0)
     if len(values) > 1:
         panel.fill_between(along, low, high, color=colour, alpha=0.22, lw=0, label="_quartiles")
-    panel.plot(along, middle, color=colour, lw=1.2, ls=dash, label=_name(group))
-
-
-def _name(group: Group) -> str:
     seeds = f"n = {len(group.runs)}"
-    return f"{group.label} ({seeds})" if group.label else seeds
-
-
-def _scaled(values: np.ndarray, name: str) -> np.ndarray:
-    """Values, those of shares in per cent."""
-    return 100 * values if name in ("coverage", "corrected_coverage", "hit_rate") else values
+    label = f"{group.label} ({seeds})" if group.label else seeds
+    panel.plot(along, middle, color=colour, lw=1.2, ls=dash, label=label)
 
 
 def _places(columns: dict[str, np.ndarray], against: str) -> np.ndarray:
@@ -87,15 +79,13 @@ def _places(columns: dict[str, np.ndarray], against: str) -> np.ndarray:
 def _dress(panel: Any, name: str, against: str, groups: Sequence[Group]) -> None:
     from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-    panel.set_xlabel({"generations": "Generation"}.get(against, "Evaluations"))
-    panel.set_ylabel(_label(name, groups))
-    panel.set_xlim(left=0)
+    along = "Generation" if against == "generations" else "Evaluations"
+    panel.set(xlabel=along, ylabel=_label(name, groups), xlim=(0, None))
     panel.xaxis.set_major_locator(MaxNLocator(4, integer=True))
     panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:,.0f}"))
     panel.set_axisbelow(True)
     panel.grid(color=GREY, alpha=0.18, lw=0.4)
-    for side in ("top", "right"):
-        panel.spines[side].set_visible(False)
+    panel.spines[["top", "right"]].set_visible(False)
 
 
 def _label(name: str, groups: Sequence[Group]) -> str:

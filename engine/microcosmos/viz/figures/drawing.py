@@ -80,7 +80,7 @@ def tree(file: Path, out: Path, how: Print, cell: int | None) -> list[Path]:
     saving.kind(out)
     found = open_archive(file)
     related = family(found)
-    ancestors = len(related.ancestors(int(related.tips[found.row(cell)]))) - 1
+    ancestors = len(related.ancestors([related.tips[found.row(cell)]])) - 1
     with styled():
         width = millimetres(how.width)
         figure = lineage.lineage(found, cell=cell, colours=how.palette, width=width)

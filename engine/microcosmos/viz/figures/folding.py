@@ -22,7 +22,7 @@ COLUMNS = 10
 
 
 def folds(data: bytes) -> Any:
-    """Rows early, middle and late of every filament, a row of pictures, and the losses.
+    """Draw every filament early, middle and late, its picture, and the losses.
 
     `data` is the run's file, finished or not; filaments with the least loss so far are
     simulated anew.
@@ -52,7 +52,7 @@ def folds(data: bytes) -> Any:
 
 
 def _courses(chosen: spec.Folding, genes: np.ndarray) -> np.ndarray:
-    """Positions (fold, moment, node, 2) of the nodes."""
+    """Return positions (fold, moment, node, 2) of the nodes."""
     descent = build_descent(chosen)
     steps = [max(1, round(share * chosen.steps)) - 1 for share in MOMENTS.values()]
 
@@ -68,27 +68,20 @@ def _courses(chosen: spec.Folding, genes: np.ndarray) -> np.ndarray:
 def _column(
     panels: list[Any], course: np.ndarray, picture: np.ndarray, chosen: spec.Folding
 ) -> None:
+    from matplotlib.collections import LineCollection
+
     size = np.array([chosen.world.width, chosen.world.height])
     edges = spec.shape(chosen.body).edges
     for panel, places in zip(panels, course, strict=False):
         panel.imshow(picture.T, origin="lower", cmap="Greys", vmin=0, vmax=3)
-        ends = places[edges]
+        ends = places[edges]  # In the periodic image that holds the middle.
         ends = ends - size * np.floor(ends.mean(1, keepdims=True) / size)
-        _strokes(panel, ends)
+        panel.add_collection(LineCollection(list(ends), colors=COLOURS[0], lw=0.5))
+        panel.plot(*ends[:, 0].T, ".", color=COLOURS[0], ms=0.9, mew=0)
     panels[-1].imshow(picture.T, origin="lower", cmap="Greys", vmin=0, vmax=1)
     for panel in panels:
         panel.set(xticks=[], yticks=[], xlim=(-0.5, size[0] - 0.5), ylim=(-0.5, size[1] - 0.5))
-        for side in panel.spines.values():
-            side.set(color=GREY, lw=0.4)
-
-
-def _strokes(panel: Any, ends: np.ndarray) -> None:
-    """Draw each edge in the periodic image that holds its middle."""
-    from matplotlib.collections import LineCollection
-
-    panel.add_collection(LineCollection(list(ends), colors=COLOURS[0], lw=0.5))
-    nodes = ends[:, 0]
-    panel.plot(nodes[:, 0], nodes[:, 1], ".", color=COLOURS[0], ms=0.9, mew=0)
+        panel.spines[:].set(color=GREY, lw=0.4)
 
 
 def _losses(panel: Any, losses: np.ndarray, names: list[str]) -> None:

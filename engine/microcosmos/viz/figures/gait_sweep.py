@@ -1,10 +1,10 @@
 """The figure of a sweep: displacement of swimmers at each viscosity, in each form."""
 
 from collections.abc import Sequence
-from math import isfinite, log10
+from math import isfinite
 from typing import Any
 
-from .style import GREY, INCH, Row, blank, look, refuse_lacking, tidy
+from .style import GREY, INCH, Row, blank, legend_below, look, refuse_lacking, tidy
 
 NEEDED = ("form", "swimmer", "viscosity", "displacement", "status")
 
@@ -21,7 +21,7 @@ MOST_TICKS = 5
 
 
 def sweep(rows: Sequence[Row]) -> Any:
-    """Displacement in a cycle against viscosity: a panel for each form, a line a swimmer.
+    """Draw displacement in a cycle against viscosity: a panel a form, a line a swimmer.
 
     Hollow marks had a limit active; crosses at the top did not finish. A form that is not
     force-free has a shaded panel. The upper axis has the worm's Reynolds number.
@@ -40,8 +40,8 @@ def sweep(rows: Sequence[Row]) -> Any:
         _dress(panel, form, here)
     panels[0].set_ylabel("displacement [cells a cycle]")
     for panel, form in zip(panels, forms, strict=True):
-        sound = _all_force_free(rows, form)
-        panel.set_ylim(0, _top([row for row in rows if _force_free(row) == sound]))
+        force_free = _all_force_free(rows, form)
+        panel.set_ylim(0, _top([row for row in rows if _force_free(row) == force_free]))
     _legend(figure, panels[0], rows)
     return figure
 
@@ -76,7 +76,6 @@ def _all_force_free(rows: Sequence[Row], form: str) -> bool:
 
 
 def _top(rows: Sequence[Row]) -> float:
-    """Return the upper end of the scale: one for force-free panels, one for the others."""
     most = max((row["displacement"] for row in rows if _finished(row)), default=0) or 1
     return most * (1.06 if all(map(_finished, rows)) else 1.25)
 
@@ -101,23 +100,16 @@ def _reynolds_axis(panel: Any, rows: Sequence[Row]) -> None:
     known = [row for row in rows if _finished(row) and (row.get("reynolds") or 0) > 0]
     if not known:
         return
-    swimmers = {row["swimmer"] for row in known}
-    swimmer = "worm" if "worm" in swimmers else known[0]["swimmer"]
-    own = sorted(
-        (row for row in known if row["swimmer"] == swimmer), key=lambda row: row["viscosity"]
-    )
+    swimmer = min((row["swimmer"] for row in known), key=lambda name: name != "worm")
+    own = [row for row in known if row["swimmer"] == swimmer]
+    own.sort(key=lambda row: row["viscosity"])
     own = own[:: -(-len(own) // MOST_TICKS)]
     upper = panel.secondary_xaxis("top")
-    upper.set_xticks(
-        [row["viscosity"] for row in own], [_two_digits(row["reynolds"]) for row in own]
-    )
+    numbers = [float(f"{row['reynolds']:.2g}") for row in own]
+    upper.set_xticks([row["viscosity"] for row in own], [f"{n:,.6g}" for n in numbers])
     upper.minorticks_off()
     upper.tick_params(colors=GREY, labelsize=8)
     upper.set_xlabel(f"Reynolds number of the {swimmer}", color=GREY, fontsize=8.5)
-
-
-def _two_digits(value: float) -> str:
-    return f"{round(value, 1 - int(log10(value) // 1)):,.6g}"
 
 
 def _legend(figure: Any, panel: Any, rows: Sequence[Row]) -> None:
@@ -131,11 +123,4 @@ def _legend(figure: Any, panel: Any, rows: Sequence[Row]) -> None:
     if not all(map(_finished, rows)):
         handles.append(Line2D([], [], marker="x", **mark))
         labels.append("did not finish")
-    figure.legend(
-        handles,
-        labels,
-        loc="outside lower center",
-        ncols=len(labels),
-        frameon=False,
-        fontsize=9,
-    )
+    legend_below(figure, (handles, labels), len(labels))

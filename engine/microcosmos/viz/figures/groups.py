@@ -29,7 +29,7 @@ class Group:
 
 
 def grouped(runs: Sequence[Archive]) -> list[Group]:
-    """Groups in the order of their first runs. Raises `ValueError` for a run given twice."""
+    """Group runs in the order of the first ones. Raises `ValueError` for a run given twice."""
     found: dict[tuple, list[Archive]] = {}
     for run in runs:
         flat = dict(flattened(run.document))
@@ -41,29 +41,24 @@ def grouped(runs: Sequence[Archive]) -> list[Group]:
             twice = next(seed for seed in seeds if seeds.count(seed) > 1)
             raise ValueError(f"`FILE` must differ in spec or seed, got seed {twice} twice.")
     flats = [dict(flattened(same[0].document)) for same in found.values()]
-    return [
-        Group(
-            _label(flat, differing(flats)), tuple(sorted(same, key=lambda run: run.spec.seed))
-        )
-        for flat, same in zip(flats, found.values(), strict=True)
-    ]
+    labels = [_label(flat, differing(flats)) for flat in flats]
+    rows = [tuple(sorted(same, key=lambda run: run.spec.seed)) for same in found.values()]
+    return list(map(Group, labels, rows))
 
 
 def flattened(document: Any, path: str = "") -> Iterator[tuple[str, Any]]:
     """Yield every value of a spec with its dotted path."""
-    if isinstance(document, Mapping):
-        parts = document.items()
-    elif isinstance(document, Sequence) and any(isinstance(x, Mapping) for x in document):
-        parts = enumerate(document)
-    else:
+    if isinstance(document, Sequence) and any(isinstance(x, Mapping) for x in document):
+        document = dict(enumerate(document))
+    if not isinstance(document, Mapping):
         yield path, document
         return
-    for name, part in parts:
+    for name, part in document.items():
         yield from flattened(part, f"{path}.{name}" if path else str(name))
 
 
 def differing(flats: Sequence[Mapping[str, Any]]) -> list[str]:
-    """The paths whose values differ; only those that all specs have, if there are any."""
+    """Return the paths whose values differ; only those that all specs have, if any."""
     paths = list(dict.fromkeys(path for flat in flats for path in flat if path not in IGNORED))
     other = [p for p in paths if len({repr(flat.get(p, "none")) for flat in flats}) > 1]
     shared = [path for path in other if all(path in flat for flat in flats)]
@@ -91,8 +86,7 @@ def _value(value: Any) -> str:
 
 
 def spread(runs: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Lower quartile, median and upper quartile, as far as all runs go."""
+    """Return lower quartile, median and upper quartile, as far as all runs go."""
     length = min(map(len, runs))
     values = np.stack([run[:length] for run in runs])
-    low, middle, high = np.quantile(values, (0.25, 0.5, 0.75), axis=0)
-    return low, middle, high
+    return tuple(np.quantile(values, (0.25, 0.5, 0.75), axis=0))

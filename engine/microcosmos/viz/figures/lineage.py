@@ -25,12 +25,8 @@ class Family:
     tips: np.ndarray
     """The entries of the present elites, in the order of the archive's rows."""
 
-    def ancestors(self, entry: int) -> list[int]:
-        """An entry and all its ancestors, the youngest first."""
-        return self.closure([entry], both=True)
-
-    def closure(self, entries: Iterable[int], *, both: bool) -> list[int]:
-        """Entries with all their ancestors, first parents or both; youngest first."""
+    def ancestors(self, entries: Iterable[int], *, both: bool = True) -> list[int]:
+        """Return entries and their ancestors, by both parents or the first; youngest first."""
         found, left = set(), list(entries)
         while left:
             entry = left.pop()
@@ -42,13 +38,14 @@ class Family:
 
 
 def family(found: Archive) -> Family:
-    """The family of an archive's elites. Raises `ValueError` if the lineage lacks one."""
+    """Return the family of an archive's elites. Raises `ValueError` if one is lacking."""
     columns = found.lineage
     names = [bytes(row) for row in columns["creature"]]
     number: dict[bytes, int] = {}
     for entry, name in enumerate(names):
         number.setdefault(name, entry)
     parents = [[number.get(bytes(p), NO_ENTRY) for p in row] for row in columns["parents"]]
+    parents = [row if row[0] != NO_ENTRY else row[::-1] for row in parents]
     latest = dict(zip(columns["cell"].tolist(), range(len(names)), strict=True))
     lost = [int(cell) for cell in found.cells if int(cell) not in latest]
     if lost:
@@ -56,7 +53,7 @@ def family(found: Archive) -> Family:
             f"`lineage` must hold every elite; that of cell {lost[0]} is not there"
         )
     return Family(
-        parents=np.array([_first(row) for row in parents], int).reshape(-1, 2),
+        parents=np.array(parents, int).reshape(-1, 2),
         generation=columns["generation"],
         fitness=columns["fitness"].astype(float),
         cell=columns["cell"],
@@ -64,19 +61,15 @@ def family(found: Archive) -> Family:
     )
 
 
-def _first(parents: list[int]) -> list[int]:
-    return parents if parents[0] != NO_ENTRY else parents[::-1]
-
-
 def heights(found: Family, entries: list[int]) -> dict[int, float]:
-    """The height of each entry in the tree: childless ones evenly, others between those whose
-    first parent they are. `entries` include all first parents.
+    """Return the height of each entry: childless ones evenly, others between their children.
+
+    A child belongs to its first parent. `entries` include all first parents.
     """
     children: dict[int, list[int]] = {NO_ENTRY: []}
     for entry in sorted(entries):
         children.setdefault(int(found.parents[entry, 0]), []).append(entry)
-    places: dict[int, float] = {}
-    ends = 0
+    places, ends = {}, 0
     left = [(root, False) for root in reversed(children[NO_ENTRY])]
     while left:
         entry, seen = left.pop()
@@ -102,14 +95,17 @@ def lineage(
     colours: str = "viridis",
     width: float = 178.0,
 ) -> Any:
-    """Generations from left to right, in grey all elites and the first parents they descend
-    from; the ancestors of the elite of `cell` (none: the fittest) in the colours of their
-    fitness, second parents by dashed lines.
+    """Draw generations from left to right: in grey all elites and their first parents.
+
+    Ancestors of the elite of `cell` (none: the fittest) have the colours of their fitness;
+    dashed lines lead from second parents.
     """
+    from matplotlib.collections import LineCollection
+
     tree = family(found)
     own = int(tree.tips[found.row(cell)])
-    above = tree.ancestors(own)
-    whole = tree.closure([*tree.tips.tolist(), *above], both=False)
+    above = tree.ancestors([own])
+    whole = tree.ancestors([*tree.tips.tolist(), *above], both=False)
     places = heights(tree, whole)
     ends = sum(1 for place in set(places.values()) if place == int(place))
     figure = blank(width, float(np.clip(0.9 * ends, 55, 0.62 * width)))
@@ -118,7 +114,10 @@ def lineage(
     colouring = shades(values, colours)
     _branches(panel, tree, places, whole, colors=[OTHERS], linewidths=0.4, zorder=1)
     last = max(int(tree.generation.max()), len(found.curves["best"]))
-    _living(panel, tree, places, last)
+    tips = tree.tips.tolist()
+    alive = [[(tree.generation[tip], places[tip]), (last, places[tip])] for tip in tips]
+    dots = {"colors": [OTHERS], "linewidths": 0.3, "linestyles": [(0, (1, 2))]}
+    panel.add_collection(LineCollection(alive, zorder=0, **dots))
     colour = colouring.to_rgba(values)
     _branches(panel, tree, places, above, colors=[INK], linewidths=2.0, zorder=2)
     _branches(panel, tree, places, above, colors=colour, linewidths=1.3, zorder=3)
@@ -148,15 +147,6 @@ def _branches(
     panel.add_collection(LineCollection(lines, capstyle="round", joinstyle="round", **look))
 
 
-def _living(panel: Any, tree: Family, places: dict[int, float], last: int) -> None:
-    from matplotlib.collections import LineCollection
-
-    tips = tree.tips.tolist()
-    lines = [[(tree.generation[tip], places[tip]), (last, places[tip])] for tip in tips]
-    look = {"colors": [OTHERS], "linewidths": 0.3, "linestyles": [(0, (1, 2))]}
-    panel.add_collection(LineCollection(lines, zorder=0, **look))
-
-
 def _crossings(panel: Any, tree: Family, places: dict[int, float], entries: list[int]) -> None:
     for entry in entries:
         other = int(tree.parents[entry, 1])
@@ -173,5 +163,4 @@ def _dress(panel: Any, last: int) -> None:
     panel.margins(y=0.02)
     panel.autoscale_view(scalex=False)
     panel.xaxis.set_major_locator(MaxNLocator(8, integer=True))
-    for side in ("top", "right", "left"):
-        panel.spines[side].set_visible(False)
+    panel.spines[["top", "right", "left"]].set_visible(False)

@@ -7,7 +7,7 @@ import numpy as np
 from ...spec.measures import MEASURES
 from .axes import Axis, chosen, dress, fitness_label, label
 from .reading import Archive
-from .style import EMPTY, GREY, INK, blank, colour_bar, palette
+from .style import EMPTY, GREY, INK, blank, colour_bar, linear_scale, palette
 
 
 def archive(
@@ -23,11 +23,14 @@ def archive(
     `colour` is fitness or any other measure; a ring marks the fittest elite.
     """
     along = chosen(found, axes)
-    shown, title = _colour(found, colour)
+    known = {"fitness": found.fitness, **found.measures}
+    if colour not in known:
+        raise ValueError(f"`colour` must be one of {', '.join(known)}, got {colour!r}.")
+    shown = known[colour].astype(float)
+    title = fitness_label(found) if colour == "fitness" else label(found, colour)
     figure = blank(width, width * (0.78 if len(along) == 2 else 0.6))
     panel = figure.add_subplot()
-    scale = _scale(shown, _logarithmic(found, colour))
-    look = {"cmap": palette(colours), "norm": scale}
+    look = {"cmap": palette(colours), "norm": _scale(found, colour, shown)}
     draw = _bars if len(along) == 1 else _cells if _whole(found, along) else _bins
     drawn = draw(panel, found, along, shown, look)
     dress(panel, along)
@@ -40,28 +43,15 @@ def archive(
     return figure
 
 
-def _colour(found: Archive, name: str) -> tuple[np.ndarray, str]:
-    if name == "fitness":
-        return found.fitness, fitness_label(found)
-    if name not in found.measures:
-        known = ", ".join(["fitness", *found.measures])
-        raise ValueError(f"`colour` must be one of {known}, got {name!r}.")
-    return found.measures[name].astype(float), label(found, name)
+def _scale(found: Archive, name: str, shown: np.ndarray) -> Any:
+    from matplotlib.colors import LogNorm
 
-
-def _logarithmic(found: Archive, name: str) -> bool:
-    own = {axis.name: axis.scale for axis in found.axes}
-    usual = MEASURES[name].scale if name in MEASURES else "linear"
-    return own.get(name, usual) == "log10"
-
-
-def _scale(shown: np.ndarray, logarithmic: bool) -> Any:
-    from matplotlib.colors import LogNorm, Normalize
-
+    scales = {known: measure.scale for known, measure in MEASURES.items()}
+    scales |= {axis.name: axis.scale for axis in found.axes}
     low, high = float(shown.min()), float(shown.max())
-    if logarithmic and low > 0:
+    if scales.get(name) == "log10" and low > 0:
         return LogNorm(low, high if high > low else 10 * low)
-    return Normalize(low, high if high > low else low + 1)
+    return linear_scale(shown)
 
 
 def _whole(found: Archive, along: list[Axis]) -> bool:
@@ -75,16 +65,14 @@ def bins(found: Archive, along: list[Axis]) -> np.ndarray:
     own = [axis.name for axis in found.axes]
     grid = found.centroids is None
     places = np.unravel_index(found.cells, found.spec.archive.shape) if grid else ()
-    return np.stack(
-        [
-            places[own.index(axis.name)]
-            if grid and axis.name in own
-            else np.minimum(
-                (axis.places(found.measures[axis.name]) * axis.bins).astype(int), axis.bins - 1
-            )
-            for axis in along
-        ]
-    )
+
+    def bins_of(axis: Axis) -> np.ndarray:
+        if grid and axis.name in own:
+            return places[own.index(axis.name)]
+        share = axis.places(found.measures[axis.name])
+        return np.minimum((share * axis.bins).astype(int), axis.bins - 1)
+
+    return np.stack([bins_of(axis) for axis in along])
 
 
 def fittest(found: Archive, places: np.ndarray) -> np.ndarray:
@@ -101,11 +89,9 @@ def _bins(panel: Any, found: Archive, along: list[Axis], shown: np.ndarray, shad
     values = np.full((y.bins, x.bins), np.nan)
     values[there[1, rows], there[0, rows]] = shown[rows]
     panel.set_facecolor(EMPTY)
-    mesh = panel.pcolormesh(
-        x.edges, y.edges, np.ma.masked_invalid(values), rasterized=False, lw=0, **shades
-    )
-    mesh.set_edgecolor("face")  # Otherwise viewers of PDF files show gaps between cells.
-    mesh.set_linewidth(0.1)
+    mesh = panel.pcolormesh(x.edges, y.edges, np.ma.masked_invalid(values), **shades)
+    # Otherwise viewers of PDF files show gaps between cells.
+    mesh.set(edgecolor="face", linewidth=0.1)
     return mesh
 
 
@@ -117,10 +103,9 @@ def _cells(
     assert found.centroids is not None
     own = [axis.name for axis in found.axes]
     order = [own.index(axis.name) for axis in along]
+    x, y = along
     shapes = [
-        np.stack(
-            [axis.values(column) for axis, column in zip(along, corners.T, strict=True)], 1
-        )
+        np.stack([x.values(corners[:, 0]), y.values(corners[:, 1])], 1)
         for corners in cells(found.centroids[:, order])
     ]
     look = {"edgecolors": "white", "linewidths": 0.25}
@@ -179,6 +164,6 @@ def borders(centroids: np.ndarray) -> np.ndarray:
 
 
 def _round(middle: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Corners in the order of their angle around a point inside."""
+    """Sort corners by their angle around a point inside."""
     away = corners - middle
     return corners[np.argsort(np.arctan2(away[:, 1], away[:, 0]))]

@@ -1,30 +1,24 @@
 """Motions of elites, simulated anew from their creature files."""
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
-from ...archive.creature import parse
 from ...build import build
+from ...experiments.evolution import Evolution
 from ..replay import record
 from ..replay_file import read_replay
 from .reading import read
 from .sheet import Motion
 
 
-def documents(data: bytes, cells: Sequence[int]) -> list[dict[str, Any]]:
-    """Return the creature files of the elites in some cells of an archive file."""
-    experiment = build(read(data).spec)
-    state = experiment.restore(data, other_device=True)
-    return [experiment.creature(state, int(cell)) for cell in cells]  # pyright: ignore
-
-
 def motions(
     data: bytes, cells: Sequence[int], tell: Callable[[int], None] = lambda done: None
 ) -> list[Motion]:
     """Simulate the elites in some cells; `tell` is called with the number done."""
-    found = []
-    for file in documents(data, cells):
-        replay = read_replay(record(parse(file)))
+    experiment, found = build(read(data).spec), []
+    assert isinstance(experiment, Evolution)
+    state = experiment.restore(data, other_device=True)
+    for cell in cells:
+        replay = read_replay(record(experiment.creature(state, int(cell))))
         found.append(Motion(replay.positions, replay.edges))
         tell(len(found))
     return found

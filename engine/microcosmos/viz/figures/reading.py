@@ -13,8 +13,6 @@ from ...spec import Descriptor, Neuroevolution, PluginVersion, QualityDiversity,
 Search = QualityDiversity | Neuroevolution
 """The specs whose runs fill an archive."""
 
-NO_ARCHIVE = "an archive is needed, as searches have; got the table of {!r}"
-
 
 @dataclass(frozen=True, eq=False)
 class Archive:
@@ -56,7 +54,7 @@ class Archive:
         return self.spec.model_dump(mode="json")
 
     def row(self, cell: int | None) -> int:
-        """The row of a cell's elite; None: of the fittest. Raises `ValueError` if empty."""
+        """Return the row of a cell's elite; None: the fittest. `ValueError` if empty."""
         if cell is None:
             return self.best
         found = np.flatnonzero(self.cells == cell)
@@ -69,14 +67,12 @@ class Archive:
 
 
 def read(data: bytes) -> Archive:
-    """The archive in a run's file. Raises `ValueError` if it has none, or an empty one."""
+    """Return the archive in a run's file. Raises `ValueError` if it is missing or empty."""
     tree, attributes = file.load(data)
-    document = json.loads(attributes["spec"])
-    if "archive" not in tree:
-        raise ValueError(NO_ARCHIVE.format(document["experiment"]))
-    spec = parse(document)
-    if not isinstance(spec, Search):
-        raise ValueError(NO_ARCHIVE.format(document["experiment"]))
+    spec = parse(json.loads(attributes["spec"]))
+    if "archive" not in tree or not isinstance(spec, Search):
+        table = f"the table of {spec.experiment!r}"
+        raise ValueError(f"an archive is needed, as searches have; got {table}")
     archive = tree["archive"]
     if not len(archive["cell"]):
         raise ValueError("an archive with an elite is needed, got one without")

@@ -15,14 +15,11 @@ LETTER, LINE = 1.22, 2.8
 TITLE = "Microcosmos"
 
 KINDS = {
-    ".pdf": {"CreationDate": None, "Creator": None, "Producer": None},
-    ".svg": {"Date": None, "Creator": None},
-    ".png": {"Software": None},
+    ".pdf": ("Subject", "CreationDate", "Creator", "Producer"),
+    ".svg": ("Description", "Date", "Creator"),
+    ".png": ("Description", "Software"),
 }
-"""Kinds of file, and the metadata of each that would differ between machines."""
-
-CAPTION_FIELDS = {".pdf": "Subject", ".svg": "Description", ".png": "Description"}
-"""The metadata field of the caption in each kind of file."""
+"""Metadata of each kind of file: the caption's field, and those that differ by machine."""
 
 
 def kind(path: Path) -> str:
@@ -34,9 +31,8 @@ def kind(path: Path) -> str:
 
 def encoded(figure: Any, suffix: str, *, caption: str = "", dpi: int = 300) -> bytes:
     """Return the bytes of a figure, with its caption in the metadata."""
-    metadata = {**KINDS[suffix], "Title": TITLE}
-    if caption:
-        metadata[CAPTION_FIELDS[suffix]] = caption
+    field, *omitted = KINDS[suffix]
+    metadata = dict.fromkeys(omitted) | {"Title": TITLE} | ({field: caption} if caption else {})
     out = BytesIO()
     with require("matplotlib").rc_context({"svg.hashsalt": "microcosmos"}):
         figure.savefig(out, format=suffix[1:], dpi=dpi, metadata=metadata)

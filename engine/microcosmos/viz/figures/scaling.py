@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from typing import Any
 
-from .style import COLOURS, GREY, INCH, Row, blank, look, refuse_lacking, tidy
+from ...sizes import size
+from .style import COLOURS, GREY, INCH, Row, blank, legend_below, look, refuse_lacking, tidy
 
 NEEDED = ("method", "nodes", "seconds")
 
@@ -19,7 +20,7 @@ PAIRS = {"color": COLOURS[4], "marker": "v", "ls": "--"}
 
 
 def scaling(rows: Sequence[Row], summary: Row | None = None) -> Any:
-    """Time of 1,000 steps, whole and by parts, and memory, against the number of nodes.
+    """Draw time of 1,000 steps, whole and by parts, and memory against the number of nodes.
 
     `summary` has the fitted powers; the dotted line is proportional to the nodes.
     """
@@ -34,18 +35,13 @@ def scaling(rows: Sequence[Row], summary: Row | None = None) -> Any:
     of_nodes = _power(summary, "exponent", "the nodes’ part ")
     _line(time, ours, "seconds", "Microcosmos" + of_nodes, OURS)
     for number, (part, name) in enumerate(PARTS.items()):
-        style = look(number) | {"ms": 4, "lw": 1.1}
-        _line(time, ours, part, name, style)
+        _line(time, ours, part, name, look(number) | {"ms": 4, "lw": 1.1})
     _line(memory, pairs, "memory_bytes", "all pairs", PAIRS)
     _line(memory, ours, "memory_bytes", "Microcosmos", OURS)
     _dress(time, "time of 1,000 steps [s]")
     _dress(memory, "memory")
-    handles, labels = time.get_legend_handles_labels()
-    figure.legend(
-        handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize=9
-    )
-    memory.set_yscale("log", base=2)
-    memory.yaxis.set_major_formatter(_bytes)
+    legend_below(figure, time.get_legend_handles_labels(), 4)
+    memory.yaxis.set_major_formatter(lambda count, _: size(count))
     return figure
 
 
@@ -65,8 +61,7 @@ def _power(summary: Row | None, name: str, what: str = "") -> str:
 def _proportional(panel: Any, rows: Sequence[Row]) -> None:
     if len(rows) < 2:
         return
-    first, last = rows[0]["nodes"], rows[-1]["nodes"]
-    top = rows[-1]["seconds"]
+    first, last, top = rows[0]["nodes"], rows[-1]["nodes"], rows[-1]["seconds"]
     style = {"color": GREY, "ls": ":", "lw": 1.2, "label": "∝ n"}
     panel.plot([first, last], [top * first / last, top], **style)
 
@@ -74,10 +69,3 @@ def _proportional(panel: Any, rows: Sequence[Row]) -> None:
 def _dress(panel: Any, what: str) -> None:
     panel.set(xscale="log", yscale="log", xlabel="nodes, n", ylabel=what)
     tidy(panel)
-
-
-def _bytes(value: float, _: int) -> str:
-    power = 0
-    while value >= 1024 and power < 4:
-        value, power = value / 1024, power + 1
-    return f"{value:.3g} {('B', 'KiB', 'MiB', 'GiB', 'TiB')[power]}"

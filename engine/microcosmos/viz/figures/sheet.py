@@ -46,7 +46,7 @@ class Motion:
 def layout(
     found: Archive, *, axes: list[str] | None = None, columns: int = 6, rows: int = 4
 ) -> Layout:
-    """Regions of equal size over the occupied part of two axes, each with its fittest elite.
+    """Divide the occupied part of two axes into equal regions, each with its fittest elite.
 
     Raises `ValueError` for a single axis.
     """
@@ -59,7 +59,10 @@ def layout(
         if not 1 <= value <= 20:
             raise ValueError(f"`{name}` must be from 1 to 20, got {value}.")
     places = np.stack([axis.places(found.measures[axis.name]) for axis in along])
-    ends = np.stack([_ends(axis, own) for axis, own in zip(along, places, strict=True)])
+    bins = np.array([axis.bins for axis in along])
+    low = np.floor(places.min(1) * bins + 1e-9)
+    high = np.maximum(np.ceil(places.max(1) * bins - 1e-9), low + 1)
+    ends = np.stack([low, high], 1) / bins[:, None]
     share = (places - ends[:, :1]) / np.diff(ends)
     counts = np.array([[columns], [rows]])
     there = np.clip((share * counts).astype(int), 0, counts - 1)
@@ -67,14 +70,8 @@ def layout(
     return Layout((along[0], along[1]), ends, columns, rows, regions)
 
 
-def _ends(axis: Axis, places: np.ndarray) -> np.ndarray:
-    low = np.floor(places.min() * axis.bins + 1e-9)
-    high = np.ceil(places.max() * axis.bins - 1e-9)
-    return np.array([low, max(high, low + 1)]) / axis.bins
-
-
 def numerals(count: int) -> list[str]:
-    """i, ii, iii, iv ..., the paper's numerals for gaits."""
+    """Return i, ii, iii, iv …, the paper's numerals for gaits."""
     digits = (("c", 100), ("xc", 90), ("l", 50), ("xl", 40), ("x", 10), ("ix", 9), ("v", 5),
               ("iv", 4), ("i", 1))  # fmt: skip
     found = []
@@ -87,7 +84,7 @@ def numerals(count: int) -> list[str]:
 
 
 def reading_order(regions: Sequence[Region]) -> list[int]:
-    """Indices of regions row by row from the top."""
+    """Return indices of regions row by row from the top."""
     return sorted(range(len(regions)), key=lambda k: (-regions[k].row, regions[k].column))
 
 
@@ -107,8 +104,9 @@ def sheet(
     colours: str = "viridis",
     width: float = 178.0,
 ) -> Any:
-    """Each region's swimmer at some moments, all at one scale: pale at the start, at the end
-    in the colour of its fitness, with the path of its middle.
+    """Draw each region's swimmer at some moments, and the path of its middle.
+
+    All have one scale; they are pale at the start and at the end in the colour of fitness.
     """
     if not 1 <= moments <= 50:
         raise ValueError(f"`moments` must be from 1 to 50, got {moments}.")
@@ -118,7 +116,8 @@ def sheet(
     panel.set(xlim=(0, plan.columns), ylim=(0, plan.rows), aspect="equal")
     fitness = found.fitness[[region.elite for region in plan.regions]]
     colouring = shades(fitness, colours)
-    scale = FILLED / max(_extent(motion, moments) for motion in motions)
+    extents = [np.ptp(_shown(one, moments).reshape(-1, 2), axis=0).max() for one in motions]
+    scale = FILLED / (float(max(extents)) or 1.0)
     digits = max(0, 2 - int(np.floor(np.log10(max(np.abs(fitness).max(), 1e-9)))))
     names = dict(zip(reading_order(plan.regions), numerals(len(motions)), strict=True))
     for number, (region, motion) in enumerate(zip(plan.regions, motions, strict=True)):
@@ -132,14 +131,10 @@ def sheet(
 
 
 def _shown(motion: Motion, moments: int) -> np.ndarray:
-    """(moment, node, 2): the last frame, and others evenly before it."""
+    """Return (moment, node, 2): the last frame, and others evenly before it."""
     last = len(motion.positions) - 1
     frames = np.rint(np.linspace(0, last, moments)).astype(int) if moments > 1 else [last]
     return motion.positions[frames].astype(float)
-
-
-def _extent(motion: Motion, moments: int) -> float:
-    return float(np.ptp(_shown(motion, moments).reshape(-1, 2), axis=0).max()) or 1.0
 
 
 def _body(
@@ -156,19 +151,15 @@ def _body(
         share = number / max(1, len(shown) - 1)
         pale = np.array(to_rgb(PALE)) * (1 - 0.45 * share)
         lines = (places[motion.edges] - centre) * scale + middle
-        for look in _strokes(last, colour, pale):
+        strokes = [(pale, 0.7, 2)]
+        if last:  # With a dark border, so that light colours show on paper.
+            strokes = [(INK, 1.9, 3), (colour, 1.2, 3)]
+        for paint, width, order in strokes:
+            look = {"colors": [paint], "linewidths": width, "zorder": order}
             panel.add_collection(LineCollection(list(lines), capstyle="round", **look))
     way = (motion.positions.mean(1) - centre) * scale + middle
     panel.plot(*way.T, color=INK, lw=0.5, zorder=4)
     panel.plot(*way[0], "o", color=INK, ms=1.2, mew=0, zorder=4)
-
-
-def _strokes(last: bool, colour: Any, pale: Any) -> list[dict[str, Any]]:
-    """Draw the last moment with a dark border, so that light colours show on paper."""
-    if not last:
-        return [{"colors": [pale], "linewidths": 0.7, "zorder": 2}]
-    border = {"colors": [INK], "linewidths": 1.9, "zorder": 3}
-    return [border, {"colors": [colour], "linewidths": 1.2, "zorder": 3}]
 
 
 def _named(panel: Any, corner: np.ndarray, name: str, fitness: str) -> None:

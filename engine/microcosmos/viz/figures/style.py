@@ -27,33 +27,28 @@ INK, GREY, PALE = "#1b2226", "#5f6b73", "#c9d0d4"
 EMPTY = "#eef1f2"
 """Colour of empty cells."""
 
+TICK = {
+    "labelsize": 6.0,
+    "color": GREY,
+    "labelcolor": INK,
+    "major.width": 0.5,
+    "minor.width": 0.4,
+    "major.size": 2.5,
+    "minor.size": 1.5,
+    "major.pad": 2.0,
+}
 RC: dict[str, Any] = {
+    **{f"{axis}tick.{name}": value for axis in "xy" for name, value in TICK.items()},
     "font.family": ["DejaVu Sans"],  # Comes with matplotlib: the same letters everywhere.
     "mathtext.fontset": "dejavusans",
     "font.size": 7.0,
     "axes.titlesize": 7.0,
     "axes.labelsize": 7.0,
-    "xtick.labelsize": 6.0,
-    "ytick.labelsize": 6.0,
     "legend.fontsize": 6.0,
     "axes.linewidth": 0.5,
     "axes.edgecolor": GREY,
     "axes.labelcolor": INK,
     "text.color": INK,
-    "xtick.color": GREY,
-    "ytick.color": GREY,
-    "xtick.labelcolor": INK,
-    "ytick.labelcolor": INK,
-    "xtick.major.width": 0.5,
-    "ytick.major.width": 0.5,
-    "xtick.minor.width": 0.4,
-    "ytick.minor.width": 0.4,
-    "xtick.major.size": 2.5,
-    "ytick.major.size": 2.5,
-    "xtick.minor.size": 1.5,
-    "ytick.minor.size": 1.5,
-    "xtick.major.pad": 2.0,
-    "ytick.major.pad": 2.0,
     "axes.labelpad": 2.5,
     "lines.linewidth": 1.0,
     "pdf.fonttype": 42,  # TrueType, which journals ask for.
@@ -69,12 +64,12 @@ most colour-blind people too."""
 
 
 def styled() -> AbstractContextManager:
-    """Matplotlib's settings for print, while a figure is made and saved."""
+    """Apply matplotlib's settings for print, while a figure is made and saved."""
     return require("matplotlib").rc_context(RC)
 
 
 def palette(name: str) -> Any:
-    """A colour map from 0, dark, to 1, light."""
+    """Return a colour map from 0, dark, to 1, light."""
     if name not in SAMPLES:
         raise ValueError(f"`palette` must be one of {', '.join(SAMPLES)}, got {name!r}.")
     colours = ["#" + colour for colour in re.findall("......", SAMPLES[name])]
@@ -83,12 +78,13 @@ def palette(name: str) -> Any:
 
 def shades(values: np.ndarray, colours: str) -> Any:
     """Return the colours of values from their least to their greatest."""
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
+    return require("matplotlib.cm").ScalarMappable(linear_scale(values), palette(colours))
 
+
+def linear_scale(values: np.ndarray) -> Any:
+    """Return the scale from the least to the greatest value."""
     low, high = float(values.min()), float(values.max())
-    scale = Normalize(low, high if high > low else low + 1)
-    return ScalarMappable(scale, palette(colours))
+    return require("matplotlib.colors").Normalize(low, high if high > low else low + 1)
 
 
 def colour_bar(panel: Any, drawn: Any, label: str, *, pad: float, aspect: int) -> None:
@@ -98,11 +94,9 @@ def colour_bar(panel: Any, drawn: Any, label: str, *, pad: float, aspect: int) -
 
 def millimetres(width: str) -> float:
     """Return the width in mm of `single`, `double`, `85mm`, `3.5in`, or a number of mm."""
-    found = re.fullmatch(r"([0-9.]+) *(mm|cm|in|)", width.strip())
-    try:
-        size = COLUMNS.get(width) or float(found[1]) * _unit(found[2])  # pyright: ignore
-    except (TypeError, ValueError):
-        size = 0.0
+    found = re.fullmatch(r"(\d+\.?\d*|\.\d+) *(mm|cm|in|)", width.strip())
+    unit = {"cm": 10.0, "in": INCH}.get(found[2], 1.0) if found else 0.0
+    size = COLUMNS.get(width) or (float(found[1]) * unit if found else 0.0)
     if not 20 <= size <= 1000:
         raise ValueError(
             f"`width` must be single ({COLUMNS['single']:g} mm), double "
@@ -111,12 +105,8 @@ def millimetres(width: str) -> float:
     return size
 
 
-def _unit(name: str) -> float:
-    return {"cm": 10.0, "in": INCH}.get(name, 1.0)
-
-
 def blank(width: float, height: float) -> Any:
-    """A figure of a size in mm, without matplotlib's global state."""
+    """Return a figure of a size in mm, without matplotlib's global state."""
     figure = require("matplotlib.figure").Figure((width / INCH, height / INCH))
     figure.set_layout_engine("constrained", w_pad=0.02, h_pad=0.02, wspace=0.03, hspace=0.03)
     return figure
@@ -130,7 +120,7 @@ def lettered(panels: Sequence[Any]) -> None:
 
 
 def look(number: int) -> dict[str, Any]:
-    """Colour and mark of the line with this number."""
+    """Return colour and mark of the line with this number."""
     return {"color": COLOURS[number % 7], "marker": MARKERS[number % 7]}
 
 
@@ -138,9 +128,13 @@ def tidy(panel: Any) -> None:
     """Draw a faint grid behind the lines, and no box around them."""
     panel.set_axisbelow(True)
     panel.grid(color=GREY, alpha=0.18, lw=0.6)
-    for side in ("left", "right", "top", "bottom"):
-        panel.spines[side].set_color(GREY)
+    panel.spines[:].set_color(GREY)
     panel.tick_params(colors="#333b40", which="both", labelsize=9)
+
+
+def legend_below(figure: Any, entries: tuple[list, list], columns: int) -> None:
+    place = {"loc": "outside lower center", "ncols": columns}
+    figure.legend(*entries, **place, frameon=False, fontsize=9)
 
 
 def refuse_lacking(rows: Sequence[Row], names: Sequence[str]) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from math import isfinite
-from textwrap import wrap
+from textwrap import TextWrapper
 
 import numpy as np
 
@@ -61,9 +61,10 @@ def require_same(network: Network, text: str) -> None:
 
 @cache
 def _sources() -> dict[str, str]:
-    """The texts of all functions by name, read once: a sandbox cannot open files later."""
+    """Return the texts of our functions, read once: a sandbox cannot open files later."""
     functions = (*ACTIVATIONS.values(), *AGGREGATIONS.values(), messages, kept)
-    return {one.__name__: inspect.getsource(one) for one in functions}
+    ours = [one for one in functions if not isinstance(one, np.ufunc)]
+    return {one.__name__: inspect.getsource(one) for one in ours}
 
 
 def _head(network: Network, body: str) -> str:
@@ -92,7 +93,7 @@ def _function(network: Network, body: list[str]) -> list[str]:
     inputs = ", ".join(f"x{i}" for i in range(network.inputs))
     result = f"np.stack([{', '.join(_variable(network, key) for key in network.outputs)}])"
     if network.output_transform not in (None, "identity"):
-        result = f"{ACTIVATIONS[network.output_transform].__name__}({result})"
+        result = _called(network.output_transform, result)
     return [
         "",
         "def network(inputs):",
@@ -149,14 +150,15 @@ def _node(network: Network, key: int, live: set[int]) -> str:
         gathered = f"{node.response!r} * ({gathered})"
     if node.bias:
         gathered = f"{node.bias!r} + ({gathered})"
-    return _activated(network, node.activation, gathered)
-
-
-def _activated(network: Network, activation: str, z: str) -> str:
-    value = z if activation == "identity" else f"{ACTIVATIONS[activation].__name__}({z})"
-    if isfinite(network.bound) and activation not in WITHIN_ONE:
+    value = gathered if node.activation == "identity" else _called(node.activation, gathered)
+    if isfinite(network.bound) and node.activation not in WITHIN_ONE:
         return f"np.clip({value}, -{network.bound!r}, {network.bound!r})"
     return value
+
+
+def _called(activation: str, z: str) -> str:
+    function = ACTIVATIONS[activation]
+    return f"{'np.' if isinstance(function, np.ufunc) else ''}{function.__name__}({z})"
 
 
 def _variable(network: Network, key: int) -> str:
@@ -164,7 +166,7 @@ def _variable(network: Network, key: int) -> str:
 
 
 def _listed(network: Network, keys) -> str:
-    """Names for a docstring, without characters that could end it."""
+    """Return names for a docstring, without characters that could end it."""
     names = network.names
     return ", ".join(re.sub(r"[^\w .()-]", "", names[key]) or str(key) for key in keys)
 
@@ -173,12 +175,6 @@ def _wrapped(line: str, indent: int = 4) -> list[str]:
     name, equals, value = line.partition(" = ")
     if len(line) + indent > 96 and equals:
         line = f"{name}\u00a0=\u00a0({value})"  # No break beside the sign.
-    lines = wrap(
-        line,
-        96,
-        initial_indent=" " * indent,
-        subsequent_indent=" " * (indent + 4),
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
-    return [part.replace("\u00a0", " ") for part in lines]
+    wrapper = TextWrapper(96, break_long_words=False, break_on_hyphens=False)
+    wrapper.initial_indent, wrapper.subsequent_indent = " " * indent, " " * (indent + 4)
+    return [part.replace("\u00a0", " ") for part in wrapper.wrap(line)]

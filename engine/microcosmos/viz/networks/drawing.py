@@ -5,7 +5,7 @@ from html import escape
 from itertools import pairwise
 
 from .layout import Layout, layout
-from .network import Network
+from .network import Link, Network
 
 ACTIVATION = {
     "identity": "#dfe3e8",
@@ -95,13 +95,15 @@ STYLE = f"""
 
 
 def svg(network: Network) -> str:
-    """Layers from left to right, nodes coloured by activation, connections by weight.
+    """Draw layers from left to right, nodes coloured by activation, connections by weight.
 
     Inside a page, `currentColor` is the page's; alone, it follows the reader's scheme.
     """
     drawn = layout(network)
     left, top, width, height = _frame(network, drawn)
     title = escape(described(network))
+    # No thick link hides a thin one.
+    thickest_first = sorted(network.links, key=lambda link: -abs(link.weight))
     box = f"{left:.1f} {top:.1f} {width:.1f} {height:.1f}"
     return "\n".join(
         [
@@ -109,7 +111,7 @@ def svg(network: Network) -> str:
             f'viewBox="{box}" width="{width:.0f}" height="{height:.0f}" aria-label="{title}">',
             f"<title>{title}</title>",
             f"<style>{STYLE}</style>",
-            *_links(network, drawn),
+            *(_link(network, link, drawn) for link in thickest_first),
             *(_node(network, key, drawn) for key in network.keys),
             *_legend(left + MARGIN, top + height - MARGIN),
             "</svg>",
@@ -135,13 +137,8 @@ def _width(network: Network, key: int) -> float:
     return max(64.0, LETTER * len(label(network, key)) + 24)
 
 
-def _links(network: Network, drawn: Layout) -> list[str]:
-    """Thin links come last, so that no thick one hides them."""
-    links = sorted(network.links, key=lambda link: -abs(link.weight))
-    return [_link(network, (x.source, x.target), x.weight, drawn) for x in links]
-
-
-def _link(network: Network, pair: tuple[int, int], weight: float, drawn: Layout) -> str:
+def _link(network: Network, link: Link, drawn: Layout) -> str:
+    pair, weight = (link.source, link.target), link.weight
     sign = "positive" if weight > 0 else "negative" if weight < 0 else "zero"
     ends = " → ".join(network.names.get(key, f"node {key}") for key in pair)
     return (
@@ -192,7 +189,7 @@ def _legend(x: float, y: float) -> list[str]:
 
 
 def dot(network: Network) -> str:
-    """A directed graph from left to right, the inputs in one rank and the outputs in one."""
+    """Write a directed graph from left to right, inputs in one rank and outputs in one."""
     lines = [
         "digraph network {",
         f"  label={_quoted(described(network))};",

@@ -11,7 +11,7 @@ TOLERANCE = 1e-6
 
 
 def evaluate(network: Network, inputs: np.ndarray) -> np.ndarray:
-    """The outputs (output, point) for inputs (input, point), NaN where there is no value."""
+    """Return outputs (output, point) for inputs (input, point), NaN where there is no value."""
     inputs = np.asarray(inputs, float)
     if inputs.ndim != 2 or len(inputs) != network.inputs:
         raise ValueError(f"`inputs` must be ({network.inputs}, points), got {inputs.shape}")
@@ -30,9 +30,9 @@ def evaluate(network: Network, inputs: np.ndarray) -> np.ndarray:
         return ACTIVATIONS[network.output_transform or "identity"](outputs)
 
 
-def probes(inputs: int, points: int = 256) -> np.ndarray:
-    """Inputs (input, point) for comparisons, always the same: all 0, all 1, the rest normal."""
-    drawn = np.random.default_rng(0).normal(size=(inputs, points))
+def probes(inputs: int) -> np.ndarray:
+    """Return inputs (input, point) for comparisons: all 0, all 1, the rest normal."""
+    drawn = np.random.default_rng(0).normal(size=(inputs, 256))
     drawn[:, 0], drawn[:, 1] = 0.0, 1.0
     return drawn
 
@@ -52,28 +52,22 @@ def require_agreement(what: str, one: Network, other: Network) -> None:
     if not agree(before, after):
         with np.errstate(all="ignore"):
             worst = np.nanmax(np.abs(before - after) / np.maximum(1, np.abs(before)))
+        bound = min(one.bound, other.bound)
+        reason = f" (only one of the two keeps values within ±{bound:g})"
         raise ValueError(
             f"{what} must compute the same within {TOLERANCE:g} of max(1, |value|), "
-            f"got a difference of {worst:.3g}{_beyond(one, other)}"
+            f"got a difference of {worst:.3g}{reason * (one.bound != other.bound)}"
         )
 
 
-def _beyond(one: Network, other: Network) -> str:
-    if one.bound == other.bound:
-        return ""
-    return f" (only one of the two keeps values within ±{min(one.bound, other.bound):g})"
-
-
 def _value(network: Network, node: Node, values: dict[int, np.ndarray]) -> np.ndarray:
-    """A node's new value at every point, the old one if no message is live."""
+    """Return a node's new value at every point, the old one if no message is live."""
     old, links = values[node.key], network.incoming[node.key]
     if not links:
         return _emitted(network, node, np.zeros_like(old)) if network.rule == "always" else old
     sources = np.stack([values[link.source] for link in links])
     weights = np.array([link.weight for link in links])[:, None]
-    live = np.ones(sources.shape, bool)
-    if network.rule == "live":
-        live = ~np.isnan(sources)
+    live = ~np.isnan(sources) if network.rule == "live" else np.ones(sources.shape, bool)
     new = _emitted(network, node, AGGREGATIONS[node.aggregation](weights * sources, live))
     return np.where(live.any(0), new, old)
 

@@ -5,7 +5,7 @@ from .network import Network
 
 
 def formula(network: Network) -> str:
-    """Every node's value to four digits, sources before their targets."""
+    """Write every node's value to four digits, sources before their targets."""
     names = {key: f"n{key}" for key in network.keys}
     names |= {key: name.replace(" ", "_") for key, name in network.names.items()}
     keys = network.keys if network.steps else order(network.keys, network.pairs)

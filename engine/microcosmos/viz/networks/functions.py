@@ -4,6 +4,7 @@ Names are TensorNEAT's; the formulas are in `docs/networks.md`. `code` writes th
 these functions into standalone modules, so each needs NumPy only.
 """
 
+from collections.abc import Callable
 from functools import reduce
 
 import numpy as np
@@ -17,32 +18,12 @@ def sigmoid(z):
     return 1 / (1 + np.exp(-np.maximum(z, -700.0)))
 
 
-def tanh(z):
-    return np.tanh(z)
-
-
 def relu(z):
     return np.maximum(z, 0.0)
 
 
-def sin(z):
-    return np.sin(z)
-
-
-def cos(z):
-    return np.cos(z)
-
-
 def gaussian(z):
     return np.exp(-z * z)
-
-
-def absolute(z):
-    return np.abs(z)
-
-
-def square(z):
-    return z * z
 
 
 def scaled_sigmoid(z):
@@ -65,26 +46,22 @@ def log(z):
     return np.log(np.maximum(z, 1e-7))
 
 
-def exp(z):
-    return np.exp(z)
-
-
-ACTIVATIONS = {
+ACTIVATIONS: dict[str, Callable] = {
     "identity": identity,
     "sigmoid": sigmoid,
-    "tanh": tanh,
+    "tanh": np.tanh,
     "relu": relu,
-    "sin": sin,
-    "cos": cos,
+    "sin": np.sin,
+    "cos": np.cos,
     "gaussian": gaussian,
-    "abs": absolute,
-    "square": square,
+    "abs": np.abs,
+    "square": np.square,
     "scaled_sigmoid": scaled_sigmoid,
     "scaled_tanh": scaled_tanh,
     "lelu": lelu,
     "inv": inv,
     "log": log,
-    "exp": exp,
+    "exp": np.exp,
 }
 
 TO_REGISTER = ("cos", "gaussian", "square")

@@ -59,7 +59,7 @@ def from_genes(
 
 
 def to_genes(network: Network, *, check: bool = True) -> dict[str, Any]:
-    """The genes of a network; `check` proves on random inputs that they compute the same.
+    """Return the genes of a network; `check` compares their outputs on random inputs.
 
     Nodes that never have a value are left out, responses and means become weights. Without
     historical markers, innovation numbers follow source and target. Raises `ValueError` with
@@ -74,7 +74,7 @@ def to_genes(network: Network, *, check: bool = True) -> dict[str, Any]:
 
 
 def _unrolled(network: Network) -> Network:
-    """A recurrent network that settles in its steps, as a feed-forward one."""
+    """Return a recurrent network that settles in its steps as a feed-forward one."""
     if network.steps is None:
         return network
     order(network.keys, network.pairs)
@@ -85,7 +85,7 @@ def _unrolled(network: Network) -> Network:
 
 
 def _live_part(network: Network) -> Network:
-    """The network without the nodes that no input reaches; their messages never count."""
+    """Remove the nodes that no input reaches; their messages never count."""
     if network.rule == "always":
         return network
     live = reached(range(network.inputs), network.pairs)
@@ -102,7 +102,7 @@ def _live_part(network: Network) -> Network:
 
 
 def _summing(network: Network) -> Network:
-    """Responses and means as weights; any aggregation of one message is that message."""
+    """Express responses and means as weights; an aggregation of one message is that message."""
     factor = {}
     for node in network.nodes:
         count, name = len(network.incoming[node.key]), node.aggregation

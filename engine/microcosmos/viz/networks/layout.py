@@ -28,22 +28,18 @@ class Layout:
 
 
 def layout(network: Network) -> Layout:
-    """Inputs on the left, outputs on the right, hidden nodes by the longest way to them."""
+    """Place inputs left, outputs right, hidden nodes by the longest path to them."""
     column = _columns(network)
     chains = {pair: _chain(pair, column) for pair in network.pairs}
     columns: list[list[Item]] = [[] for _ in range(max(column.values()) + 1)]
     for key in network.keys:
         columns[column[key]].append(key)
-    for chain in chains.values():
-        for item in chain[1:-1]:
-            columns[_column(item, column)].append(item)
-    near = _neighbours(chains)
-    height = _ordered(columns, near)
-    places = {
-        item: (COLUMN * number, height[item])
-        for number, items in enumerate(columns)
-        for item in items
-    }
+    for (source, _), chain in chains.items():
+        for level, passage in enumerate(chain[1:-1], column[source] + 1):
+            columns[level].append(passage)
+    height = _ordered(columns, _neighbours(chains))
+    rows = enumerate(columns)
+    places = {item: (COLUMN * n, height[item]) for n, items in rows for item in items}
     return Layout(
         {key: places[key] for key in network.keys},
         {pair: tuple(places[item] for item in chain) for pair, chain in chains.items()},
@@ -64,10 +60,6 @@ def _chain(pair: tuple[int, int], column: dict[int, int]) -> list[Item]:
     return [source, *((source, target, level) for level in between), target]
 
 
-def _column(item: Item, column: dict[int, int]) -> int:
-    return item[2] if isinstance(item, tuple) else column[item]
-
-
 def _neighbours(chains: dict[tuple[int, int], list[Item]]) -> dict[Item, list[Item]]:
     near: dict[Item, list[Item]] = {}
     for chain in chains.values():
@@ -78,7 +70,7 @@ def _neighbours(chains: dict[tuple[int, int], list[Item]]) -> dict[Item, list[It
 
 
 def _ordered(columns: list[list[Item]], near: dict[Item, list[Item]]) -> dict[Item, float]:
-    """Heights, found by repeatedly moving every item towards its neighbours.
+    """Return heights: repeatedly, every item moves towards its neighbours.
 
     Inputs and outputs keep their order; the others are sorted by their targets.
     """
@@ -89,19 +81,16 @@ def _ordered(columns: list[list[Item]], near: dict[Item, list[Item]]) -> dict[It
         forward = sweep % 2 == 0
         for number in range(len(columns)) if forward else reversed(range(len(columns))):
             items = columns[number]
-            target = {item: _mean(height, near.get(item, [item])) for item in items}
+            around = {item: near.get(item, [item]) for item in items}
+            target = {x: sum(height[y] for y in near) / len(near) for x, near in around.items()}
             if 0 < number < len(columns) - 1:
                 items.sort(key=lambda item, target=target: target[item])
             height |= _apart(items, [target[item] for item in items])
     return height
 
 
-def _mean(height: dict[Item, float], items: list[Item]) -> float:
-    return sum(height[item] for item in items) / len(items)
-
-
 def _apart(items: list[Item], targets: list[float]) -> dict[Item, float]:
-    """Heights in this order and far enough apart, closest to the targets in least squares.
+    """Return heights in this order, far enough apart, nearest to the targets in least squares.
 
     The offsets taken away, this is isotonic regression by pooling neighbours.
     """

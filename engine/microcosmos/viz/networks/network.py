@@ -126,7 +126,7 @@ def renumbered(network: Network, key: Callable[[int], int]) -> Network:
 
 
 def outputs_first(network: Network) -> Network:
-    """Outputs follow the inputs, hidden nodes the outputs; a key has one new key always."""
+    """Number outputs after inputs and hidden nodes after outputs."""
     fixed = {key: network.inputs + place for place, key in enumerate(network.outputs)}
 
     def key(old: int) -> int:
@@ -138,7 +138,7 @@ def outputs_first(network: Network) -> Network:
 
 
 def delegated(network: Network, output: int, activation: str) -> Network:
-    """A new hidden node takes an output's place; the output reads it and has the activation."""
+    """Move an output's node to a new hidden one, which the output reads with the activation."""
     new = max(network.keys) + 1
     moved = replace(network.node[output], key=new)
     nodes = [node if node.key != output else Node(output) for node in network.nodes]

@@ -23,7 +23,7 @@ MAX_STEPS = 10_000
 
 
 def read_tensorneat(nodes: np.ndarray, conns: np.ndarray, meta: Mapping[str, Any]) -> Network:
-    """The network of one genome: `nodes` (row, column), `conns` (row, column), NaN if unused.
+    """Return the network of one genome: `nodes` and `conns` (row, column), NaN if unused.
 
     `meta` names the classes and, in order, the functions; see `docs/networks.md`. Outputs are
     linear and inputs have no attributes, whatever their columns hold. Raises `ValueError`.
@@ -52,8 +52,8 @@ def read_tensorneat(nodes: np.ndarray, conns: np.ndarray, meta: Mapping[str, Any
         kept.tolist(),
         np.where(is_input, 0, columns["bias"]).tolist(),
         np.where(is_input, 1, response).tolist(),
-        _replaced(aggregation, is_input, "sum"),
-        _replaced(activation, linear, "identity"),
+        np.where(is_input, "sum", aggregation).tolist(),
+        np.where(linear, "identity", activation).tolist(),
     )
     return Network(
         inputs=inputs,
@@ -150,10 +150,10 @@ def _table(field: str, table: np.ndarray, columns: tuple[str, ...]) -> np.ndarra
 
 
 def _whole(field: str, column: str, values: np.ndarray, low: int, high: int) -> np.ndarray:
-    """Whole numbers from low to below high, −1 standing for an unused row."""
+    """Return whole numbers from low to below high, −1 for an unused row."""
     used = ~np.isnan(values)
-    sound = (values == np.floor(values)) & (values >= low) & (values < high)
-    if (wrong := values[used & ~sound]).size:
+    valid = (values == np.floor(values)) & (values >= low) & (values < high)
+    if (wrong := values[used & ~valid]).size:
         raise ValueError(
             f"`{field}` must have a {column} that is whole, from {low} to {high - 1}, "
             f"got {wrong[0]:g}"
@@ -173,14 +173,10 @@ def _function(
 
 
 def _refuse_other_rows(keys: np.ndarray, ends: tuple[int, ...]) -> None:
-    """TensorNEAT writes inputs to rows and reads outputs from rows by their keys."""
+    """Refuse inputs and outputs outside the rows of their keys, which TensorNEAT uses."""
     for key in ends:
         if key >= len(keys) or keys[key] != key:
             came = keys[key] if key < len(keys) else "no such row"
             raise ValueError(
                 f"`nodes` must have the input or output {key} in row {key}, got {came}"
             )
-
-
-def _replaced(names: tuple[str, ...], where: np.ndarray, name: str) -> tuple[str, ...]:
-    return tuple(name if there else old for old, there in zip(names, where, strict=True))

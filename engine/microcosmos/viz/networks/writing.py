@@ -1,6 +1,5 @@
 """Networks as the arrays of a TensorNEAT genome and the names that belong to them."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Any
@@ -30,7 +29,7 @@ class Genome:
 def write_tensorneat(
     network: Network, max_nodes: int | None = None, max_conns: int | None = None
 ) -> Genome:
-    """The genome of a network, checked: read back, it computes the same for random inputs.
+    """Return the genome of a network, checked: read back, it computes the same.
 
     Raises `ValueError` if it does not, or if there is no room.
     """
@@ -62,10 +61,7 @@ def as_live(network: Network) -> Network:
 
 def room(needed: int) -> int:
     """Return the smallest of 16, 32, 64 … that holds as many rows."""
-    size = SMALLEST
-    while size < needed:
-        size *= 2
-    return size
+    return max(SMALLEST, 1 << (needed - 1).bit_length())
 
 
 def _written(network: Network, max_nodes: int | None, max_conns: int | None) -> Genome:
@@ -77,22 +73,22 @@ def _written(network: Network, max_nodes: int | None, max_conns: int | None) -> 
     activations = [name for name in ACTIVATIONS if name in used]
     used = {node.aggregation for node in network.nodes}
     aggregations = [name for name in AGGREGATIONS if name in used]
-    number = {"aggregation": aggregations.index, "activation": activations.index}
+    index = {"aggregation": aggregations.index, "activation": activations.index}
     nodes = [
-        [node.key, *(_numbered(getattr(node, x), number.get(x)) for x in NODES[node_class])]
+        [node.key, *(index.get(x, float)(getattr(node, x)) for x in NODES[node_class])]
         for node in network.nodes
     ]
     columns = ("source", "target", *CONNECTIONS[conn_class])
     conns = [[getattr(link, name) for name in columns] for link in network.links]
     size = room(len(nodes)) if max_nodes is None else max_nodes
     length = room(len(conns)) if max_conns is None else max_conns
-    genome = (
-        _padded("max_nodes", nodes, 1 + len(NODES[node_class]), size),
-        _padded("max_conns", conns, len(columns), length),
-    )
     meta = {"node_class": node_class, "conn_class": conn_class}
     meta |= {"activation_names": activations, "aggregation_names": aggregations}
-    return Genome(*genome, _described(network) | meta)
+    return Genome(
+        _padded("max_nodes", nodes, 1 + len(NODES[node_class]), size),
+        _padded("max_conns", conns, len(columns), length),
+        _described(network) | meta,
+    )
 
 
 def _described(network: Network) -> dict[str, Any]:
@@ -113,10 +109,6 @@ def _described(network: Network) -> dict[str, Any]:
         "output_transform": network.output_transform,
         "register": [name for name in TO_REGISTER if name in used],
     }
-
-
-def _numbered(value: Any, number: Callable[[Any], int] | None) -> Any:
-    return value if number is None else number(value)
 
 
 def _padded(field: str, given: list[list[Any]], columns: int, rows: int) -> np.ndarray:

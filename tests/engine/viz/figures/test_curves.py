@@ -163,9 +163,9 @@ def archive(made):
 def test_elites_are_the_latest_entries_and_ancestors_those_of_both_parents(archive):
     found = family(archive)
     assert found.tips.tolist() == [4, 6, 2, 3, 5]
-    assert found.ancestors(5) == [5, 3, 2, 1, 0]
-    assert found.ancestors(4) == [4, 2, 0]
-    assert found.closure([5], both=False) == [5, 3, 0]
+    assert found.ancestors([5]) == [5, 3, 2, 1, 0]
+    assert found.ancestors([4]) == [4, 2, 0]
+    assert found.ancestors([5], both=False) == [5, 3, 0]
 
 
 def test_no_two_entries_of_a_generation_stand_at_one_height(archive):
