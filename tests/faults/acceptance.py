@@ -18,18 +18,7 @@ import rich
 from databases import Missing, services
 from drive import Installation, interrupt, kill_job, pause_and_resume, running, stop_worker
 from left_open import leave_open
-from searches import (
-    HOURS,
-    METHODS,
-    SEEDS,
-    carry_out,
-    compare,
-    compare_slopes,
-    draw,
-    forage,
-    sinusoidal,
-    spec,
-)
+from searches import HOURS, METHODS, SEEDS, carry_out, compare, compare_slopes, forage, spec
 from uploads import all_cases, send, watched
 
 FAULTS = (kill_job, stop_worker, kill_job, pause_and_resume, kill_job)
@@ -40,9 +29,10 @@ def disturb(place: Installation, undisturbed: bytes) -> bool:
     """Tell whether a run disturbed at random moments ends with the same bytes."""
     run = place.submit(spec(SEEDS[0], "MAP-Elites, NEAT"))
     moments = sorted(random.choices(range(1, 45), k=len(FAULTS)))
-    interrupt(place, run, FAULTS, moments, seconds=2 * HOURS)
+    faults = list(zip(moments, FAULTS, strict=True))
+    interrupt(place, run, faults, seconds=2 * HOURS)
     attempts = place.wait(run, "finished", seconds=2 * HOURS)["attempt"]
-    names = ", ".join(f"{f.__name__} at {m}" for f, m in zip(FAULTS, moments, strict=True))
+    names = ", ".join(f"{fault.__name__} at {moment}" for moment, fault in faults)
     return identical(place.archive(run), undisturbed, f"{names}: {attempts} attempts")
 
 
@@ -58,11 +48,8 @@ def searches(place: Installation) -> bool:
         name: [carry_out(place, spec(s, name), f"{name}, seed {s}") for s in SEEDS]
         for name in METHODS
     }
-    good = compare(runs)
-    draw(runs)
-    good &= disturb(place, place.archive(runs["MAP-Elites, NEAT"][0]["id"]))
-    sinusoidal(place, runs)
-    return good
+    good = compare(place, runs)
+    return disturb(place, place.archive(runs["MAP-Elites, NEAT"][0]["id"])) and good
 
 
 def databases(place: Installation) -> bool:

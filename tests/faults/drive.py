@@ -7,7 +7,7 @@ import sqlite3
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -75,10 +75,9 @@ class Installation:
     def answers(self) -> bool:
         if self.process.poll() is not None:
             raise RuntimeError(f"it ended: {self.output.read_text()}")
-        try:
+        with suppress(httpx.TransportError):
             return self.http.get("/healthz").status_code == 200
-        except httpx.TransportError:
-            return False
+        return False
 
     def end(self, sent: signal.Signals = signal.SIGINT, seconds: float = 60) -> int:
         """Ask it to end, as Ctrl-C does, and return its exit status."""
@@ -101,12 +100,12 @@ class Installation:
 
     def read(self, run: str) -> dict[str, Any]:
         """Read a run, retrying while the server is restarted."""
-        for _ in range(100):
-            try:
+
+        def found() -> dict[str, Any] | None:
+            with suppress(httpx.TransportError):
                 return self.get(f"runs/{run}")
-            except httpx.TransportError:
-                time.sleep(0.1)
-        raise TimeoutError("the server does not answer")
+
+        return wait_until(found, 10, "the server answers")
 
     def ask(self, run: str, action: str) -> None:
         """Pause, resume or cancel."""
@@ -195,13 +194,11 @@ class Installation:
     def writable(self) -> bool:
         """Tell whether the embedded database can be written to within a second."""
         path = self.folder / "microcosmos.sqlite"
-        with closing(sqlite3.connect(path, timeout=1, isolation_level=None)) as database:
-            try:
-                database.execute("BEGIN IMMEDIATE")
-            except sqlite3.OperationalError:
-                return False
-            database.execute("ROLLBACK")
+        connection = sqlite3.connect(path, timeout=1, isolation_level=None)
+        with closing(connection), suppress(sqlite3.OperationalError):
+            connection.execute("BEGIN IMMEDIATE")
             return True
+        return False
 
     def named(self, module: str) -> list[psutil.Process]:
         """Living processes that run a Python module or a program."""
@@ -262,14 +259,10 @@ Fault = Callable[[Installation, str], None]
 
 
 def interrupt(
-    place: Installation,
-    run: str,
-    faults: Sequence[Fault],
-    moments: Sequence[int],
-    seconds: float = 120,
+    place: Installation, run: str, faults: Iterable[tuple[int, Fault]], seconds: float = 120
 ) -> None:
     """Cause each fault in an attempt of its own, once that has reached a generation."""
     attempt = 0
-    for fault, generation in zip(faults, moments, strict=True):
+    for generation, fault in faults:
         attempt = place.reach(run, generation, after=attempt, seconds=seconds)
         fault(place, run)

@@ -78,8 +78,8 @@ def spec(seed: int, method: str) -> dict:
     return written({**chosen, "seed": seed, "search": search})
 
 
-def compare(runs: dict[str, list[dict]]) -> bool:
-    """Print medians and ranges; tell whether medians reach their bars."""
+def compare(place: Installation, runs: dict[str, list[dict]]) -> bool:
+    """Print and draw medians and ranges; tell whether medians reach their bars."""
     found = {n: [[run[f] for run in some] for f in FIGURES] for n, some in runs.items()}
     rich.print(table("median (range)", FIGURES.values(), found))
     good = True
@@ -87,6 +87,14 @@ def compare(runs: dict[str, list[dict]]) -> bool:
         own, other = (statistics.median(r[figure] for r in runs[n]) for n in (method, "random"))
         good &= own / other > bar
         rich.print(f"{method}, {figure}: {own / other:.2f} × random search (bar {bar})")
+    draw(runs)
+    for method, found in runs.items():
+        purities = [purity(file) for run in found for file in fittest(place, run["id"], 10)]
+        rich.print(
+            f"{method}: {np.mean(np.array(purities) >= PURE):.0%} of the ten fittest of each "
+            f"seed are sinusoidal (median {statistics.median(purities):.0%} of the power in "
+            "one harmonic)"
+        )
     return good
 
 
@@ -125,17 +133,6 @@ def fittest(place: Installation, run: str, count: int) -> list[dict]:
     archive = place.get(f"runs/{run}/archive")
     order = np.argsort(archive["fitness"])[::-1][:count]
     return [place.get(f"creatures/{archive['creature'][i]}") for i in order]
-
-
-def sinusoidal(place: Installation, runs: dict[str, list[dict]]) -> None:
-    """Print the share of the fittest creatures that move by sinusoidal gaits."""
-    for method, found in runs.items():
-        purities = [purity(file) for run in found for file in fittest(place, run["id"], 10)]
-        rich.print(
-            f"{method}: {np.mean(np.array(purities) >= PURE):.0%} of the ten fittest of each "
-            f"seed are sinusoidal (median {statistics.median(purities):.0%} of the power in "
-            "one harmonic)"
-        )
 
 
 def purity(file: dict) -> float:

@@ -37,7 +37,7 @@ def test_a_run_that_is_killed_stopped_and_paused_ends_with_the_same_archive(
 ):
     moments = sorted(random.choices(range(LATEST), k=len(faults)))
     run = place.submit(spec)
-    interrupt(place, run, faults, moments)
+    interrupt(place, run, zip(moments, faults, strict=True))
     assert place.wait(run, "finished")["attempt"] == 1 + len(faults)
     assert place.results(run) == undisturbed, f"interrupted at {moments}"
 
@@ -94,7 +94,7 @@ SWEEP = {
 @pytest.mark.long
 def test_a_sweep_that_is_killed_and_paused_ends_with_the_same_table(place):
     undisturbed, disturbed = place.submit(SWEEP), place.submit(SWEEP)
-    interrupt(place, disturbed, [kill_job, pause_and_resume], [0, 1])
+    interrupt(place, disturbed, [(0, kill_job), (1, pause_and_resume)])
 
     def results(run):
         place.wait(run, "finished", seconds=300)
@@ -126,7 +126,7 @@ def test_postgresql_and_a_redis_server_give_the_same_bytes(
     assert not place.named(REDIS)
     assert not list(place.folder.glob("*.sqlite"))
     run = place.submit(spec)
-    interrupt(place, run, [kill_job, kill_supervisor, stop_worker], [1, 4, 7])
+    interrupt(place, run, [(1, kill_job), (4, kill_supervisor), (7, stop_worker)])
     assert place.wait(run, "finished")["attempt"] == 4
     assert place.results(run) == undisturbed
 

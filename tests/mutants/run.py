@@ -14,7 +14,7 @@ import sys
 import tempfile
 import time
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -46,7 +46,6 @@ class Mutant(NamedTuple):
 
 
 def mutants() -> list[Mutant]:
-    """Read all mutants, sorted by name."""
     files = sorted(Path(__file__).parent.glob("*.toml"))
     return [Mutant(name=file.stem, **tomllib.loads(file.read_text())) for file in files]
 
@@ -64,13 +63,6 @@ def copy_repository(to: Path) -> None:
             (to / name).symlink_to(ROOT / name)
 
 
-def environment(copy: Path) -> Mapping[str, str]:
-    """Return an environment that imports the copy's packages before installed ones."""
-    path = os.pathsep.join([str(copy / ".venv" / "bin"), os.environ["PATH"]])
-    here = {"PYTHONPATH": f"{copy}:{copy / 'engine'}", "PATH": path, "NO_COLOR": "1"}
-    return os.environ | here
-
-
 def failure(page: bool, tests: Iterable[str], copy: Path) -> str | None:
     """Run tests of the page or of Python in the copy; return the first that fails, if any."""
     if page:
@@ -78,23 +70,17 @@ def failure(page: bool, tests: Iterable[str], copy: Path) -> str | None:
     else:
         pytest = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider"]
         command, folder = [*pytest, "-m", "not long", *tests], copy
-    done = subprocess.run(
-        command, cwd=folder, env=environment(copy), capture_output=True, text=True
-    )
+    # The copy's own packages go before those that are installed.
+    path = os.pathsep.join([str(copy / ".venv" / "bin"), os.environ["PATH"]])
+    here = {"PYTHONPATH": f"{copy}:{copy / 'engine'}", "PATH": path, "NO_COLOR": "1"}
+    env = os.environ | here
+    done = subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True)
     # Pytest ends with 1 if a test failed; 2 and more mean that it could not run them.
     if done.returncode not in (0, 1):
         raise RuntimeError(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
     lines = (done.stdout + done.stderr).splitlines()
     failed = (line for line in lines if line.lstrip().startswith("FAIL"))
     return next(failed, "an error").strip()[:150] if done.returncode == 1 else None
-
-
-def refuse_failing_tests(chosen: list[Mutant], copy: Path) -> None:
-    """Exit unless the tests that the mutants name pass without a defect."""
-    for page in (False, True):
-        tests = sorted({path for one in chosen if one.of_page == page for path in one.tests})
-        if tests and (failed := failure(page, tests, copy)):
-            sys.exit(f"Tests fail without a defect, so they prove nothing: {failed}")
 
 
 def caught_by(mutant: Mutant, copy: Path) -> str | None:
@@ -113,7 +99,10 @@ def main(prefixes: list[str]) -> int:
     missed = 0
     with tempfile.TemporaryDirectory() as folder:
         copy_repository(Path(folder))
-        refuse_failing_tests(chosen, Path(folder))
+        for page in (False, True):
+            tests = {path for one in chosen if one.of_page == page for path in one.tests}
+            if tests and (failed := failure(page, sorted(tests), Path(folder))):
+                sys.exit(f"Tests fail without a defect, so they prove nothing: {failed}")
         for mutant in chosen:
             start = time.monotonic()
             failed = caught_by(mutant, Path(folder))

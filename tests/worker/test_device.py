@@ -3,7 +3,6 @@
 import os
 import subprocess
 import sys
-from threading import Event
 from types import SimpleNamespace
 
 import pynvml
@@ -228,28 +227,21 @@ def test_a_heartbeat_reports_the_latest_usage(services):
 
 @pytest.mark.parametrize("error", [OSError("gone"), ValueError("no number")])
 def test_a_gauge_reads_until_its_end_and_drops_what_is_old_after_a_failure(error):
-    failed, go_on, enough = Event(), Event(), Event()
-    usages = [Usage(load=1.0)]
-    looks = iter([*usages, error])
+    results = iter([Usage(load=1.0), error, Usage(load=2.0), Usage(load=3.0)])
+    seen = []
 
     def look():
-        found = next(looks, None)
+        seen.append(gauge.last)
+        found = next(results)
+        if found == Usage(load=3.0):
+            gauge.end()
         if isinstance(found, Exception):
             raise found
-        if found is None:
-            failed.set()
-            assert go_on.wait(20)
-            usages.append(Usage(load=float(len(usages))))
-            if len(usages) == 3:
-                enough.set()
-        return usages[-1]
+        return found
 
     gauge = usage.Gauge(look, 0.001)
     gauge.start()
-    assert failed.wait(20)
-    assert gauge.last == Usage(), "the reading before the failure is dropped"
-    go_on.set()
-    assert enough.wait(20)
-    gauge.end()
-    gauge.join()
-    assert gauge.last == usages[-1]
+    gauge.join(20)
+    assert not gauge.is_alive()
+    assert seen == [Usage(), Usage(load=1.0), Usage(), Usage(load=2.0)]
+    assert gauge.last == Usage(load=3.0)

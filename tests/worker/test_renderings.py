@@ -54,21 +54,18 @@ def asked(monkeypatch):
     """The calls of the engine, in order."""
     calls = []
 
-    def record(file):
-        calls.append(("record", file["sha256"]))
-        return replay()
+    def answer(name, result):
+        return lambda file: calls.append((name, file["sha256"])) or result
 
-    def audit(file):
-        calls.append(("audit", file["sha256"]))
-        return {"verdict": {"survives": True, "reasons": []}, "rows": []}
-
-    def measurement(file):
-        calls.append(("measurement", file["sha256"]))
-        return {"exact": True}
-
-    audits = SimpleNamespace(audit=audit, measurement=measurement)
-    monkeypatch.setitem(sys.modules, "microcosmos.viz.replay", SimpleNamespace(record=record))
-    monkeypatch.setitem(sys.modules, "microcosmos.audit", audits)
+    engine = {
+        "viz.replay": {"record": answer("record", replay())},
+        "audit": {
+            "audit": answer("audit", {"verdict": {"survives": True, "reasons": []}}),
+            "measurement": answer("measurement", {"exact": True}),
+        },
+    }
+    for module, functions in engine.items():
+        monkeypatch.setitem(sys.modules, f"microcosmos.{module}", SimpleNamespace(**functions))
     return calls
 
 
