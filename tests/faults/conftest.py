@@ -13,17 +13,6 @@ SHORT = QUICK | {
 }
 """Settings that shorten minutes to seconds."""
 
-SPEC = {
-    "experiment": "quality-diversity",
-    "seed": 7,
-    "world": {"width": 32, "height": 32},
-    "body": {"nodes": 12},
-    "control": {"period": 30},
-    "task": {"steps": 60},
-    "search": {"generations": 12, "batch": 16, "block": 8},
-}
-"""The smallest run that is still a run."""
-
 
 @pytest.fixture
 def installation(tmp_path):
@@ -41,7 +30,16 @@ def place(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def spec():
-    return SPEC
+    """The smallest run that is still a run."""
+    return {
+        "experiment": "quality-diversity",
+        "seed": 7,
+        "world": {"width": 32, "height": 32},
+        "body": {"nodes": 12},
+        "control": {"period": 30},
+        "task": {"steps": 60},
+        "search": {"generations": 12, "batch": 16, "block": 8},
+    }
 
 
 @pytest.fixture(scope="package")

@@ -76,7 +76,7 @@ def test_every_worker_has_a_gpu_of_its_own(nvml):
     assert first.threads == second.threads == ()
 
 
-def test_more_workers_than_gpus_share_them_and_their_memory(nvml):
+def test_more_workers_than_gpus_share_them_and_their_memory(nvml, monkeypatch):
     nvml(TWO)
     first, second, third = (device.find(i, 3) for i in range(3))
     assert first == third
@@ -87,10 +87,6 @@ def test_more_workers_than_gpus_share_them_and_their_memory(nvml):
         device.MEMORY_FRACTION: "0.375",
     }
     assert device.MEMORY_FRACTION not in second.environment
-
-
-def test_a_given_memory_fraction_stays(nvml, monkeypatch):
-    nvml(TWO)
     monkeypatch.setenv(device.MEMORY_FRACTION, "0.2")
     assert device.find(0, 4).environment[device.MEMORY_FRACTION] == "0.2"
 

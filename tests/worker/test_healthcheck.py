@@ -4,6 +4,7 @@ import os
 import socket
 import subprocess
 import time
+from dataclasses import replace
 
 import psutil
 import pytest
@@ -23,10 +24,8 @@ def test_a_worker_is_alive_while_it_reports(services):
     assert alive(services, "worker", HOST)
     assert not alive(services, "worker", "some")
     assert not alive(services, "renderer", HOST)
-    patient = services.settings.lease
-    object.__setattr__(services.settings, "lease", 0.0)
-    assert not alive(services, "worker", HOST), "a lease without a word is over"
-    object.__setattr__(services.settings, "lease", patient)
+    impatient = services.settings.model_copy(update={"lease": 0.0})
+    assert not alive(replace(services, settings=impatient), "worker", HOST), "the lease is over"
     registry.retire(services.sessions, f"{HOST}-17")
     assert not alive(services, "worker", HOST)
 

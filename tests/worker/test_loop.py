@@ -70,38 +70,33 @@ def test_a_replay_whose_renderer_died_is_asked_for_again(services, worker):
     assert not services.jobs.renderings.started_job_registry.get_job_ids()
 
 
-@pytest.fixture
-def begin(services):
-    """Takes an order as a renderer does that dies while it works."""
-
-    def take():
-        queue = services.jobs.renderings
-        renderer = SimpleWorker([queue], serializer=JSONSerializer)
-        renderer.register_birth()
-        job, _ = queue.dequeue_any([queue], None, services.redis, serializer=JSONSerializer)
-        renderer.prepare_execution(job)
-        renderer.prepare_job_execution(job)
-        renderer.register_death()
-        return job
-
-    return take
+def take_and_die(services):
+    """Take an order as a renderer does that dies while it works."""
+    queue = services.jobs.renderings
+    renderer = SimpleWorker([queue], serializer=JSONSerializer)
+    renderer.register_birth()
+    job, _ = queue.dequeue_any([queue], None, services.redis, serializer=JSONSerializer)
+    renderer.prepare_execution(job)
+    renderer.prepare_job_execution(job)
+    renderer.register_death()
+    return job
 
 
-def test_a_replay_that_ends_the_renderer_twice_is_given_up_with_a_reason(services, begin):
+def test_a_replay_that_ends_the_renderer_twice_is_given_up_with_a_reason(services):
     enqueue(services, CREATURE)
-    begin()
+    take_and_die(services)
     retry_interrupted(services.jobs, services.jobs.renderings)
     assert services.jobs.renderings.count == 1
-    begin()
+    take_and_die(services)
     retry_interrupted(services.jobs, services.jobs.renderings)
     assert services.jobs.renderings.count == 0
     with pytest.raises(RenderingFailed, match="ended the renderer twice"):
         enqueue(services, CREATURE)
 
 
-def test_a_long_rendering_counts_as_alive_for_all_its_time(services, begin):
+def test_a_long_rendering_counts_as_alive_for_all_its_time(services):
     enqueue(services, CREATURE)
-    job = begin()
+    job = take_and_die(services)
     (execution,) = job.execution_registry.get_execution_ids()
     ends = services.redis.zscore(job.started_job_registry.key, f"{job.id}:{execution}")
     assert ends - time.time() > job.timeout

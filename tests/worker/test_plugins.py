@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from queue import Queue
 
 import pytest
 
@@ -61,23 +62,16 @@ def test_without_modules_no_process_is_started(monkeypatch):
 
 
 def test_a_changed_file_is_looked_at_again(settings, monkeypatch):
-    chosen, asked = settings(mine=GOOD), []
-    monkeypatch.setattr(
-        plugins,
-        "list_plugins",
-        lambda settings: asked.append(settings) or plugins.PluginReport(),
-    )
+    chosen, asked, report = settings(mine=GOOD), Queue(), plugins.PluginReport()
+    monkeypatch.setattr(plugins, "list_plugins", lambda given: asked.put(given) or report)
     watcher = plugins.PluginWatcher(chosen, 0.01)
-    assert len(asked) == 1
+    assert asked.get_nowait() == chosen
     plugins.files(chosen)[0].write_text(f"{GOOD}# Changed.")
     watcher.start()
-    for _ in range(1000):
-        if len(asked) > 1:
-            break
-        watcher.join(0.01)
+    assert asked.get(timeout=10) == chosen
     watcher.end()
     watcher.join()
-    assert len(asked) == 2
+    assert asked.empty()
 
 
 CARRY_OUT = """

@@ -9,7 +9,6 @@ import pytest
 import reports
 
 from microcosmos.archive import creature
-from microcosmos.spec import EXPERIMENTS, Gaits
 from server.creatures import storage as creatures
 from server.renderings import storage as renderings
 from server.tables import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP
@@ -34,16 +33,7 @@ def replay() -> bytes:
 
 @pytest.fixture
 def known(services):
-    sweep = next(p.spec for p in EXPERIMENTS["gaits"].presets if isinstance(p.spec, Gaits))
-    written = sweep.scene("ours", "worm", 0.5).model_dump(mode="json")
-    whole = {
-        "format": creature.FORMAT,
-        "genome": {"encoding": "gait", **written["control"]},
-        "world": {**written["world"], "coupling": written["coupling"]},
-        "body": written["body"],
-        "task": written["task"],
-    }
-    file = creature.parse(creature.document(whole, None, None))
+    file = creature.parse(creature.document(reports.identity(), None, None))
     with services.sessions.write.begin() as session:
         creatures.add(session, file)
     return file["sha256"]
