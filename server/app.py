@@ -13,9 +13,8 @@ from .archives import routes as archives
 from .auth import bootstrap
 from .auth import routes as tokens
 from .auth.authenticate import Authenticator
-from .auth.authorize import MAY_READ, PUBLIC
+from .auth.authorize import MAY_READ, PUBLIC, SHARE_HEADER
 from .auth.middleware import PrincipalMiddleware
-from .auth.share_access import SHARE_HEADER
 from .auth.tokens import watch
 from .core import api, errors, static_files
 from .core.processes import on_stop_signal

@@ -5,9 +5,8 @@ import sys
 import uvicorn
 
 from .auth import bootstrap
-from .core.folders import create_private
 from .services.services import connect
-from .settings import Settings
+from .settings import Settings, create_private
 from .tables import migrations
 
 SHUTDOWN_SECONDS = 5
@@ -17,7 +16,15 @@ def main() -> None:
     settings = Settings()
     create_private(settings.data)
     if settings.needs_token:
-        _prepare(settings)
+        services = connect(settings)
+        try:
+            migrations.upgrade(services.sessions)
+            if secret := bootstrap.create_first_token(services):
+                print(bootstrap.announcement(settings, secret), flush=True)
+        except ValueError as error:
+            sys.exit(str(error))
+        finally:
+            services.close()
     uvicorn.run(
         "server.app:create",
         factory=True,
@@ -25,19 +32,6 @@ def main() -> None:
         port=settings.port,
         timeout_graceful_shutdown=SHUTDOWN_SECONDS,
     )
-
-
-def _prepare(settings: Settings) -> None:
-    """Create the first token, if there is none, and print it."""
-    services = connect(settings)
-    try:
-        migrations.upgrade(services.sessions)
-        if secret := bootstrap.create_first_token(services):
-            print(bootstrap.announcement(settings, secret), flush=True)
-    except ValueError as error:
-        sys.exit(str(error))
-    finally:
-        services.close()
 
 
 if __name__ == "__main__":

@@ -76,5 +76,15 @@ class Settings(BaseSettings):
         return self.artifacts_url or str(self.data.resolve() / "artifacts")
 
     @property
+    def needs_admin_token(self) -> bool:
+        """A token is needed, and the environment sets none."""
+        return self.needs_token and not self.token
+
+    @property
     def needs_token(self) -> bool:
         return bool(self.token) or self.auth == "required" or self.host not in LOOPBACK
+
+
+def create_private(folder: Path) -> None:
+    """Create a folder that no other user can read; leave an existing one as it is."""
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)

@@ -1,13 +1,17 @@
-"""The one device that a worker computes on, found without starting it."""
+"""The one device that a worker computes on, a GPU or CPU threads, found without starting it."""
 
 import os
+import platform
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import psutil
 
-from . import cpu, nvidia
+from . import nvidia
 
+CPUINFO = Path("/proc/cpuinfo")
+TOPOLOGY = Path("/sys/devices/system/cpu")
 MEMORY_FRACTION = "XLA_PYTHON_CLIENT_MEM_FRACTION"
 DEFAULT_FRACTION = 0.75
 """Fraction of a GPU's memory that JAX allocates by default."""
@@ -34,9 +38,9 @@ def find(index: int, workers: int = 1) -> Device:
     """
     gpus = nvidia.visible()
     if not gpus:
-        threads = cpu.share(cpu.threads(), index, workers)
-        name = f"{cpu.model()} ({len(threads)} threads)"
-        return Device(name, memory(), {}, threads=tuple(threads))
+        mine = share_threads(threads(), index, workers)
+        name = f"{cpu_model()} ({len(mine)} threads)"
+        return Device(name, memory(), {}, threads=tuple(mine))
     gpu = gpus[index % len(gpus)]
     sharing = max(1, len(range(index % len(gpus), workers, len(gpus))))
     environment = {"CUDA_VISIBLE_DEVICES": gpu.uuid}
@@ -55,3 +59,37 @@ def memory() -> int:
     if limit.exists() and (text := limit.read_text().strip()).isdigit():
         return min(physical, int(text))
     return physical
+
+
+def cpu_model() -> str:
+    """Return the processor's model, else its instruction set."""
+    lines = CPUINFO.read_text().splitlines() if CPUINFO.exists() else []
+    fields = (line.partition(":") for line in lines)
+    named = (value.strip() for name, _, value in fields if name.strip() == "model name")
+    return next(named, "") or platform.processor() or platform.machine()
+
+
+def threads() -> list[int]:
+    """Return the threads that this process may use, ordered by socket and core."""
+    if not hasattr(os, "sched_getaffinity"):
+        return list(range(os.cpu_count() or 1))
+    return sorted(os.sched_getaffinity(0), key=_place)
+
+
+def share_threads(given: Sequence[int], index: int, workers: int) -> list[int]:
+    """Divide threads evenly among workers; they share if there are more workers."""
+    if workers > len(given):
+        return [given[index % len(given)]]
+    return list(given[index * len(given) // workers : (index + 1) * len(given) // workers])
+
+
+def pin(chosen: Sequence[int]) -> None:
+    """Restrict this process and its children to these threads, if the system supports it."""
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, chosen)
+
+
+def _place(thread: int) -> list[int]:
+    topology = TOPOLOGY / f"cpu{thread}" / "topology"
+    files = (topology / "physical_package_id", topology / "core_id")
+    return [*(int(file.read_text()) if file.exists() else 0 for file in files), thread]

@@ -1,9 +1,7 @@
 """Compute a run: drive the engine's experiment from the last checkpoint."""
 
 import time
-from collections.abc import Mapping
 from contextlib import suppress
-from typing import Any
 
 from pydantic import ValidationError
 
@@ -29,17 +27,12 @@ def carry_out(attempt: Attempt) -> None:
     except Broken as error:
         attempt.refuse(str(error))
     except ValidationError as error:  # Only a worker can validate what plug-ins declare.
-        attempt.refuse("; ".join(map(_message, error.errors())))
-
-
-def _message(error: Mapping[str, Any]) -> str:
-    """Return the name of the field and its error."""
-    words = str(error["msg"]).removeprefix("Value error, ")
-    return ": ".join(filter(None, (field_path(error["loc"]), words)))
+        named = ((field_path(one["loc"]), one["msg"]) for one in error.errors())
+        messages = ((path, text.removeprefix("Value error, ")) for path, text in named)
+        attempt.refuse("; ".join(": ".join(filter(None, one)) for one in messages))
 
 
 def compute(attempt: Attempt) -> None:
-    """Continue from the last checkpoint, one generation after another."""
     data = attempt.restore()
     initial = [] if data else attempt.initial()  # A checkpoint contains its initial creatures.
     spec = parse(attempt.spec)

@@ -19,7 +19,6 @@ from .plugins import PluginReport, PluginWatcher
 from .usage import Gauge, usage
 
 HEARTBEATS_PER_LEASE = 4
-"""Number of heartbeats within a lease."""
 HEARTBEATS_AFTER_END = 2
 """Heartbeats between the end of a run and killing its job."""
 
@@ -100,8 +99,8 @@ class Heartbeats(threading.Thread):
             kind="cpu" if self._device.gpu is None else "gpu",
             memory_used_bytes=self.gauge.last.memory_bytes,
             load=self.gauge.last.load,
-            plugins=plugins.plugins,
-            unloaded=plugins.unloaded,
+            plugins=list(plugins.plugins),
+            unloaded=list(plugins.unloaded),
         )
 
     def _end_lost_job(self, watch: Watch, lease: Lease) -> None:

@@ -17,7 +17,6 @@ NICE = 10
 
 
 def main(run_id: str, worker: str, parent: str) -> None:
-    """Carry out a run; die with the supervisor."""
     die_with_parent(int(parent), signal.SIGKILL)
     process_setup.listen()
     os.nice(NICE)

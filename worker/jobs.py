@@ -25,7 +25,6 @@ def prepared() -> None:
 
 
 def render(creature: str, kind: str = REPLAY) -> None:
-    """Make and keep a rendering of a creature."""
     prepared()
     from .renderings import make
 

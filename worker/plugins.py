@@ -23,13 +23,11 @@ from microcosmos.plugins.loading import GROUP
 from server.settings import Settings
 
 IMPORT_SECONDS = 120.0
-"""Time limit for the import of all modules."""
 
 log = logging.getLogger(__name__)
 
 
 def files(settings: Settings) -> list[Path]:
-    """Return the modules that the environment names."""
     return [Path(part) for part in settings.modules.split(os.pathsep) if part]
 
 

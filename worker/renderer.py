@@ -1,9 +1,12 @@
-"""Make renderings, in one long-lived process: its compiled programs stay warm."""
+"""`python -m worker.renderer [auditor]`: make renderings in a process that stays warm.
+
+The auditor makes audits in a process of its own, so that replays need not wait for them. It
+imports the engine for its first audit; until then it needs little memory.
+"""
 
 import os
 import socket
-from collections.abc import Callable
-from operator import attrgetter
+import sys
 from uuid import uuid4
 
 from rq import Queue
@@ -36,16 +39,15 @@ def retry_interrupted(jobs: Jobs, queue: Queue) -> None:
             jobs.render(*job.args, meta={RETRIED: True})
 
 
-def serve_queue(
-    name: str, queue_of: Callable[[Jobs], Queue], before: Callable[[], None] = lambda: None
-) -> None:
-    """Make the renderings of a queue until asked to stop; call `before` first."""
+def serve_queue(name: str) -> None:
+    """Make the renderings of a queue until asked to stop."""
     # Renderings need little of a GPU that belongs to a worker.
     os.environ.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")
     listen(interrupt=True)
-    before()
+    if name == "renderer":
+        prepared()
     services = connect(Settings())
-    queue = queue_of(services.jobs)
+    queue = services.jobs.audits if name == "auditor" else services.jobs.renderings
     with loop.logging_outages():
         retry_interrupted(services.jobs, queue)
     unique = f"{name}-{socket.gethostname()}-{uuid4().hex[:8]}"
@@ -55,4 +57,4 @@ def serve_queue(
 
 if __name__ == "__main__":
     log_to_stderr()
-    serve_queue("renderer", attrgetter("renderings"), prepared)
+    serve_queue(*sys.argv[1:] or ["renderer"])

@@ -19,9 +19,12 @@ PICTURES: dict[str, Callable[[Replay], bytes]] = {
 
 
 def make(services: Services, creature: str, kind: str) -> bytes:
-    """Return the bytes of a rendering."""
     if kind in PICTURES:
-        return PICTURES[kind](read_replay(_replay(services, creature)))
+        replay = renderings.existing(services, creature, REPLAY)
+        if replay is None:
+            replay = make(services, creature, REPLAY)
+            renderings.save(services, creature, REPLAY, replay)
+        return PICTURES[kind](read_replay(replay))
     file = renderings.creature(services, creature)
     if kind in (AUDIT, MEASUREMENT):
         from microcosmos.audit import audit, measurement  # Loads JAX.
@@ -34,12 +37,3 @@ def make(services: Services, creature: str, kind: str) -> bytes:
         return record(file)
     known = ", ".join((REPLAY, AUDIT, MEASUREMENT, *PICTURES))
     raise ValueError(f"`kind` of a rendering must be one of {known}; got {kind!r}")
-
-
-def _replay(services: Services, creature: str) -> bytes:
-    """Return the stored replay; make and store it if there is none."""
-    data = renderings.existing(services, creature, REPLAY)
-    if data is None:
-        data = make(services, creature, REPLAY)
-        renderings.save(services, creature, REPLAY, data)
-    return data

@@ -21,7 +21,7 @@ from server.services import services
 from server.services.services import Services
 from server.settings import Settings
 
-from . import cpu, device, loop
+from . import device, loop
 from .heartbeats import HEARTBEATS_PER_LEASE, Heartbeats
 from .plugins import PluginWatcher
 from .process_setup import listen, log_to_stderr, stop_requested
@@ -127,7 +127,7 @@ def supervise(settings: Settings, index: int) -> None:
     name = f"{socket.gethostname()}-{os.getpid()}"
     found = device.find(index, settings.workers)
     if found.threads:
-        cpu.pin(found.threads)
+        device.pin(found.threads)
     lease = max(SHORTEST_LEASE, round(settings.lease))
     worker = Supervisor(
         shared.jobs.run_queues, name, worker_ttl=lease, serializer=JSONSerializer

@@ -23,7 +23,7 @@ def recorded_in(run: Run) -> ColumnElement[bool]:
     return and_(Elite.run_id == run.id, Elite.generation <= run.generation)
 
 
-def at(
+def as_of(
     run: Run, generation: int, names: Sequence[str] = (), after: int = -1
 ) -> Select[*tuple[Any, ...]]:
     """Select each cell's elite as of a generation, if it entered after generation `after`."""

@@ -13,11 +13,11 @@ from sqlalchemy.orm import Session
 from microcosmos.archive import export
 
 from ..attempts.checkpoints import last_checkpoint
-from ..auth.authorize import MAY_READ, MAY_READ_SHARED
-from ..auth.share_access import ShareAccessDep
+from ..auth.authorize import MAY_READ, MAY_READ_SHARED, ShareAccessDep
+from ..core.api import sends
 from ..core.errors import ProblemError, invalid_field
 from ..runs.deps import RunDep
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from ..storage import ranges
 from ..tables import Artifact, Elite, Result, Run
 from . import elites
@@ -25,9 +25,7 @@ from . import measures as recorded_measures
 from .schemas import ArchiveRead, CentroidsRead, HistoryRead, Measure, ResultsRead
 
 router = APIRouter(prefix="/runs/{run_id}", tags=["archives"])
-Answers = dict[int | str, dict[str, Any]]
-binary: Answers = {200: {"content": {"application/octet-stream": {}}}, 404: {}}
-table: Answers = {200: {"content": {"text/csv": {}}}}
+BINARY = sends("application/octet-stream", {404: {}})
 
 HISTORY_ENTRIES = 400_000
 """About 50 MB."""
@@ -58,7 +56,7 @@ def read_archive(
         cells=cells,
         axes=recorded_measures.axes(run),
         recorded=recorded,
-        **_columns(session.execute(elites.at(run, as_of, names, known)).all(), names),
+        **_columns(session.execute(elites.as_of(run, as_of, names, known)).all(), names),
     )
 
 
@@ -67,7 +65,15 @@ def read_history(run: RunDep, session: SessionDep, measures: str = "") -> Histor
     """Return every elite that ever entered, from which each generation's archive follows."""
     _refuse_table(run)
     names = _requested(measures, recorded_measures.recorded(session, run))
-    _refuse_long_history(session, run)
+    counted = select(func.count()).select_from(Elite).where(elites.recorded_in(run))
+    entries = session.execute(counted).scalar_one()
+    if entries > HISTORY_ENTRIES:
+        detail = (
+            f"The history of this archive has {entries:,} entries, more than the "
+            f"{HISTORY_ENTRIES:,} that one answer holds. Read single generations at "
+            f"/api/v1/runs/{run.id}/archive?generation=."
+        )
+        raise ProblemError(422, "History too long", detail)
     ordered = elites.all_time(run, names).order_by(Elite.generation, Elite.cell)
     columns = _columns(session.execute(ordered).all(), names)
     return HistoryRead(generation=run.generation, **columns)
@@ -85,18 +91,6 @@ def read_centroids(run: RunDep, session: SessionDep, services: ServicesDep) -> C
         return CentroidsRead(centroids=None)
     found = export.centroids(services.artifacts.read(first.path))
     return CentroidsRead(centroids=found.tolist())
-
-
-def _refuse_long_history(session: Session, run: Run) -> None:
-    counted = select(func.count()).select_from(Elite).where(elites.recorded_in(run))
-    entries = session.execute(counted).scalar_one()
-    if entries > HISTORY_ENTRIES:
-        detail = (
-            f"The history of this archive has {entries:,} entries, more than the "
-            f"{HISTORY_ENTRIES:,} that one answer holds. Read single generations at "
-            f"/api/v1/runs/{run.id}/archive?generation=."
-        )
-        raise ProblemError(422, "History too long", detail)
 
 
 def _requested(measures: str, recorded: Sequence[Measure]) -> list[str]:
@@ -130,9 +124,7 @@ def _refuse_table(run: Run) -> None:
         raise ProblemError(404, "No archive", detail)
 
 
-@router.get(
-    "/archive.h5", response_class=Response, responses=binary, dependencies=[MAY_READ_SHARED]
-)
+@router.get("/archive.h5", **BINARY, dependencies=[MAY_READ_SHARED])
 def download_archive(
     request: Request,
     run: RunDep,
@@ -146,9 +138,7 @@ def download_archive(
     return ranges.file(request, services.artifacts, artifact, headers)
 
 
-@router.get(
-    "/archive.csv", response_class=Response, responses=table, dependencies=[MAY_READ_SHARED]
-)
+@router.get("/archive.csv", **sends("text/csv"), dependencies=[MAY_READ_SHARED])
 def download_archive_csv(
     run: RunDep, share: ShareAccessDep, session: SessionDep, services: ServicesDep
 ) -> Response:
@@ -179,7 +169,7 @@ def read_results(run: RunDep, session: SessionDep) -> ResultsRead:
     return ResultsRead(generation=run.generation, summary=run.summary, rows=_rows(session, run))
 
 
-@router.get("/results.csv", response_class=Response, responses=table, dependencies=[MAY_READ])
+@router.get("/results.csv", **sends("text/csv"), dependencies=[MAY_READ])
 def download_results(run: RunDep, session: SessionDep) -> Response:
     """Return the rows as CSV."""
     if recorded_measures.has_archive(run):
@@ -192,18 +182,14 @@ def download_results(run: RunDep, session: SessionDep) -> Response:
     if not rows:
         detail = f"Run {run.id} has no results yet; it is {run.status}."
         raise ProblemError(404, "No results yet", detail)
-    return Response(_csv(rows), headers=attachment(run, "csv"), media_type="text/csv")
-
-
-def _rows(session: Session, run: Run) -> list[dict[str, Any]]:
-    mine = select(Result).where(Result.run_id == run.id).order_by(Result.number)
-    return [{**row.values, "creature": row.creature} for row in session.scalars(mine)]
-
-
-def _csv(rows: list[dict[str, Any]]) -> str:
     columns = list(dict.fromkeys(name for row in rows for name in row if name != "creature"))
     text = io.StringIO()
     writer = csv.DictWriter(text, [*columns, "creature"], lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
-    return text.getvalue()
+    return Response(text.getvalue(), headers=attachment(run, "csv"), media_type="text/csv")
+
+
+def _rows(session: Session, run: Run) -> list[dict[str, Any]]:
+    mine = select(Result).where(Result.run_id == run.id).order_by(Result.number)
+    return [{**row.values, "creature": row.creature} for row in session.scalars(mine)]

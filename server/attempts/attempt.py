@@ -13,8 +13,9 @@ from sqlalchemy import case, func
 from sqlalchemy.orm import Session
 
 from microcosmos.archive.report import Report
+from microcosmos.sizes import size
 
-from ..core.database import clock
+from ..core.database import clock, retried
 from ..creatures import initial
 from ..runs import log
 from ..runs.announce import announce
@@ -32,8 +33,7 @@ from ..tables import (
     Run,
 )
 from . import recording
-from .checkpoints import add_checkpoint, fall_back, newest_sound
-from .retry import retried
+from .checkpoints import add_checkpoint, fall_back, newest_intact
 
 logger = logging.getLogger(__name__)
 
@@ -75,33 +75,31 @@ class Attempt:
         self.saved_at = time.monotonic() if self.generation else -math.inf
 
     def record_device(self, device: str) -> None:
-        """Record the kind of device that computes the run."""
         self._update(f"Computing on {device}.", device=device)
 
     @retried
     def initial(self) -> list[dict[str, Any]]:
-        """Return the files of the initial creatures."""
         names = self.spec.get("search", {}).get("initial", [])
         with self.services.sessions.read() as session:
             return initial.files(session, names)
 
     @retried
     def restore(self) -> bytes | None:
-        """Return the content of the newest sound checkpoint; None before the first one.
+        """Return the content of the newest intact checkpoint; None before the first one.
 
         Older checkpoints stand in for damaged ones, and what was recorded after them is
         deleted. Raise `CheckpointUnavailable`, and delete nothing, if a file is missing or all
         are damaged: then the store may be the wrong one, and a person has to decide. Call it
         before anything is recorded.
         """
-        data, sound, damaged = newest_sound(self.services, self.run_id)
-        if sound and damaged:
+        data, intact, damaged = newest_intact(self.services, self.run_id)
+        if intact and damaged:
             text = (
                 f"The checkpoint of generation {self.generation} is damaged; "
-                f"the run resumes from generation {sound.generation}."
+                f"the run resumes from generation {intact.generation}."
             )
             with self._current(warning=text) as (session, run):
-                fall_back(session, run, sound, damaged)
+                fall_back(session, run, intact, damaged)
                 log.note(session, run, text, "warning")
             logger.warning("run %s: %s (%s)", self.run_id, text, ", ".join(damaged))
             self.generation, self.seconds = run.checkpoint_generation, run.seconds
@@ -123,13 +121,11 @@ class Attempt:
 
     @retried
     def check(self) -> None:
-        """Read the requested state."""
         with self._current() as (_, run):
             self.requested_state = run.requested_state
 
     @retried
     def record(self, report: Report, seconds: float) -> None:
-        """Record a generation that took so many seconds."""
         total = self.seconds + seconds
         rows = recording.rows_of(report, total)
         with self._current(**rows.run) as (session, run):
@@ -180,7 +176,8 @@ class Attempt:
                 run.checkpoint_generation = generation
                 run.attempts_without_checkpoint = 0
                 run.warning = None
-            log.note_checkpoint(session, run, generation, stored.size)
+            text = f"Checkpoint of generation {generation} written, {size(stored.size)}."
+            log.note(session, run, text, kind=log.SAVED)
         self.generation = generation
         for path in superfluous:
             try:

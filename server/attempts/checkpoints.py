@@ -14,13 +14,13 @@ from ..tables import CHECKPOINT, Artifact, Elite, Generation, Result, Run
 
 
 class CheckpointUnavailable(Exception):
-    """The store lacks a sound file of a checkpoint that the run has."""
+    """The store lacks a intact file of a checkpoint that the run has."""
 
     def __init__(self, services: Services, row: Artifact, what: str):
         super().__init__(
-            f"The checkpoint of generation {row.generation} {what}: no sound file `{row.path}` "
-            f"in {services.artifacts.root}. Check MICROCOSMOS_ARTIFACTS_URL and the folder's "
-            "mount, or restore the file"
+            f"The checkpoint of generation {row.generation} {what}: no intact file "
+            f"`{row.path}` in {services.artifacts.root}. Check "
+            "MICROCOSMOS_ARTIFACTS_URL and the folder's mount, or restore the file"
         )
 
 
@@ -36,10 +36,10 @@ def checkpoints(session: Session, run_id: UUID, limit: int | None = None) -> lis
     return list(session.scalars(newest))
 
 
-def newest_sound(
+def newest_intact(
     services: Services, run_id: UUID
 ) -> tuple[bytes | None, Artifact | None, list[str]]:
-    """Return content and row of the newest sound checkpoint, and damaged paths after it."""
+    """Return content and row of the newest intact checkpoint, and damaged paths after it."""
     with services.sessions.read() as session:
         rows = checkpoints(session, run_id)
     damaged: list[str] = []
@@ -81,10 +81,10 @@ def add_checkpoint(
     return gone
 
 
-def fall_back(session: Session, run: Run, sound: Artifact, damaged: Sequence[str]) -> None:
-    """Return to a checkpoint whose file is sound, and forget the damaged ones after it."""
+def fall_back(session: Session, run: Run, intact: Artifact, damaged: Sequence[str]) -> None:
+    """Return to a checkpoint whose file is intact, and forget the damaged ones after it."""
     session.execute(delete(Artifact).where(Artifact.path.in_(damaged)))
-    run.checkpoint_generation = sound.generation or 0
+    run.checkpoint_generation = intact.generation or 0
     rewind(session, run)
 
 

@@ -33,7 +33,7 @@ def claim(services: Services, run_id: UUID, worker: str) -> Attempt | None:
     """
     with services.sessions.write.begin() as session:
         run = session.get(Run, run_id)
-        if run and not plugins.fit(session.get(Worker, worker), run.plugin_versions):
+        if run and not plugins.has_versions(session.get(Worker, worker), run.plugin_versions):
             return None  # The run waits in another queue.
         over = or_(Run.worker == worker, lease_expired(session, services.settings.lease))
         fail_attempt(session, run_id, over, error="the worker stopped reporting")

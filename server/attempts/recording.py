@@ -1,5 +1,6 @@
 """Record the report of a generation: rows of the database, and events."""
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from operator import itemgetter
@@ -13,7 +14,6 @@ from microcosmos.archive.creature import LICENCE
 from microcosmos.archive.report import Report
 
 from ..creatures.storage import creature_columns, insert_and_lock, link
-from ..services.event_stream import finite
 from ..tables import Elite, Generation, Result
 
 
@@ -71,6 +71,11 @@ def rows_of(report: Report, seconds: float) -> Rows:
     )
 
 
+def finite(value: float | None) -> float | None:
+    """Return the value, or None where JSON and SQL cannot hold it (NaN, infinity)."""
+    return value if value is not None and math.isfinite(value) else None
+
+
 def plain(values: Mapping[str, Any] | None) -> dict[str, Any] | None:
     """Replace numbers that are not finite by None, for JSON."""
     if values is None:
@@ -107,17 +112,8 @@ def events(run_id: UUID, rows: Rows) -> Iterator[tuple[str, dict[str, Any]]]:
     head = {"run": str(run_id), "generation": rows.curve["generation"]}
     yield "generation", head | rows.curve
     if rows.elites:
-        columns = {
-            "cell": "cell",
-            "fitness": "fitness",
-            "descriptors": "descriptors",
-            "elite_generation": "generation",
-            "creature": "creature",
-        }
-        yield (
-            "elites",
-            head | {to: [row[name] for row in rows.elites] for to, name in columns.items()},
-        )
+        columns = {name: [row[name] for row in rows.elites] for name in rows.elites[0]}
+        yield "elites", columns | head | {"elite_generation": columns["generation"]}
     if rows.results:
         table = [{**row["values"], "creature": row["creature"]} for row in rows.results]
         yield "results", head | {"summary": rows.curve["summary"], "rows": table}

@@ -3,7 +3,6 @@
 import argparse
 import sys
 from datetime import UTC, datetime, timedelta
-from uuid import UUID
 
 from sqlalchemy import select
 
@@ -16,11 +15,11 @@ from . import tokens
 
 
 def main(words: list[str] | None = None) -> None:
-    asked = _arguments().parse_args(words)
+    arguments = _arguments().parse_args(words)
     services = connect(Settings())
     try:
         migrations.upgrade(services.sessions)
-        asked.act(services, asked)
+        arguments.act(services, arguments)
     except ProblemError as error:
         sys.exit(error.problem.detail)
     finally:
@@ -42,31 +41,27 @@ def _arguments() -> argparse.ArgumentParser:
     return parser
 
 
-def _create(services: Services, asked: argparse.Namespace) -> None:
-    expires_at = datetime.now(UTC) + timedelta(days=asked.days) if asked.days else None
-    print(tokens.create(services, asked.name, asked.scope, expires_at).secret)
+def _create(services: Services, arguments: argparse.Namespace) -> None:
+    expires_at = datetime.now(UTC) + timedelta(days=arguments.days) if arguments.days else None
+    print(tokens.create(services, arguments.name, arguments.scope, expires_at).secret)
 
 
-def _list(services: Services, asked: argparse.Namespace) -> None:
+def _list(services: Services, arguments: argparse.Namespace) -> None:
     with services.sessions.read() as session:
-        for token in tokens.known(session):
+        for token in tokens.all_tokens(session):
             ended = f"revoked {token.revoked_at:%Y-%m-%d}" if token.revoked_at else "live"
             until = f", until {token.expires_at:%Y-%m-%d %H:%M}" if token.expires_at else ""
             print(f"{token.name}\t{token.scope}\t{token.prefix}…\t{ended}{until}")
 
 
-def _revoke(services: Services, asked: argparse.Namespace) -> None:
+def _revoke(services: Services, arguments: argparse.Namespace) -> None:
     """Revoke a token, even the last admin token: this command can create another."""
-    tokens.revoke(services, _named(services, asked.name), last=True)
-
-
-def _named(services: Services, name: str) -> UUID:
+    live = select(Token.id).where(Token.name == arguments.name, Token.revoked_at.is_(None))
     with services.sessions.read() as session:
-        mine = select(Token.id).where(Token.name == name, Token.revoked_at.is_(None))
-        found = session.scalars(mine).one_or_none()
-    if found is None:
-        raise ProblemError(404, "Not found", f"No live token is named {name!r}.")
-    return found
+        token = session.scalars(live).one_or_none()
+    if token is None:
+        raise ProblemError(404, "Not found", f"No live token is named {arguments.name!r}.")
+    tokens.revoke(services, token, last=True)
 
 
 if __name__ == "__main__":

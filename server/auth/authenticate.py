@@ -1,23 +1,60 @@
-"""Authenticate a request: find the principal of its token, and slow down guessing."""
+"""Authenticate a request by its token, and limit the rate of unknown tokens by address."""
 
-from dataclasses import dataclass
+import time
+from collections import OrderedDict
+from collections.abc import Callable
 from hmac import compare_digest
+from ipaddress import IPv6Address, ip_address, ip_network
+from math import ceil
+from threading import Lock
 
 from ..core.errors import ProblemError
 from ..services.services import Services
 from . import tokens
 from .principal import ENVIRONMENT, LOCAL, Principal
-from .ratelimit import RateLimit
 
 TOKEN_NEEDED = "A token is needed: send it as `Authorization: Bearer`, or sign in at /settings."
+BURST = 10
+"""Wrong tokens that an address may send in a row."""
+INTERVAL = 6.0
+"""Seconds after which it may send one more."""
+ADDRESSES = 4096
+"""Addresses that are remembered, those of the latest requests."""
 
 
-@dataclass(frozen=True)
-class Credentials:
-    """The token of a request, if any, and the address that it came from."""
+class RateLimit:
+    """Remembers when each address may send the next wrong token."""
 
-    token: str | None
-    address: str
+    def __init__(self, clock: Callable[[], float] = time.monotonic):
+        self._clock, self._lock = clock, Lock()
+        self._charged_until = OrderedDict[str, float]()
+
+    def add(self, address: str) -> int:
+        """Count a wrong token; return the seconds to wait before the next one."""
+        network = network_of(address)
+        with self._lock:
+            now = self._clock()
+            charged = max(now, self._charged_until.pop(network, now))
+            wait = max(0, ceil(charged + INTERVAL - now - BURST * INTERVAL))
+            # A refused attempt does not make the wait longer.
+            self._charged_until[network] = charged if wait else charged + INTERVAL
+            if len(self._charged_until) > ADDRESSES:
+                self._charged_until.popitem(last=False)
+        return wait
+
+
+def network_of(address: str) -> str:
+    """Return the IPv4 address, or the IPv6 network, since one host may use all of a network.
+
+    Everything else counts as one address.
+    """
+    try:
+        found = ip_address(address.partition("%")[0])
+    except ValueError:
+        return "unknown"
+    if isinstance(found, IPv6Address) and not found.ipv4_mapped:
+        return str(ip_network((found, 64), strict=False))
+    return str(getattr(found, "ipv4_mapped", None) or found)
 
 
 class Authenticator:
@@ -26,9 +63,9 @@ class Authenticator:
     def __init__(self, services: Services):
         self.services, self.limit = services, RateLimit()
 
-    def identify(self, credentials: Credentials) -> Principal:
+    def identify(self, token: str | None) -> Principal:
         """Return the principal; raise `ProblemError` where a token is needed or not valid."""
-        settings, token = self.services.settings, credentials.token
+        settings = self.services.settings
         if not token:
             if settings.needs_token:
                 raise ProblemError(401, "Unauthorized", TOKEN_NEEDED, headers=tokens.CHALLENGE)
@@ -41,13 +78,11 @@ class Authenticator:
     def count(self, error: ProblemError, address: str) -> ProblemError:
         """Count an unknown token; return the error to answer, 429 where there were many."""
         wait = self.limit.add(address) if isinstance(error, tokens.UnknownToken) else 0
-        return _too_many(wait) if wait else error
-
-
-def _too_many(wait: int) -> ProblemError:
-    detail = (
-        "This server does not know the token, and your address has sent many unknown ones. "
-        f"Try again in {wait} s. A valid token is accepted at once."
-    )
-    headers = {"Retry-After": str(wait)}
-    return ProblemError(429, "Too many wrong tokens", detail, headers=headers)
+        if not wait:
+            return error
+        detail = (
+            "This server does not know the token, and your address has sent many unknown ones. "
+            f"Try again in {wait} s. A valid token is accepted at once."
+        )
+        headers = {"Retry-After": str(wait)}
+        return ProblemError(429, "Too many wrong tokens", detail, headers=headers)

@@ -1,6 +1,7 @@
-"""Authorise a request: the scope that each route needs, and the owner of a row."""
+"""Authorise a request: the scope of its route, the owner of a row, the reach of a share."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Protocol
+from uuid import UUID
 
 from fastapi import Depends, Request, Security
 from fastapi.security import HTTPAuthorizationCredentials, HTTPBearer, SecurityScopes
@@ -9,7 +10,7 @@ from sqlalchemy.orm import Session
 
 from ..core.errors import ProblemError
 from ..services.services import Services
-from ..tables import Owned
+from ..tables import Artifact, Owned, Run
 from . import tokens
 from .principal import ADMIN, READ, SHARE, WRITE, Principal
 
@@ -69,7 +70,7 @@ def refuse_other(session: Session, principal: Principal, row: Owned, action: str
     """Raise `ProblemError` unless the principal owns the row or is an admin."""
     if principal.may(ADMIN) or row.owner == principal.token:
         return
-    owner = tokens.names(session, [row.owner]).get(row.owner)
+    owner = tokens.owner_names(session, [row.owner]).get(row.owner)
     whose = f"belongs to `{owner}`" if owner else "was made without a token"
     (key,) = inspect(row).identity
     detail = (
@@ -78,3 +79,39 @@ def refuse_other(session: Session, principal: Principal, row: Owned, action: str
         f"`{principal.name}`."
     )
     raise ProblemError(403, "Forbidden", detail)
+
+
+SHARE_HEADER = "Microcosmos-Share"
+"""The header that names a share. Answers vary by it, so caches keep them apart."""
+
+
+class ShareAccess(Protocol):
+    """Read access to what a share shows. The package `shares` implements it."""
+
+    @property
+    def listed(self) -> bool:
+        """Search engines may list the share's page."""
+        ...
+
+    def run(self, session: Session, run_id: UUID) -> Run:
+        """Return the run as shared; raise `ProblemError` if the share does not hold it."""
+        ...
+
+    def refuse_unless_holds(self, session: Session, creature: str) -> None:
+        """Raise `ProblemError` if the share does not hold a creature."""
+
+    def licensed(self, file: dict[str, Any]) -> dict[str, Any]:
+        """Return a creature file under the licence of the share."""
+        ...
+
+    def archive(self, session: Session) -> Artifact:
+        """Return the archive file as it was shared; raise `ProblemError` if there is none."""
+        ...
+
+
+async def share_access(request: Request) -> ShareAccess | None:
+    """Return the share that the request names, if it names one."""
+    return request.state.share
+
+
+ShareAccessDep = Annotated[ShareAccess | None, Depends(share_access)]

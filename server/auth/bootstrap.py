@@ -1,14 +1,12 @@
 """The first token, created where others can reach the server and no token exists."""
 
 import os
-from pathlib import Path
 
 from sqlalchemy import exists, select
 
 from ..core.errors import ProblemError
-from ..core.folders import create_private
 from ..services.services import Services
-from ..settings import Settings
+from ..settings import Settings, create_private
 from ..tables import Token
 from .principal import ADMIN
 from .tokens import create, has_admin
@@ -24,7 +22,7 @@ def create_first_token(services: Services) -> str | None:
     live one of an admin: a server that created another could not be closed to the public.
     """
     settings = services.settings
-    if not settings.needs_token or settings.token:
+    if not settings.needs_admin_token:
         return None
     with services.sessions.read() as session:
         exist = session.scalar(select(exists().select_from(Token)))
@@ -35,12 +33,15 @@ def create_first_token(services: Services) -> str | None:
         made = create(services, NAME, ADMIN)
     except ProblemError:  # Another server, started at the same time, was faster.
         return None
-    _write_private(settings.data / FILE, made.secret)
+    create_private(settings.data)
+    path = settings.data / FILE
+    path.unlink(missing_ok=True)
+    with os.fdopen(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600), "w") as file:
+        file.write(made.secret + "\n")
     return made.secret
 
 
 def announcement(settings: Settings, secret: str) -> str:
-    """Return the text about the first token for the terminal."""
     file = settings.data.resolve() / FILE
     return (
         f"{secret} is the admin token. It is shown once and kept in {file}. Sign in with it at "
@@ -50,8 +51,7 @@ def announcement(settings: Settings, secret: str) -> str:
 
 def refuse_without_admin(services: Services) -> None:
     """Raise `ValueError` if tokens are needed and no live admin token exists."""
-    settings = services.settings
-    if not settings.needs_token or settings.token:
+    if not services.settings.needs_admin_token:
         return
     with services.sessions.read() as session:
         found = has_admin(session)
@@ -61,10 +61,3 @@ def refuse_without_admin(services: Services) -> None:
             "create one with `python -m server.auth create NAME --scope admin`, "
             "or set MICROCOSMOS_TOKEN"
         )
-
-
-def _write_private(path: Path, secret: str) -> None:
-    create_private(path.parent)
-    path.unlink(missing_ok=True)
-    with os.fdopen(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600), "w") as file:
-        file.write(secret + "\n")

@@ -10,32 +10,28 @@ DAYS = 90
 """Lifetime of the cookie, unless its token expires earlier."""
 
 
-def name(asked: HTTPConnection) -> str:
+def cookie_name(request: HTTPConnection) -> str:
     """Return the name of the cookie; browsers share cookies among the ports of a host.
 
     The port is the one that the browser uses, which `ssh -L` may have changed.
     """
-    return f"{COOKIE}_{asked.url.port}" if asked.url.port else COOKIE
-
-
-def remembered(asked: HTTPConnection) -> str | None:
-    return asked.cookies.get(name(asked))
+    return f"{COOKIE}_{request.url.port}" if request.url.port else COOKIE
 
 
 def remember(
-    response: Response, asked: HTTPConnection, token: str, expires_at: datetime | None
+    response: Response, request: HTTPConnection, token: str, expires_at: datetime | None
 ) -> None:
     """Set a cookie that neither scripts nor requests from other sites can use."""
     left = (expires_at - datetime.now(UTC)).total_seconds() if expires_at else DAYS * 86_400
     response.set_cookie(
-        name(asked),
+        cookie_name(request),
         token,
         max_age=max(0, min(int(left), DAYS * 86_400)),
         httponly=True,
         samesite="strict",
-        secure=asked.url.scheme == "https",
+        secure=request.url.scheme == "https",
     )
 
 
-def forget(response: Response, asked: HTTPConnection) -> None:
-    response.delete_cookie(name(asked), httponly=True, samesite="strict")
+def forget(response: Response, request: HTTPConnection) -> None:
+    response.delete_cookie(cookie_name(request), httponly=True, samesite="strict")

@@ -1,21 +1,22 @@
 """Identify the principal of each request, and refuse requests from pages of other sites."""
 
 from collections.abc import Callable
+from functools import partial
 from urllib.parse import SplitResult, urlsplit
 
 from fastapi.concurrency import run_in_threadpool
-from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.exc import OperationalError, TimeoutError
 from starlette.datastructures import Headers
 from starlette.requests import HTTPConnection
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from ..core.errors import ProblemError, answer, unavailable
+from ..core.errors import ProblemError, answer
 from ..settings import LOOPBACK
-from .authenticate import Authenticator, Credentials
-from .cookies import remember, remembered
+from . import cookies
+from .authenticate import Authenticator
+from .authorize import SHARE_HEADER, ShareAccess
 from .principal import SHARE_HOLDER
-from .share_access import SHARE_HEADER, ShareAccess
 
 SAFE = ("GET", "HEAD")
 METRICS = "/metrics"
@@ -45,10 +46,8 @@ class PrincipalMiddleware:
         if scope["type"] == "http":
             try:
                 app = await self._identified(HTTPConnection(scope)) or self.app
-            except ProblemError as error:
-                app = answer(error.problem, error.headers)
-            except SQLAlchemyError as error:
-                app = unavailable(error)
+            except (ProblemError, OperationalError, TimeoutError) as error:
+                app = answer(error)
         await app(scope, receive, send)
 
     async def _identified(self, request: HTTPConnection) -> Response | None:
@@ -68,20 +67,17 @@ class PrincipalMiddleware:
         if self.needs_token and bearer is None and method not in SAFE:
             # A browser sends cookies by itself, also for a page of another site.
             _refuse_foreign_origin(request.headers)
-        cookie = remembered(request) if self.needs_token else None
-        credentials = Credentials(cookie if bearer is None else bearer, address(request))
+        cookie = request.cookies.get(cookies.cookie_name(request)) if self.needs_token else None
+        token = cookie if bearer is None else bearer
         try:
             identify = self.authenticator.identify
-            request.state.principal = await run_in_threadpool(identify, credentials)
+            request.state.principal = await run_in_threadpool(identify, token)
         except ProblemError as error:
-            request.state.refuse = self._refusal(error, credentials.address)
+            # Only routes that are not public call it, and so count a wrong token.
+            request.state.refuse = partial(self.authenticator.count, error, address(request))
             if method not in SAFE and path != SESSION:  # Before the body is read.
                 raise request.state.refuse() from None
         return None
-
-    def _refusal(self, error: ProblemError, address: str) -> Callable[[], ProblemError]:
-        """Return the function that counts a wrong token: public routes do not call it."""
-        return lambda: self.authenticator.count(error, address)
 
     async def _page(self, request: HTTPConnection) -> Response | None:
         """Move a token in the address of a page into a cookie. The page itself is public."""
@@ -91,19 +87,17 @@ class PrincipalMiddleware:
         clean = request.url.remove_query_params("token")
         # The log of requests is written at the end: it must not name the secret.
         request.scope["query_string"] = clean.query.encode()
-        credentials = Credentials(given, address(request))
         try:
-            principal = await run_in_threadpool(self.authenticator.identify, credentials)
+            principal = await run_in_threadpool(self.authenticator.identify, given)
         except ProblemError as error:
-            self.authenticator.count(error, credentials.address)
+            self.authenticator.count(error, address(request))
             return None  # The page asks for a token.
         redirect = RedirectResponse(clean, 303)
-        remember(redirect, request, given, principal.expires_at)
+        cookies.remember(redirect, request, given, principal.expires_at)
         return redirect
 
 
 def address(request: HTTPConnection) -> str:
-    """Return the address that a request comes from, if it is known."""
     return request.client.host if request.client else ""
 
 

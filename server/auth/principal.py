@@ -33,5 +33,4 @@ class Principal:
 LOCAL = Principal("local", ADMIN)
 """The user of this machine, where no token is needed."""
 ENVIRONMENT = Principal("MICROCOSMOS_TOKEN", ADMIN)
-"""The holder of the token that the environment sets."""
 SHARE_HOLDER = Principal("the holder of a share", SHARE)

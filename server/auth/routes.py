@@ -1,18 +1,16 @@
 """Routes of tokens and of the session."""
 
-from typing import cast
 from uuid import UUID
 
 from fastapi import APIRouter, Request, Response
 
 from ..core.json_body import json_route
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from . import tokens
-from .authenticate import Authenticator, Credentials
+from .authenticate import Authenticator
 from .authorize import MAY_ADMINISTER, PUBLIC, Reader
 from .cookies import forget, remember
 from .middleware import address
-from .principal import Principal, Scope
 from .schemas import PrincipalRead, SignIn, TokenCreate, TokenCreated, TokenRead
 
 BODY_BYTES = 1 << 12
@@ -23,13 +21,13 @@ router = APIRouter(tags=["tokens"], route_class=json_route(BODY_BYTES))
 @router.get("/tokens/current")
 async def read_current(services: ServicesDep, principal: Reader) -> PrincipalRead:
     """Return the principal of the request."""
-    return _read(principal, services.settings.needs_token)
+    return PrincipalRead(**vars(principal), needed=services.settings.needs_token)
 
 
 @router.get("/tokens", dependencies=[MAY_ADMINISTER])
 def list_tokens(session: SessionDep) -> list[TokenRead]:
     """Return all tokens, revoked ones too, newest first, without their secrets."""
-    return [TokenRead.model_validate(token) for token in tokens.known(session)]
+    return [TokenRead.model_validate(token) for token in tokens.all_tokens(session)]
 
 
 @router.post("/tokens", status_code=201, dependencies=[MAY_ADMINISTER])
@@ -50,26 +48,16 @@ def revoke_token(token_id: UUID, services: ServicesDep) -> TokenRead:
 def sign_in(asked: SignIn, request: Request, response: Response) -> PrincipalRead:
     """Keep a token in a cookie of this site, which scripts cannot read; 401 if it is wrong."""
     authenticator: Authenticator = request.app.state.authenticator
-    credentials = Credentials(asked.token, address(request))
     try:
-        principal = authenticator.identify(credentials)
+        principal = authenticator.identify(asked.token)
     except tokens.UnknownToken as error:
-        raise authenticator.count(error, credentials.address) from None
+        raise authenticator.count(error, address(request)) from None
     remember(response, request, asked.token, principal.expires_at)
-    return _read(principal, authenticator.services.settings.needs_token)
+    needed = authenticator.services.settings.needs_token
+    return PrincipalRead(**vars(principal), needed=needed)
 
 
 @router.delete("/session", status_code=204, dependencies=[PUBLIC])
 async def sign_out(request: Request, response: Response) -> None:
     """Forget the cookie. The token stays valid."""
     forget(response, request)
-
-
-def _read(principal: Principal, needed: bool) -> PrincipalRead:
-    return PrincipalRead(
-        name=principal.name,
-        scope=cast(Scope, principal.scope),
-        token=principal.token,
-        expires_at=principal.expires_at,
-        needed=needed,
-    )

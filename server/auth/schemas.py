@@ -30,7 +30,6 @@ class TokenRead(Wire):
     id: UUID
     name: str
     prefix: str
-    """The first characters of the secret, by which its holder recognises it."""
     scope: Scope
     created_at: datetime
     expires_at: datetime | None

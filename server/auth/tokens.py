@@ -31,7 +31,6 @@ SECRET_BYTES = 32
 PREVIEW_LENGTH = len(PREFIX) + 6
 """Characters of a secret that the table keeps, so that its holder can recognise it."""
 LAST_USED_INTERVAL = timedelta(minutes=5)
-"""Shortest time between two updates of `last_used_at`."""
 CHECK_SECONDS = 1.0
 """Longest time that an event stream outlives its token."""
 CHALLENGE = {"WWW-Authenticate": "Bearer"}
@@ -103,22 +102,18 @@ def principal_of(services: Services, secret: str) -> Principal:
         used = token.last_used_at
         stale = used is None or now(session) - used > LAST_USED_INTERVAL
     if stale:
-        _note_use(services, token.id)
+        written = update(Token).where(Token.id == token.id).values(last_used_at=clock())
+        # The database may be busy: the request does not wait for it.
+        with suppress(OperationalError), services.sessions.write.begin() as session:
+            session.execute(written)
     return Principal(token.name, cast(Scope, token.scope), token.id, token.expires_at)
-
-
-def _note_use(services: Services, token: UUID) -> None:
-    """Write when the token was used, unless the database is busy."""
-    used = update(Token).where(Token.id == token).values(last_used_at=clock())
-    with suppress(OperationalError), services.sessions.write.begin() as session:
-        session.execute(used)
 
 
 def _ended(detail: str) -> ProblemError:
     return ProblemError(401, "Unauthorized", detail, headers=CHALLENGE)
 
 
-def known(session: Session) -> Sequence[Token]:
+def all_tokens(session: Session) -> Sequence[Token]:
     """Return all tokens, revoked ones too, newest first."""
     return session.scalars(select(Token).order_by(Token.created_at.desc(), Token.id)).all()
 
@@ -138,25 +133,18 @@ def revoke(services: Services, token: UUID, last: bool = False) -> Token:
         if found is None:
             raise ProblemError(404, "Not found", f"No token has the id {token}.")
         if found.revoked_at is None:
-            if not last:
-                _refuse_last(services, session, found)
+            is_admin = found.scope == ADMIN and services.settings.needs_admin_token
+            if is_admin and not last and not has_admin(session, token):
+                detail = (
+                    f"`{found.name}` is the only token of an admin. Create another admin token "
+                    "first, or nobody can create tokens."
+                )
+                raise ProblemError(409, "The last admin", detail)
             found.revoked_at = found.expires_at if found.expired(session) else now(session)
     return found
 
 
-def _refuse_last(services: Services, session: Session, token: Token) -> None:
-    settings = services.settings
-    if token.scope != ADMIN or not settings.needs_token or settings.token:
-        return
-    if not has_admin(session, token.id):
-        detail = (
-            f"`{token.name}` is the only token of an admin. Create another admin token first, "
-            "or nobody can create tokens."
-        )
-        raise ProblemError(409, "The last admin", detail)
-
-
-def names(session: Session, owners: Iterable[UUID | None]) -> dict[UUID | None, str]:
+def owner_names(session: Session, owners: Iterable[UUID | None]) -> dict[UUID | None, str]:
     """Return the names of owners, by id."""
     wanted = {owner for owner in owners if owner is not None}
     if not wanted:

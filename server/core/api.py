@@ -3,20 +3,24 @@
 from typing import Any
 
 from fastapi import APIRouter, FastAPI, Request
-from fastapi.responses import JSONResponse
+from fastapi.responses import JSONResponse, Response
 from fastapi.routing import iter_route_contexts
 from starlette.routing import compile_path
 
-from .errors import MEDIA_TYPE, ProblemError
-from .schemas import Problem
+from .errors import MEDIA_TYPE, Problem, ProblemError
 
-PROBLEMS: dict[int | str, dict[str, Any]] = {
-    "default": {"model": Problem, "description": "A problem (RFC 9457)"}
-}
+Answers = dict[int | str, dict[str, Any]]
+PROBLEMS: Answers = {"default": {"model": Problem, "description": "A problem (RFC 9457)"}}
 METHODS = ["GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE"]
 
 fallback = APIRouter(include_in_schema=False)
 """Routes after all others: the OpenAPI document, which needs a token too, and 404 or 405."""
+
+
+def sends(media_type: str, others: Answers | None = None) -> dict[str, Any]:
+    """Return the arguments of a route that sends a file, for the OpenAPI document."""
+    responses = {200: {"content": {media_type: {}}}, **(others or {})}
+    return {"response_class": Response, "responses": responses}
 
 
 @fallback.get("/openapi.json")

@@ -1,20 +1,28 @@
-"""The database: engine, sessions, its clock, and inserts that tolerate existing rows."""
+"""The database: engine, sessions, clock, inserts that tolerate existing rows, and retries."""
 
-from collections.abc import Mapping, Sequence
+import logging
+import time
+from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime, timedelta
+from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar, cast
 
 from sqlalchemy import DateTime, Engine, create_engine, event, make_url, select
 from sqlalchemy.dialects import postgresql, sqlite
+from sqlalchemy.exc import OperationalError
 from sqlalchemy.ext.compiler import compiles
 from sqlalchemy.orm import Session, sessionmaker
 from sqlalchemy.sql.expression import FunctionElement
 from sqlalchemy.types import TypeDecorator
 
-from .folders import create_private
+from ..settings import create_private
 
 TIMEOUT_MS = 15_000
+RETRY_SECONDS = 1.0
+
+F = TypeVar("F", bound=Callable[..., Any])
+log = logging.getLogger(__name__)
 
 
 class Moment(TypeDecorator[datetime]):
@@ -54,7 +62,6 @@ def now(session: Session) -> datetime:
 
 
 def ago(session: Session, seconds: float) -> datetime:
-    """Return the moment so many seconds before now."""
     return now(session) - timedelta(seconds=seconds)
 
 
@@ -125,7 +132,9 @@ def _sqlite(url: Any) -> Engine:
 def _prepare_sqlite(connection: Any, _: Any) -> None:
     connection.isolation_level = None  # The driver begins nothing by itself.
     # SQLite's own `lower` handles ASCII alone.
-    connection.create_function("lower", 1, _lower, deterministic=True)
+    connection.create_function(
+        "lower", 1, lambda text: text and text.lower(), deterministic=True
+    )
     for pragma in (
         f"busy_timeout={TIMEOUT_MS}",
         "journal_mode=WAL",
@@ -135,10 +144,27 @@ def _prepare_sqlite(connection: Any, _: Any) -> None:
         connection.execute(f"PRAGMA {pragma}")
 
 
-def _lower(text: str | None) -> str | None:
-    return None if text is None else text.lower()
-
-
 def _begin_sqlite(connection: Any) -> None:
     writer = connection.get_execution_options().get("writer")
     connection.exec_driver_sql("BEGIN IMMEDIATE" if writer else "BEGIN")
+
+
+def retried(method: F) -> F:
+    """Retry a method of an attempt while the database is away, for its `outage_seconds`.
+
+    Stop at once if its worker must stop.
+    """
+
+    @wraps(method)
+    def repeat(attempt: Any, *args: Any, **kwargs: Any) -> Any:
+        deadline = time.monotonic() + attempt.outage_seconds
+        while True:
+            try:
+                return method(attempt, *args, **kwargs)
+            except OperationalError as error:
+                if time.monotonic() >= deadline or attempt.stop_requested():
+                    raise
+                log.warning("Waiting for the database: %s", error)
+                time.sleep(RETRY_SECONDS)
+
+    return cast(F, repeat)

@@ -5,18 +5,18 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any, Self
 
-from fastapi import FastAPI, Request
+from fastapi import FastAPI
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 from redis import RedisError
-from sqlalchemy.exc import OperationalError, SQLAlchemyError, TimeoutError
+from sqlalchemy.exc import OperationalError, TimeoutError
 from starlette.exceptions import HTTPException
 
 from microcosmos.archive.creature import CreatureError
 from microcosmos.spec import field_path
 
-from .schemas import FieldError, Problem
+from .schemas import Wire
 
 log = logging.getLogger(__name__)
 MOST_ERRORS = 50
@@ -24,6 +24,23 @@ MOST_ERRORS = 50
 RETRY_AFTER = {"Retry-After": "2"}
 MEDIA_TYPE = "application/problem+json"
 FIELD_IN_MESSAGE = re.compile(r"`([a-z_0-9.]+)` (?:must|needs|was)")
+
+
+class FieldError(Wire):
+    field: str
+    message: str
+    needed: str | None = None
+    got: Any = None
+
+
+class Problem(BaseModel):
+    """RFC 9457."""
+
+    type: str = "about:blank"
+    title: str
+    status: int
+    detail: str
+    errors: list[FieldError] | None = None
 
 
 class ProblemError(Exception):
@@ -47,70 +64,56 @@ class ProblemError(Exception):
         return cls(problem.status, problem.title, problem.detail, problem.errors)
 
 
-def answer(problem: Problem, headers: Mapping[str, str] | None = None) -> JSONResponse:
-    content = problem.model_dump(mode="json", exclude_none=True)
-    return JSONResponse(content, problem.status, headers, media_type=MEDIA_TYPE)
+ANSWERED = (
+    *(ProblemError, ValidationError, RequestValidationError, CreatureError, HTTPException),
+    *(OperationalError, TimeoutError, RedisError, Exception),
+)
 
 
 def install(app: FastAPI) -> None:
-    """Have the application answer every error as a problem."""
-
-    @app.exception_handler(ProblemError)
-    def refused(_: Request, error: ProblemError) -> JSONResponse:
-        return answer(error.problem, error.headers)
-
-    @app.exception_handler(ValidationError)
-    def invalid_document(_: Request, error: ValidationError) -> JSONResponse:
-        return answer(invalid(error))
-
-    @app.exception_handler(RequestValidationError)
-    def invalid_request(_: Request, error: RequestValidationError) -> JSONResponse:
-        # The first part of a location is "query", "path" or "body".
-        found = [{**one, "loc": one["loc"][1:]} for one in error.errors()]
-        return answer(invalid_input(_fields(found)))
-
-    @app.exception_handler(CreatureError)
-    def invalid_creature(_: Request, error: CreatureError) -> JSONResponse:
-        return answer(bad_creature(error))
-
-    @app.exception_handler(HTTPException)
-    def http(_: Request, error: HTTPException) -> JSONResponse:
-        problem = Problem(title=error.detail, status=error.status_code, detail=error.detail)
-        return answer(problem, error.headers)
-
-    @app.exception_handler(OperationalError)
-    @app.exception_handler(TimeoutError)
-    @app.exception_handler(RedisError)
-    def no_answer(_: Request, error: SQLAlchemyError | RedisError) -> JSONResponse:
-        return unavailable(error)
-
-    @app.exception_handler(Exception)
-    def internal(_: Request, error: Exception) -> JSONResponse:
-        detail = "The server failed; its log says why."
-        return answer(Problem(title="Internal server error", status=500, detail=detail))
+    for kind in ANSWERED:
+        app.add_exception_handler(kind, lambda _, error: answer(error))
 
 
-def unavailable(error: SQLAlchemyError | RedisError) -> JSONResponse:
-    name = "Redis" if isinstance(error, RedisError) else "The database"
-    log.error("%s did not answer: %s", name, error)
-    detail = f"{name} does not answer; try again."
-    return answer(Problem(title="Unavailable", status=503, detail=detail), RETRY_AFTER)
+def answer(error: Exception) -> JSONResponse:
+    problem = problem_of(error)
+    retry = RETRY_AFTER if problem.status == 503 else None
+    content = problem.model_dump(mode="json", exclude_none=True)
+    headers = getattr(error, "headers", None) or retry
+    return JSONResponse(content, problem.status, headers, media_type=MEDIA_TYPE)
 
 
-def invalid(error: ValidationError) -> Problem:
-    return invalid_input(field_errors(error))
+def problem_of(error: Exception) -> Problem:
+    match error:
+        case ProblemError():
+            return error.problem
+        case ValidationError():
+            return invalid_input(field_errors(error))
+        case RequestValidationError():
+            # The first part of a location is "query", "path" or "body".
+            found = [{**one, "loc": one["loc"][1:]} for one in error.errors()]
+            return invalid_input(_fields(found))
+        case CreatureError():
+            named = {"field": error.field, "needed": error.needed, "got": shortened(error.got)}
+            return invalid_input([FieldError(message=str(error), **named)])
+        case HTTPException():
+            return Problem(title=error.detail, status=error.status_code, detail=error.detail)
+        case OperationalError() | TimeoutError() | RedisError():
+            name = "Redis" if isinstance(error, RedisError) else "The database"
+            log.error("%s did not answer: %s", name, error)
+            detail = f"{name} does not answer; try again."
+            return Problem(title="Unavailable", status=503, detail=detail)
+        case _:
+            detail = "The server failed; its log says why."
+            return Problem(title="Internal server error", status=500, detail=detail)
+
+
+def invalid_fields(*errors: FieldError) -> ProblemError:
+    return ProblemError.of(invalid_input(list(errors)))
 
 
 def invalid_field(field: str, needed: str, got: Any) -> ProblemError:
-    """Return the error of one field of a request."""
-    return ProblemError.of(invalid_input([_needs(field, needed, brief(got))]))
-
-
-def bad_creature(error: CreatureError) -> Problem:
-    found = FieldError(
-        field=error.field, message=str(error), needed=error.needed, got=brief(error.got)
-    )
-    return invalid_input([found])
+    return invalid_fields(_needs(field, needed, shortened(got)))
 
 
 def invalid_input(errors: list[FieldError]) -> Problem:
@@ -119,7 +122,6 @@ def invalid_input(errors: list[FieldError]) -> Problem:
 
 
 def field_errors(error: ValidationError) -> list[FieldError]:
-    """Return the errors of a document by field."""
     return _fields(error.errors(include_url=False))
 
 
@@ -148,7 +150,7 @@ def _field_error(error: Mapping[str, Any], path: str) -> FieldError:
     needed = message.removeprefix("Input should be ")
     if error["type"] == "extra_forbidden":
         needed = "no field of this name"
-    got = brief(error["input"])
+    got = shortened(error["input"])
     if error["type"] in ("uuid_parsing", "uuid_type"):
         needed = "an id such as 1b4e28ba-2fa1-41d2-883f-0016d3cca427"
     if error["type"] == "missing":
@@ -161,7 +163,7 @@ def _needs(field: str, needed: str, got: Any) -> FieldError:
     return FieldError(field=field, message=message, needed=needed, got=got)
 
 
-def brief(value: Any) -> Any:
+def shortened(value: Any) -> Any:
     """Return a value that JSON can hold; shorten long texts."""
     if value is None or isinstance(value, bool | int | float):
         return value if abs(value or 0) < 1e308 else str(value)

@@ -97,6 +97,8 @@ def parse(body: bytes) -> Any:
 def _place(error: ValueError) -> str:
     """Return the place of the error, without the parser's words."""
     if isinstance(error, json.JSONDecodeError):
+        if error.doc.startswith("\ufeff"):
+            return "the body begins with a byte order mark (BOM)"
         return f"the body is not JSON at line {error.lineno}, column {error.colno}"
     if isinstance(error, UnicodeDecodeError):
         return f"the body is not UTF-8 at byte {error.start}"
@@ -106,7 +108,14 @@ def _place(error: ValueError) -> str:
 def refuse_unstorable(document: Any) -> None:
     """Raise `ProblemError` for values that databases or other readers of JSON cannot hold."""
     _refuse_depth(document)
-    _refuse_text(document)
+    text = json.dumps(document, ensure_ascii=False)
+    try:
+        text.encode()
+    except UnicodeEncodeError as error:
+        found = ascii(text[error.start])
+        raise ProblemError(422, "Not Unicode", f"Text must be Unicode; got {found}.") from None
+    if NUL.search(text):
+        raise ProblemError(422, "Not text", "Text must be without NUL; got \\u0000.")
 
 
 def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -141,17 +150,6 @@ def _refuse_depth(document: Any) -> None:
         if not level:
             return
     raise _too_deep()
-
-
-def _refuse_text(document: Any) -> None:
-    text = json.dumps(document, ensure_ascii=False)
-    try:
-        text.encode()
-    except UnicodeEncodeError as error:
-        found = ascii(text[error.start])
-        raise ProblemError(422, "Not Unicode", f"Text must be Unicode; got {found}.") from None
-    if NUL.search(text):
-        raise ProblemError(422, "Not text", "Text must be without NUL; got \\u0000.")
 
 
 def _too_deep() -> ProblemError:

@@ -12,12 +12,7 @@ from sqlalchemy.orm import Session
 
 from .errors import invalid_field
 
-
-def _utc(moment: datetime) -> datetime:
-    return moment.astimezone(UTC)
-
-
-MOMENT = Annotated[datetime, AfterValidator(_utc)]
+MOMENT = Annotated[datetime, AfterValidator(lambda at: at.astimezone(UTC))]
 TEXT = Annotated[str, StringConstraints(pattern=r"^[^\x00]*$")]
 COUNT = Annotated[int, Field(ge=0, lt=1 << 63)]
 NUMBER = FiniteFloat

@@ -29,13 +29,13 @@ def spawn(
     environment: Mapping[str, str],
     log: Path,
     *,
-    keep: Sequence[int] = (),
+    inherit: Sequence[int] = (),
     stdin: int = subprocess.DEVNULL,
 ) -> subprocess.Popen[bytes]:
     """Start a process in a group of its own, which Ctrl-C does not reach.
 
-    The kernel sends it SIGTERM when this process dies. `keep` names file descriptors to
-    inherit. Call it only from a process with a single thread.
+    The kernel sends it SIGTERM when this process dies. `inherit` names file descriptors. Call
+    it only from a process with a single thread.
     """
     parent = os.getpid()
     log.parent.mkdir(parents=True, exist_ok=True)
@@ -46,7 +46,7 @@ def spawn(
             stdin=stdin,
             stdout=output,
             stderr=output,
-            pass_fds=keep,
+            pass_fds=inherit,
             process_group=0,
             preexec_fn=lambda: die_with_parent(parent, signal.SIGTERM),
         )
@@ -62,7 +62,6 @@ def tail(log: Path, lines: int = 5) -> str:
 
 
 def exit_reason(code: int) -> str:
-    """Describe an exit status."""
     return f"signal {signal.Signals(-code).name}" if code < 0 else f"exit status {code}"
 
 

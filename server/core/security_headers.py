@@ -49,16 +49,13 @@ class SecurityHeaders:
                 if shared:
                     headers["Cache-Control"] = "no-cache"
                     headers["Referrer-Policy"] = "no-referrer"
-                    if not _listed(scope):
+                    state = scope.get("state", {})
+                    access = state.get("share")
+                    if not (state.get("listed") or getattr(access, "listed", False)):
                         headers["X-Robots-Tag"] = "noindex"
             await send(message)
 
         await self.app(scope, receive, send_with_headers)
-
-
-def _listed(scope: Scope) -> bool:
-    state = scope.get("state", {})
-    return state.get("listed", False) or getattr(state.get("share"), "listed", False)
 
 
 def redact_request_log() -> None:
@@ -69,11 +66,9 @@ def redact_request_log() -> None:
 def _redact(record: logging.LogRecord) -> bool:
     if isinstance(record.args, tuple):
         record.args = tuple(
-            _redacted(one) if isinstance(one, str) else one for one in record.args
+            SLUG.sub(lambda slug: f"{slug[0][:SLUG_PREVIEW]}…", one.partition("?")[0])
+            if isinstance(one, str)
+            else one
+            for one in record.args
         )
     return True
-
-
-def _redacted(argument: str) -> str:
-    path = argument.partition("?")[0]
-    return SLUG.sub(lambda slug: f"{slug[0][:SLUG_PREVIEW]}…", path)

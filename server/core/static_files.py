@@ -28,33 +28,24 @@ def page(path: str, accept_encoding: Annotated[str, Header()] = "") -> Response:
     if path == "help":
         return RedirectResponse("/help/")  # Relative links need the slash.
     if path.startswith("help/"):
-        return _documentation(path.removeprefix("help/"))
+        if file := _file(DOCUMENTATION, path.removeprefix("help/") or "index.html"):
+            return FileResponse(file, headers=FRESH)
+        raise HTTPException(404, "The documentation has no such page. `make docs` builds it.")
     if path == "api" or (path.startswith(("api/", "assets/")) and not _file(BUILT, path)):
         raise HTTPException(404, f"There is nothing at /{path}")
     if file := _file(BUILT, path):
         if not path.startswith("assets/"):
             return FileResponse(file, headers=FRESH)
-        return _asset(file, "gzip" in accept_encoding)
+        # A script or a style, whose name changes with its content.
+        headers = {**IMMUTABLE, "Vary": "Accept-Encoding"}
+        if "gzip" not in accept_encoding:
+            return FileResponse(file, headers=headers)
+        headers["Content-Encoding"] = "gzip"
+        return Response(_gzip(file), headers=headers, media_type=guess_type(file.name)[0])
     index = BUILT / "index.html"
     if not index.is_file():
         return HTMLResponse(MISSING, 503)
     return FileResponse(index, headers=FRESH)
-
-
-def _documentation(path: str) -> Response:
-    if file := _file(DOCUMENTATION, path or "index.html"):
-        return FileResponse(file, headers=FRESH)
-    raise HTTPException(404, "The documentation has no such page. `make docs` builds it.")
-
-
-def _asset(file: Path, compressed: bool) -> Response:
-    """Return a script or a style. Their names change with their content."""
-    headers = {**IMMUTABLE, "Vary": "Accept-Encoding"}
-    if not compressed:
-        return FileResponse(file, headers=headers)
-    media_type, _ = guess_type(file.name)
-    headers["Content-Encoding"] = "gzip"
-    return Response(_gzip(file), headers=headers, media_type=media_type)
 
 
 @lru_cache(maxsize=256)

@@ -1,14 +1,13 @@
 """FastAPI dependencies: the creature that a path names."""
 
-from dataclasses import dataclass
 from typing import Annotated
 
 from fastapi import Depends, Path
 from sqlalchemy.orm import Session
 
-from ..auth.share_access import ShareAccess, ShareAccessDep
+from ..auth.authorize import ShareAccess, ShareAccessDep
 from ..core.errors import ProblemError
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from ..tables import Creature
 
 Sha = Annotated[str, Path(pattern="^[0-9a-f]{64}$")]
@@ -28,18 +27,11 @@ def creature(sha: Sha, session: SessionDep, share: ShareAccessDep) -> Creature:
     return find_creature(session, sha, share)
 
 
-@dataclass(frozen=True)
-class Identity:
-    """The identity of a creature, read over a connection that is closed again."""
-
-    sha256: str
-    json: bytes
-
-
-def identity(sha: Sha, services: ServicesDep, share: ShareAccessDep) -> Identity:
+def identity(sha: Sha, services: ServicesDep, share: ShareAccessDep) -> bytes:
+    """Return the identity of a creature, read over a connection that is closed again."""
     with services.sessions.read() as session:
-        return Identity(sha, find_creature(session, sha, share).identity)
+        return find_creature(session, sha, share).identity
 
 
 CreatureDep = Annotated[Creature, Depends(creature)]
-IdentityDep = Annotated[Identity, Depends(identity)]
+IdentityDep = Annotated[bytes, Depends(identity)]

@@ -40,7 +40,10 @@ def record(session: Session, runs: Sequence[tuple[Spec, Sequence[UUID]]]) -> Non
 
     Raise `CreatureError` if one is gone.
     """
-    held = _lock(session, sorted({name for spec, _ in runs for name in initial_of(spec)}))
+    named = sorted({name for spec, _ in runs for name in initial_of(spec)})
+    some = select(Creature.sha256).where(Creature.sha256.in_(named)).order_by(Creature.sha256)
+    locked = some.with_for_update(read=True, key_share=True)
+    held = set(session.scalars(locked)) if named else set[str]()
     for spec, run_ids in runs:
         _refuse_missing(spec, held)
         names = [name for name in initial_of(spec) if name in held]
@@ -49,7 +52,6 @@ def record(session: Session, runs: Sequence[tuple[Spec, Sequence[UUID]]]) -> Non
 
 
 def initial_of(spec: Spec) -> Sequence[str]:
-    """Return the creatures that a spec names."""
     if isinstance(spec, Evolution):
         return spec.search.initial
     return [spec.creature["sha256"]] if isinstance(spec, Refinement) else []
@@ -61,16 +63,7 @@ def files(session: Session, names: Sequence[str]) -> list[dict[str, Any]]:
     return [document(row) for row in session.scalars(some)] if names else []
 
 
-def _lock(session: Session, names: Sequence[str]) -> set[str]:
-    """Return those that exist; none can be deleted before the transaction ends."""
-    if not names:
-        return set()
-    some = select(Creature.sha256).where(Creature.sha256.in_(names)).order_by(Creature.sha256)
-    return set(session.scalars(some.with_for_update(read=True, key_share=True)))
-
-
 def _refuse_missing(spec: Spec, existing: Container[str]) -> None:
-    """Raise `CreatureError` if a search names a missing creature."""
     missing = [name for name in initial_of(spec) if name not in existing]
     if missing and isinstance(spec, Evolution):
         needed = "names of creatures of this server (import it first)"

@@ -2,14 +2,14 @@
 
 from typing import Any
 
+from pydantic import Field
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session, defer
 
+from ..core.schemas import Wire
 from ..tables import Creature, Parent
-from .schemas import Ancestors, Children, Relative
 
 MAX_RELATIVES = 200
-"""Relatives in one answer."""
 UNKNOWN: Any = {
     "stored": False,
     "parents": [],
@@ -17,6 +17,38 @@ UNKNOWN: Any = {
     "generation": None,
     "fitness": None,
 }
+
+
+class Relative(Wire):
+    """An ancestor or a child of a creature."""
+
+    creature: str
+    distance: int
+    """Generations between the two."""
+    stored: bool
+    """False if it never was an elite; then only its name is known."""
+    parents: list[str]
+    operator: str | None
+    generation: int | None
+    fitness: float | None
+    licence: str | None = None
+    credit: list[str] = Field(default=[])
+    """People whom its file asks to name; its descendants' files name them too."""
+
+
+class Ancestors(Wire):
+    parents: list[str]
+    """Parents of the creature itself."""
+    items: list[Relative]
+    """Nearest first."""
+    more: bool
+    """There are others, older than requested or too many for one answer."""
+
+
+class Children(Wire):
+    total: int
+    items: list[Relative]
+    """Best first; those that were never measured come last."""
 
 
 def ancestors(session: Session, row: Creature, depth: int) -> Ancestors:

@@ -9,17 +9,18 @@ from fastapi.responses import JSONResponse, Response
 
 from microcosmos.archive import creature, creature_h5
 
-from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE
-from ..auth.share_access import ShareAccessDep
+from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE, ShareAccessDep
+from ..core.api import sends
 from ..core.json_body import limited
+from ..core.schemas import Wire
 from ..core.static_files import IMMUTABLE
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from ..tables import Creature
 from . import lineage, networks
 from . import storage as creatures
-from .deps import CreatureDep, IdentityDep
+from .deps import CreatureDep, IdentityDep, Sha
+from .lineage import Ancestors, Children
 from .sandbox import sandbox
-from .schemas import Ancestors, Children, CreatureName
 
 FILE_BYTES = 8 << 20
 H5 = "application/x-hdf5"
@@ -34,6 +35,10 @@ body: dict[str, Any] = {
         },
     }
 }
+
+
+class CreatureName(Wire):
+    creature: str
 
 
 async def file_sent(request: Request) -> dict[str, Any]:
@@ -70,12 +75,7 @@ def attachment(row: Creature, ending: str) -> dict[str, str]:
     return {"Content-Disposition": f'attachment; filename="{name}"'}
 
 
-@router.get(
-    "/{sha}/creature.h5",
-    response_class=Response,
-    responses={200: {"content": {H5: {}}}},
-    dependencies=[MAY_READ_SHARED],
-)
+@router.get("/{sha}/creature.h5", **sends(H5), dependencies=[MAY_READ_SHARED])
 def read_creature_h5(row: CreatureDep, share: ShareAccessDep) -> Response:
     """Return the creature file as HDF5, with its body and genes as arrays."""
     headers = {"Cache-Control": "no-cache", **attachment(row, "h5")}
@@ -121,21 +121,21 @@ def import_creature(
     ancestors = file.pop("ancestors")
     with services.sessions.write.begin() as session:
         new = session.get(Creature, file["sha256"]) is None
-        creatures.add_all(session, [file, *ancestors])
+        creatures.add(session, file, *ancestors)
     response.status_code = 201 if new else 200
     response.headers["Location"] = f"/api/v1/creatures/{file['sha256']}"
     return CreatureName(creature=file["sha256"])
 
 
 def _network_reader(form: str, media_type: str, description: str) -> Callable[..., Response]:
-    def read(identity: IdentityDep) -> Response:
-        name = f"network-{identity.sha256[:12]}.{form}"
+    def read(sha: Sha, identity: IdentityDep) -> Response:
+        name = f"network-{sha[:12]}.{form}"
         headers = {
             **IMMUTABLE,
             "Content-Disposition": f'inline; filename="{name}"',
             "Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'",
         }
-        data = sandbox().network(identity.json, form)
+        data = sandbox().network(identity, form)
         return Response(data, headers=headers, media_type=media_type)
 
     read.__name__ = f"read_network_{form}"
@@ -146,7 +146,6 @@ def _network_reader(form: str, media_type: str, description: str) -> Callable[..
 for form, (media_type, description, _) in networks.FORMS.items():
     router.get(
         f"/{{sha}}/network.{form}",
-        response_class=Response,
-        responses={200: {"content": {media_type: {}}}, 404: {}},
+        **sends(media_type, {404: {}}),
         dependencies=[MAY_READ_SHARED],
     )(_network_reader(form, media_type, description))

@@ -11,8 +11,7 @@ from functools import cache
 from threading import Lock
 from typing import Any
 
-from ..core.errors import RETRY_AFTER, ProblemError
-from ..core.schemas import Problem
+from ..core.errors import RETRY_AFTER, Problem, ProblemError
 from .sandbox_process import CPU_SECONDS, LENGTH, PROBLEM, RESULT
 
 START_SECONDS = 30.0
@@ -47,7 +46,12 @@ class Sandbox:
         if status == PROBLEM:
             raise ProblemError.of(Problem.model_validate_json(content))
         if status != RESULT:
-            self._refuse_gone()
+            with self._lock, suppress(subprocess.TimeoutExpired):
+                if self._process:
+                    self._process.wait(END_SECONDS)
+                # The whole process has ended, not the request alone.
+                detail = "The sandbox of the server does not answer; try again."
+                raise ProblemError(503, "Unavailable", detail, headers=RETRY_AFTER)
             detail = f"{action} took more than {CPU_SECONDS:g} seconds or too much memory."
             raise ProblemError(422, "Unreadable", detail)
         return content
@@ -63,16 +67,7 @@ class Sandbox:
             except (BrokenPipeError, ConnectionResetError):
                 return b""
 
-    def _refuse_gone(self) -> None:
-        """Raise `ProblemError` 503 if the whole process has ended, not the request alone."""
-        with self._lock, suppress(subprocess.TimeoutExpired):
-            if self._process:
-                self._process.wait(END_SECONDS)
-            detail = "The sandbox of the server does not answer; try again."
-            raise ProblemError(503, "Unavailable", detail, headers=RETRY_AFTER)
-
     def _connection(self) -> socket.socket:
-        """Return a connection to a new child process for one request."""
         ours, theirs = socket.socketpair()
         with theirs, self._lock:
             try:

@@ -16,25 +16,26 @@ import sys
 import time
 from math import ceil
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 from pydantic import ValidationError
 
-from microcosmos.archive import creature, creature_h5
+from microcosmos.archive import creature, creature_h5, pedigree
 from microcosmos.archive.creature import CreatureError
+from microcosmos.naming import FORMAT, encode
+from microcosmos.spec import EXPERIMENTS
 
-from ..core import errors
-from ..core.errors import ProblemError
-from ..core.schemas import Problem
+from ..core import json_body
+from ..core.errors import Problem, ProblemError, problem_of
 from . import networks
-from .files import HDF5, creature_file
-from .probe import example
 
 MEMORY = 256 << 20
 CPU_SECONDS = 1.5
 """Limit on CPU time; time that the process only waits does not count."""
 WALL_SECONDS = 5.0
-"""Limit on wall time."""
 LENGTH = struct.Struct("<Q")
+HDF5 = b"\x89HDF\r\n\x1a\n"
 RESULT, PROBLEM = b"result", b"problem"
 """First lines of answers."""
 
@@ -66,8 +67,41 @@ def warm_up() -> None:
         assert answer(form.encode() + b"\n" + creature.canonical(identity)).startswith(RESULT)
 
 
+def example() -> dict[str, Any]:
+    """Return the identity of a swimmer without hidden nodes, in the demonstration's world."""
+    spec: Any = EXPERIMENTS["quality-diversity"].presets[0].spec
+    whole, control = spec.model_dump(mode="json"), spec.control
+    ends = [*control.inputs, *control.outputs]
+    return {
+        "format": FORMAT,
+        "genome": {
+            "encoding": "cppn",
+            "inputs": list(control.inputs),
+            "outputs": list(control.outputs),
+            "control": whole["control"],
+            "nodes": {
+                "id": list(range(len(ends))),
+                "activation": ["identity"] * len(ends),
+                "bias": encode(np.zeros(len(ends))),
+            },
+            "connections": {
+                "innovation": [],
+                "source": [],
+                "target": [],
+                "enabled": [],
+                "weight": "",
+            },
+        },
+        "world": {
+            **spec.world.model_dump(mode="json"),
+            "coupling": spec.coupling.model_dump(mode="json"),
+        },
+        "body": whole["body"],
+        "task": whole["task"],
+    }
+
+
 def work(connection: socket.socket) -> None:
-    """Answer one request, and end."""
     restrict()
     with connection.makefile("rb") as incoming:
         (length,) = LENGTH.unpack(incoming.read(LENGTH.size))
@@ -83,17 +117,27 @@ def answer(request: bytes) -> bytes:
         if task == b"creature":
             return RESULT + b"\n" + json.dumps(creature_file(body)).encode()
         return RESULT + b"\n" + networks.write(body, task.decode())
-    except ProblemError as error:
-        problem = error.problem
-    except CreatureError as error:
-        problem = errors.bad_creature(error)
-    except ValidationError as error:
-        problem = errors.invalid(error)
+    except (ProblemError, CreatureError, ValidationError) as error:
+        problem = problem_of(error)
     except MemoryError:
         problem = _unreadable("it needs more memory than any creature file does")
     except Exception as error:  # Any error in a library is the fault of the file.
         problem = _unreadable(f"{type(error).__name__}: {error}")
     return PROBLEM + b"\n" + problem.model_dump_json().encode()
+
+
+def creature_file(body: bytes) -> dict[str, Any]:
+    """Return the checked creature file, with the files of its `ancestors`."""
+    if not body.startswith(HDF5):
+        return pedigree.document(*pedigree.split(json_body.mapping(json_body.parse(body))))
+    try:
+        file = creature_h5.load(body)
+    except CreatureError:
+        raise
+    except ValueError as error:
+        raise ProblemError(422, "Not a creature file", f"{error}.") from error
+    json_body.refuse_unstorable(file)
+    return pedigree.document(file, [])
 
 
 def _unreadable(why: str) -> Problem:
@@ -105,12 +149,10 @@ def restrict() -> None:
     """Set the limits for good: a hard limit cannot be raised again."""
     pages = int(Path("/proc/self/statm").read_text().split()[0])
     room = pages * resource.getpagesize() + MEMORY
+    last_second = ceil(time.process_time() + CPU_SECONDS) + 1  # If all else fails.
     for kind, most in (
         (resource.RLIMIT_AS, room),
-        (
-            resource.RLIMIT_CPU,
-            ceil(time.process_time() + CPU_SECONDS) + 1,
-        ),  # If all else fails.
+        (resource.RLIMIT_CPU, last_second),
         (resource.RLIMIT_FSIZE, 0),
         (resource.RLIMIT_CORE, 0),
         (resource.RLIMIT_NOFILE, 0),

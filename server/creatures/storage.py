@@ -67,7 +67,6 @@ def link(session: Session, names: Sequence[str]) -> None:
 
 
 def creatures_of(table: type[Elite | Result]) -> Select[str]:
-    """Select the distinct creatures of rows."""
     column = cast(InstrumentedAttribute[str], table.creature)
     return select(column).where(column.is_not(None)).distinct()
 
@@ -111,25 +110,18 @@ def with_ancestors(session: Session, row: Creature) -> dict[str, Any]:
     return pedigree.document(document(row), ancestors)
 
 
-def add_all(session: Session, files: Sequence[dict[str, Any]]) -> None:
-    """Import several, sorted, so that two requests cannot deadlock."""
+def add(session: Session, *files: dict[str, Any]) -> None:
+    """Import checked creature files, sorted, so that two requests cannot deadlock.
+
+    A known creature stays as it is.
+    """
     for file in sorted(files, key=itemgetter("sha256")):
-        add(session, file)
-
-
-def add(session: Session, file: dict[str, Any]) -> bool:
-    """Import a checked creature file; return whether it is new. A known one stays as it is."""
-    known = update(Creature).where(Creature.sha256 == file["sha256"]).values(imported=True)
-    if session.scalars(known.returning(Creature.sha256)).one_or_none():
-        return False
-    row = creature_columns(
-        file["sha256"],
-        creature.canonical(file["identity"]),
-        file["measured"],
-        file["provenance"],
-        file["licence"],
-        file["credit"],
-    )
-    insert_missing(session, Creature, [{**row, "imported": True}])
-    link(session, [file["sha256"]])
-    return True
+        name = file["sha256"]
+        known = update(Creature).where(Creature.sha256 == name).values(imported=True)
+        if session.scalars(known.returning(Creature.sha256)).one_or_none():
+            continue
+        identity = creature.canonical(file["identity"])
+        columns = [file[key] for key in ("measured", "provenance", "licence", "credit")]
+        row = creature_columns(name, identity, *columns)
+        insert_missing(session, Creature, [{**row, "imported": True}])
+        link(session, [name])

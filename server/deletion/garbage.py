@@ -60,20 +60,16 @@ def collect(session: Session) -> bool:
             GarbageCreature.creature.in_(checked), GarbageCreature.run_id.in_(checked.values())
         )
     )
-    _delete(session, gone)
+    # Rows of their renderings go too; files are deleted later.
+    files = delete(Artifact).where(Artifact.creature.in_(gone)).returning(Artifact.path)
+    discard(session, list(session.scalars(files)))
+    session.execute(delete(Parent).where(Parent.child.in_(gone)))
+    session.execute(delete(Creature).where(Creature.sha256.in_(gone)))
     # A parent may have been kept for its child alone.
     parents = {(checked[name], parent) for name in gone for parent in found[name]}
     rows = [{"run_id": run_id, "creature": parent} for run_id, parent in sorted(parents)]
     insert_missing(session, GarbageCreature, rows)
     return True
-
-
-def _delete(session: Session, names: Sequence[str]) -> None:
-    """Delete creatures and the rows of their renderings; files are deleted later."""
-    files = delete(Artifact).where(Artifact.creature.in_(names)).returning(Artifact.path)
-    discard(session, list(session.scalars(files)))
-    session.execute(delete(Parent).where(Parent.child.in_(names)))
-    session.execute(delete(Creature).where(Creature.sha256.in_(names)))
 
 
 def discard(session: Session, paths: Sequence[str]) -> None:

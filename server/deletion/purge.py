@@ -80,22 +80,16 @@ def remove_files(services: Services) -> bool:
         paths = list(session.scalars(select(GarbageFile.path).limit(ROWS_PER_TRANSACTION)))
         known = select(Artifact.path).where(Artifact.path.in_(paths))
         recreated = set(session.scalars(known))
-    removed = [path for path in paths if path in recreated or _removed(services, path)]
+    removed = sorted(recreated)
+    for path in sorted({*paths} - recreated):
+        try:
+            services.artifacts.delete(path)
+            removed.append(path)
+        except OSError as error:
+            log.warning("will remove %s again: %s", path, error)
     with services.sessions.write.begin() as session:
         session.execute(delete(GarbageFile).where(GarbageFile.path.in_(removed)))
     return bool(removed)
-
-
-def _removed(services: Services, path: str) -> bool:
-    remove = (
-        services.artifacts.delete_folder if path.endswith("/") else services.artifacts.delete
-    )
-    try:
-        remove(path)
-    except OSError as error:
-        log.warning("will remove %s again: %s", path, error)
-        return False
-    return True
 
 
 def _delete_some(session: Session, run_id: UUID, table: Any) -> bool:
@@ -113,7 +107,6 @@ def _delete_some(session: Session, run_id: UUID, table: Any) -> bool:
 
 
 def _delete_run(session: Session, run_id: UUID) -> None:
-    """Delete the row of the run, and its few rows in other tables."""
     mark_garbage(
         session,
         run_id,

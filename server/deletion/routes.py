@@ -2,10 +2,10 @@
 
 from fastapi import APIRouter
 
-from ..runs.commands import changed
+from ..runs.announce import changed
 from ..runs.deps import OwnRunId
 from ..runs.schemas import RunRead
-from ..services.deps import ServicesDep
+from ..services.services import ServicesDep
 from . import bin
 
 router = APIRouter(prefix="/runs/{run_id}", tags=["runs"])

@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session
 
 from microcosmos.spec import Folding, Scaling, Spec, estimate
 
-from ..specs.stored import parsed
+from ..specs.parsing import parsed
 from ..tables import Generation, Run, Worker
 from .schemas import MeasuredSpeed
 
@@ -36,8 +36,6 @@ class Measured:
 
 @dataclass(frozen=True)
 class Speed:
-    """The speed of some earlier runs."""
-
     device: str
     rates: tuple[float, ...]
     startup_seconds: float
@@ -55,19 +53,15 @@ class Speed:
         )
 
 
-def speed_of(session: Session, spec: Spec, live: Sequence[Worker]) -> Speed | None:
-    """Return the speed of the runs most like a spec; None if there are none.
-
-    Without live workers any device counts.
-    """
-    return speeds_of(session, [spec], live)[0]
-
-
 def speeds_of(
     session: Session, specs: Sequence[Spec], live: Sequence[Worker]
 ) -> list[Speed | None]:
-    """Return the speeds for several specs of one experiment, with one query."""
-    models = {model_of(worker.device) for worker in live}
+    """Return the speed of the runs most like each spec, if there are any.
+
+    One query serves all specs, which share an experiment. Without live workers any device
+    counts.
+    """
+    models = {worker.device.partition(" (")[0] for worker in live}  # Without sizes.
     recent = _recent(session, specs[0].experiment)
     measured = {kind: _measured(recent, kind) for kind in {_kind(spec) for spec in specs}}
     return [_similar(measured[_kind(spec)], spec, models) for spec in specs]
@@ -84,26 +78,17 @@ def _similar(measured: Sequence[Measured], spec: Spec, models: Collection[str]) 
     nearest = sorted(same, key=lambda one: abs(log(one.cell_steps / cell_steps)))[
         :MAX_SIMILAR_RUNS
     ]
+    device = nearest[0].device
+    # The model alone, without platform and software.
+    named = [model for model in models if model in device] or [device.split(", ")[1]]
     return Speed(
-        device=_name(nearest[0].device, models),
+        device=named[0],
         rates=tuple(one.rate for one in nearest),
         startup_seconds=median(one.startup_seconds for one in nearest),
     )
 
 
-def model_of(device: str) -> str:
-    """Return a worker's device without its size."""
-    return device.partition(" (")[0]
-
-
-def _name(device: str, models: Collection[str]) -> str:
-    """Return the device of a run without platform and software."""
-    found = [model for model in models if model in device]
-    return found[0] if found else device.split(", ")[1]
-
-
 def _recent(session: Session, experiment: str) -> Sequence[Row[Run, float]]:
-    """Read the newest runs of an experiment with the seconds of their first generation."""
     first = and_(Generation.run_id == Run.id, Generation.generation == 1)
     statement = (
         select(Run, Generation.seconds)
@@ -117,7 +102,6 @@ def _recent(session: Session, experiment: str) -> Sequence[Row[Run, float]]:
 
 
 def _measured(recent: Sequence[Row[Run, float]], kind: Hashable) -> list[Measured]:
-    """Return the speeds of runs of a kind, newest first."""
     found = []
     for run, first in recent:
         earlier = parsed(run.spec)

@@ -11,7 +11,7 @@ from microcosmos.sizes import size
 
 from ..queue.order import in_order
 from ..services.services import Services
-from ..specs.stored import parsed
+from ..specs.parsing import parsed
 from ..tables import QUEUED, Run, Worker
 from ..workers import plugins, registry
 from .schemas import QueueAhead
@@ -78,9 +78,10 @@ def reason(run: Run, place: int, queue: QueueState) -> str:
     """Return a sentence about a run at this place of the queue, from 0."""
     if not queue.alive:
         return NO_WORKER
-    fit = [worker for worker in queue.alive if plugins.fit(worker, run.plugin_versions)]
+    versions = run.plugin_versions
+    fit = [worker for worker in queue.alive if plugins.has_versions(worker, versions)]
     if not fit:
-        return plugins.missing(queue.alive, run.spec)
+        return plugins.missing_plugins(queue.alive, run.spec)
     queue = replace(queue, alive=fit)
     before = queue.before(place)
     if before < 0:
@@ -88,24 +89,19 @@ def reason(run: Run, place: int, queue: QueueState) -> str:
     needed, largest = needed_bytes(run), max(worker.memory_bytes for worker in queue.alive)
     if needed is not None and needed > largest:
         return f"Needs {size(needed)}; the largest live worker has {size(largest)}."
-    state = "A worker is free" if queue.idle else f"Waits for a worker: {_busy(queue)}"
-    return f"{state}; {_ahead(before)}."
+    if queue.idle:
+        state = "A worker is free"
+    elif len(queue.alive) > 1:
+        state = f"Waits for a worker: all {len(queue.alive)} are busy"
+    else:
+        computed = queue.running.get(queue.alive[0].name)
+        of_run = f" with run {str(computed.id)[:8]}" if computed else ""
+        state = f"Waits for a worker: the only one is busy{of_run}"
+    ahead = "1 run is before it" if before == 1 else f"{before:,} runs are before it"
+    return f"{state}; {ahead if before else 'this run is next'}."
 
 
 def needed_bytes(run: Run) -> int | None:
     """Return the memory that a run needs; None if another version wrote its spec."""
     found = parsed(run.spec)
     return found.estimate.memory_bytes if found else None
-
-
-def _busy(queue: QueueState) -> str:
-    if len(queue.alive) > 1:
-        return f"all {len(queue.alive)} are busy"
-    run = queue.running.get(queue.alive[0].name)
-    return "the only one is busy" + (f" with run {str(run.id)[:8]}" if run else "")
-
-
-def _ahead(before: int) -> str:
-    if before == 0:
-        return "this run is next"
-    return "1 run is before it" if before == 1 else f"{before:,} runs are before it"

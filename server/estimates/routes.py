@@ -6,9 +6,9 @@ from fastapi import APIRouter, Query
 from sqlalchemy import select
 
 from ..auth.authorize import MAY_READ
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from ..tables import QUEUED, Run
-from ..workers.brief import brief
+from ..workers.registry import run_brief
 from . import position
 from .schemas import QueuedRun, QueueRead
 
@@ -30,7 +30,7 @@ def read_queue(
     reasons = position.reasons_in(queue, runs)
     items = [
         QueuedRun(
-            **brief(run).model_dump(),
+            **run_brief(run).model_dump(),
             waiting_reason=reasons[run.id],
             queued_at=run.queued_at,
             memory_bytes=position.needed_bytes(run),

@@ -22,8 +22,6 @@ log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class Entry:
-    """An event of the stream."""
-
     id: str
     kind: str
     run: str = ""
@@ -78,7 +76,8 @@ class Fanout:
                     self.read_up_to = await self._newest()
                     self._broadcast(Entry(self.read_up_to, "reset"))
                     self.connected = True
-                for entry in await self._next():
+                found = await self.redis.xread({self.stream: self.read_up_to}, PAGE, BLOCK_MS)
+                for entry in (_entry(*item) for _, items in found or [] for item in items):
                     self.read_up_to = entry.id
                     self._broadcast(entry)
             except RedisError as error:
@@ -108,10 +107,11 @@ class Fanout:
             yield Entry(start, "reset").sent()
         else:
             start = after
-            async for entry in self._missed(after):
-                start = entry.id
-                if run in (None, entry.run):
-                    yield entry.sent()
+            while page := await self.redis.xrange(self.stream, min=f"({start}", count=PAGE):
+                for entry in (_entry(*item) for item in page):
+                    start = entry.id
+                    if run in (None, entry.run):
+                        yield entry.sent()
         while (entry := await listener.waiting.get()) is not None:
             new = position(entry.id) > position(start) and run in (None, entry.run)
             if new or entry.kind == "reset":
@@ -124,7 +124,6 @@ class Fanout:
             listener.put(None)
 
     def tokens(self) -> set[UUID]:
-        """Return the tokens of all listeners."""
         return {listener.token for listener in self.listeners if listener.token}
 
     def end(self, tokens: Collection[UUID]) -> None:
@@ -137,16 +136,11 @@ class Fanout:
         for listener in self.listeners:
             listener.put(entry)
 
-    async def _next(self) -> list[Entry]:
-        found = await self.redis.xread({self.stream: self.read_up_to}, PAGE, BLOCK_MS)
-        return [_entry(*item) for _, items in found or [] for item in items]
-
     async def _newest(self) -> str:
         newest = await self.redis.xrevrange(self.stream, count=1)
         return newest[0][0].decode() if newest else "0-0"
 
     async def _keeps(self, after: str) -> bool:
-        """Return whether the stream still has all events after one."""
         try:
             first = await self.redis.xrange(self.stream, count=1)
             newest = await self._newest()
@@ -155,13 +149,6 @@ class Fanout:
             return position(first[0][0].decode()) <= position(after) <= position(newest)
         except (ValueError, RedisError):
             return False
-
-    async def _missed(self, after: str) -> AsyncIterator[Entry]:
-        while page := await self.redis.xrange(self.stream, min=f"({after}", count=PAGE):
-            for item in page:
-                entry = _entry(*item)
-                after = entry.id
-                yield entry
 
 
 def position(identifier: str) -> tuple[int, int]:

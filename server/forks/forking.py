@@ -81,10 +81,15 @@ def chosen(session: Session, run: Run, start: ForkStart, generation: int | None)
         needed = "`creatures`, since this run has no archive"
         raise invalid_field("from", needed, run.experiment)
     as_of = run.generation if generation is None else min(generation, run.generation)
-    archive = session.execute(elites.at(run, as_of)).all()
+    archive = session.execute(elites.as_of(run, as_of)).all()
     within = _selection(run, start)
     names = sorted({elite.creature for elite in archive if within(elite)})
-    _refuse_empty(start, {elite.cell for elite in archive}, names)
+    filled = {elite.cell for elite in archive}
+    if start.cells is not None and (empty := sorted(set(start.cells) - filled)):
+        raise invalid_field("from.cells", "cells with an elite", empty[:10])
+    if not names:
+        field = "from.region" if start.region is not None else "from"
+        raise invalid_field(field, "at least one elite", "none")
     if len(names) > MAX_INITIAL:
         needed = f"at most {MAX_INITIAL:,} creatures; choose a `region` or some `cells`"
         raise invalid_field("from", needed, len(names))
@@ -92,7 +97,6 @@ def chosen(session: Session, run: Run, start: ForkStart, generation: int | None)
 
 
 def _selection(run: Run, start: ForkStart) -> Callable[[Any], bool]:
-    """Return the condition that an elite must satisfy."""
     if start.cells is not None:
         cells = set(start.cells)
         return lambda elite: elite.cell in cells
@@ -105,11 +109,3 @@ def _selection(run: Run, start: ForkStart) -> Callable[[Any], bool]:
         raise invalid_field(f"from.region.{name}", needed, name)
     ends = [(axes.index(name), *ends) for name, ends in start.region.items()]
     return lambda elite: all(low <= elite.descriptors[i] <= high for i, low, high in ends)
-
-
-def _refuse_empty(start: ForkStart, filled: set[int], names: list[str]) -> None:
-    if start.cells is not None and (empty := sorted(set(start.cells) - filled)):
-        raise invalid_field("from.cells", "cells with an elite", empty[:10])
-    if not names:
-        field = "from.region" if start.region is not None else "from"
-        raise invalid_field(field, "at least one elite", "none")

@@ -1,18 +1,27 @@
 """Routes that extend and fork runs."""
 
+from typing import Any
 from uuid import UUID
 
 from fastapi import APIRouter, Response
+
+from microcosmos.spec import Spec
 
 from ..auth.authorize import Writer
 from ..core.json_body import json_route
 from ..creatures.initial import initial_of
 from ..queue.order import requeue
-from ..runs.commands import SPEC_BYTES, IdempotencyKey, changed, submitted
+from ..runs.announce import changed
 from ..runs.deps import OwnRunId, find_run
 from ..runs.schemas import Extension, Fork, RunRead
-from ..runs.submission import IdempotentRequest, earlier_run, refuse_too_large, submit
-from ..services.deps import ServicesDep
+from ..runs.submission import (
+    SPEC_BYTES,
+    IdempotencyKey,
+    IdempotentRequest,
+    answer,
+    refuse_too_large,
+)
+from ..services.services import ServicesDep
 from ..specs import parsing
 from . import extending, forking
 
@@ -45,16 +54,12 @@ def fork_run(
     The same key with the same request gives the same run, even if the archive has changed.
     """
     body = {"fork": str(run_id), **sent.model_dump(mode="json")}
+
+    def fork() -> tuple[Spec, dict[str, Any]]:
+        with services.sessions.read() as session, parsing.parsing(services) as parse:
+            spec = forking.spec_of(session, find_run(session, run_id), sent, parse)
+        origin = {"forked_from": run_id, "n_initial": len(initial_of(spec))}
+        return spec, {"name": sent.name or None, **origin}
+
     request = IdempotentRequest(body, idempotency_key, principal.token)
-    if known := earlier_run(services, response, request):
-        return known
-    with services.sessions.read() as session, parsing.parsing(services) as parse:
-        spec = forking.spec_of(session, find_run(session, run_id), sent, parse)
-    refuse_too_large(services, spec)
-    columns = {
-        "name": sent.name or None,
-        "forked_from": run_id,
-        "n_initial": len(initial_of(spec)),
-    }
-    run, new = submit(services, spec, request, **columns)
-    return submitted(response, run, new)
+    return answer(services, response, request, fork)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from socket import AF_INET, AF_INET6, SO_REUSEADDR, SOL_SOCKET, socket
+from stat import S_IRWXO
 from subprocess import Popen
 
 from filelock import FileLock, Timeout
@@ -15,12 +16,11 @@ from sqlalchemy.exc import OperationalError
 from microcosmos.spec import EXPERIMENTS
 
 from ..auth import bootstrap
-from ..core.folders import create_private, open_to_others
 from ..core.processes import spawn
 from ..maintenance.healthcheck import answers
 from ..runs.submission import submit
 from ..services import services
-from ..settings import Settings
+from ..settings import Settings, create_private
 from ..tables import Run, migrations
 from . import redis_embedded
 from .process_tree import Child, Tree, say
@@ -52,7 +52,7 @@ def lock_data_folder(settings: Settings) -> DataFolder:
     """Lock the data folder for as long as this process lives."""
     folder = settings.data.resolve()
     create_private(folder)
-    if settings.needs_token and open_to_others(folder):
+    if settings.needs_token and folder.stat().st_mode & S_IRWXO:
         say("warning", f"other users can look into {folder}: chmod o= {folder}")
     lock = FileLock(folder / "lock", mode=0o600)
     try:
@@ -95,7 +95,7 @@ def start(data: DataFolder, tree: Tree) -> None:
         name = f"worker-{index}"
         tree.children.append(Child(name, data.module(name, "worker.supervisor", str(index))))
     for name in ("renderer", "auditor"):
-        tree.children.append(Child(name, data.module(name, f"worker.{name}")))
+        tree.children.append(Child(name, data.module(name, "worker.renderer", name)))
     for child in tree.children:
         say(child.name, f"process {child.process.pid}, log in {data.log(child.name)}")
 

@@ -90,7 +90,7 @@ class EmbeddedRedis:
             text = CONFIGURATION.format(port=self.port, password=self.password, folder=folder)
             os.write(write, text.encode())
             command = [str(self.binary), "-"]
-            return spawn(command, os.environ, log, keep=(self.lock,), stdin=read)
+            return spawn(command, os.environ, log, inherit=(self.lock,), stdin=read)
         finally:
             os.close(read)
             os.close(write)

@@ -5,12 +5,15 @@ from typing import Literal
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import PlainTextResponse
 from prometheus_client.exposition import CONTENT_TYPE_PLAIN_0_0_4
+from redis import RedisError
+from sqlalchemy import text
+from sqlalchemy.exc import SQLAlchemyError
 
 from ..auth.authorize import MAY_ADMINISTER, MAY_READ, PUBLIC
 from ..core import static_files
 from ..core.schemas import Wire
-from ..services.deps import ServicesDep, SessionDep
-from . import health
+from ..services.services import ServicesDep, SessionDep
+from . import health_report
 
 router = APIRouter(tags=["health"])
 """Routes of the API."""
@@ -24,15 +27,18 @@ class Health(Wire):
     """The documentation is served at `/help/`."""
 
 
+Answer = Literal["ok", "unreachable"]
+
+
 class Readiness(Wire):
-    database: health.Answer
-    redis: health.Answer
+    database: Answer
+    redis: Answer
 
 
 @router.get("/health", dependencies=[MAY_ADMINISTER])
-def read_health(services: ServicesDep) -> health.HealthReport:
+def read_health(services: ServicesDep) -> health_report.HealthReport:
     """Return the state of the database, the disk, Redis, the queues and the workers."""
-    return health.report(services)
+    return health_report.report(services)
 
 
 @outside.get("/healthz", dependencies=[PUBLIC])
@@ -42,9 +48,15 @@ def alive() -> Health:
 
 @outside.get("/readyz", responses={503: {"model": Readiness}}, dependencies=[PUBLIC])
 def ready(services: ServicesDep, session: SessionDep, response: Response) -> Readiness:
-    found = Readiness(
-        database=health.database_answers(session), redis=health.redis_answers(services)
-    )
+    found = Readiness(database="ok", redis="ok")
+    try:
+        session.execute(text("SELECT 1"))
+    except SQLAlchemyError:
+        found.database = "unreachable"
+    try:
+        services.redis.ping()
+    except RedisError:
+        found.redis = "unreachable"
     if "unreachable" in (found.database, found.redis):
         response.status_code = 503
     return found
@@ -52,5 +64,5 @@ def ready(services: ServicesDep, session: SessionDep, response: Response) -> Rea
 
 @outside.get("/metrics", include_in_schema=False, dependencies=[MAY_READ])
 def metrics(request: Request) -> PlainTextResponse:
-    text = request.app.state.metrics.text()
-    return PlainTextResponse(text, media_type=CONTENT_TYPE_PLAIN_0_0_4)
+    content = request.app.state.metrics.text()
+    return PlainTextResponse(content, media_type=CONTENT_TYPE_PLAIN_0_0_4)

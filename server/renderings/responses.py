@@ -1,11 +1,9 @@
-"""Answer requests for renderings: send the file, or order it."""
+"""Answer requests for renderings: send the file, or enqueue it."""
 
 from fastapi import Request
 from fastapi.responses import JSONResponse, Response
 from sqlalchemy.orm import Session
 
-from ..core.errors import ProblemError
-from ..queue.jobs import FAILURE_SECONDS
 from ..services.services import Services
 from ..storage import ranges
 from ..tables import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP, Creature
@@ -22,8 +20,7 @@ MEDIA_TYPES = {
     MEASUREMENT: "application/json",
 }
 ON_REQUEST = (REPLAY, AUDIT, STRIP, PREVIEW, GIF, MP4)
-"""Renderings that the first request for them orders."""
-NOUNS = {AUDIT: "audit", STRIP: "picture", PREVIEW: "picture", GIF: "film", MP4: "film"}
+"""Renderings that the first request for them enqueues."""
 
 
 def existing(
@@ -54,16 +51,7 @@ def existing_motion(
     return Response(content, headers=headers, media_type="application/octet-stream")
 
 
-def order(services: Services, sha: str, kind: str, *, anonymous: bool = False) -> Response:
-    """Order a rendering and return 202; raise `ProblemError` if the last try failed.
-
-    Holders of a share do not see the reason: errors may name files and hosts.
-    """
-    try:
-        storage.order(services, sha, kind, anonymous=anonymous)
-    except storage.RenderingFailed as error:
-        why = "" if anonymous else f": {error}"
-        detail = f"The {NOUNS.get(kind, kind)} failed{why}. Try again in a minute."
-        headers = {"Retry-After": str(FAILURE_SECONDS)}
-        raise ProblemError(500, "Rendering failed", detail, headers=headers) from error
+def enqueued(services: Services, sha: str, kind: str, *, anonymous: bool = False) -> Response:
+    """Enqueue a rendering and return 202; raise `RenderingFailed` if the last try failed."""
+    storage.enqueue(services, sha, kind, anonymous=anonymous)
     return JSONResponse(Rendering().model_dump(), 202, {"Retry-After": "1"})

@@ -1,23 +1,21 @@
 """Routes of renderings: motion, films, pictures, audits and measurements of a creature."""
 
 from collections.abc import Callable
-from typing import Any
 
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
-from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE
-from ..auth.share_access import ShareAccessDep
+from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE, ShareAccessDep
+from ..core.api import Answers, sends
 from ..core.errors import ProblemError
 from ..creatures.deps import CreatureDep
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from ..tables import AUDIT, MEASUREMENT, PREVIEW, REPLAY
 from . import storage
-from .responses import MEDIA_TYPES, NOUNS, ON_REQUEST, existing, existing_motion, order
+from .responses import MEDIA_TYPES, ON_REQUEST, enqueued, existing, existing_motion
 from .schemas import Measurement, Rendering
 
 router = APIRouter(prefix="/creatures/{sha}", tags=["creatures"])
-Answers = dict[int | str, dict[str, Any]]
 PENDING: Answers = {202: {"model": Rendering}}
 NOT_ORDERED: Answers = {204: {"description": "Nobody has ordered this measurement"}}
 
@@ -32,28 +30,26 @@ def _reader(kind: str) -> Callable[..., Response]:
     ) -> Response:
         found = existing(request, row, session, services, kind)
         if found is None and share and kind != REPLAY:
-            raise ProblemError(404, "Not found", f"The share has no {NOUNS[kind]} of it.")
-        return found or order(services, row.sha256, kind, anonymous=share is not None)
+            raise ProblemError(
+                404, "Not found", f"The share has no {storage.NOUNS[kind]} of it."
+            )
+        return found or enqueued(services, row.sha256, kind, anonymous=share is not None)
 
     read.__name__ = f"read_{kind.replace('.', '_')}"
-    read.__doc__ = f"Return the {NOUNS.get(kind, kind)}, or 202 while it is computed."
+    read.__doc__ = f"Return the {storage.NOUNS.get(kind, kind)}, or 202 while it is computed."
     return read
 
 
 for kind in ON_REQUEST:
     router.get(
         f"/{kind}",
-        response_class=Response,
-        responses={200: {"content": {MEDIA_TYPES[kind]: {}}}, **PENDING},
+        **sends(MEDIA_TYPES[kind], PENDING),
         dependencies=[MAY_READ if kind in (AUDIT, PREVIEW) else MAY_READ_SHARED],
     )(_reader(kind))
 
 
 @router.get(
-    "/motion",
-    response_class=Response,
-    responses={200: {"content": {"application/octet-stream": {}}}, **PENDING},
-    dependencies=[MAY_READ_SHARED],
+    "/motion", **sends("application/octet-stream", PENDING), dependencies=[MAY_READ_SHARED]
 )
 def read_motion(
     request: Request,
@@ -64,7 +60,7 @@ def read_motion(
 ) -> Response:
     """Return the body's motion from the replay, without the fluid, or 202."""
     found = existing_motion(request, row, session, services)
-    return found or order(services, row.sha256, REPLAY, anonymous=share is not None)
+    return found or enqueued(services, row.sha256, REPLAY, anonymous=share is not None)
 
 
 @router.post("/measure", status_code=202, dependencies=[MAY_WRITE])
@@ -73,9 +69,7 @@ def measure(row: CreatureDep, services: ServicesDep) -> Rendering:
     if not row.measured:
         detail = "The creature's file contains no measurement to compare a new one with."
         raise ProblemError(422, "Never measured", detail)
-    if not storage.underway(services, row.sha256, MEASUREMENT):
-        storage.delete_rendering(services, row.sha256, MEASUREMENT)
-        services.jobs.render(row.sha256, MEASUREMENT)
+    storage.enqueue_again(services, row.sha256, MEASUREMENT)
     return Rendering()
 
 
@@ -97,4 +91,4 @@ def read_measurement(
     job = services.jobs.find(services.jobs.rendering_id(row.sha256, MEASUREMENT))
     if share or job is None:
         return Response(status_code=204)
-    return order(services, row.sha256, MEASUREMENT)
+    return enqueued(services, row.sha256, MEASUREMENT)

@@ -1,4 +1,4 @@
-"""Renderings of creatures: find, order, save and delete them."""
+"""Renderings of creatures: find, enqueue, save and delete them."""
 
 import re
 from typing import Any
@@ -11,13 +11,16 @@ from sqlalchemy.orm import Session
 from microcosmos.viz.replay_file import REPLAY_VERSION
 
 from ..core.database import insert_missing
+from ..core.errors import ProblemError
 from ..creatures import storage as creatures
+from ..queue.jobs import FAILURE_SECONDS
 from ..services.services import Services
-from ..storage.artifacts import StoredFile, rendering_path
-from ..tables import REPLAY, Artifact, Creature
+from ..storage.artifacts import rendering_path
+from ..tables import AUDIT, GIF, MP4, PREVIEW, REPLAY, STRIP, Artifact, Creature
 
 REFUSAL = re.compile(r"^[\w.]*(?:CreatureError|Missing|Broken): ")
 """Prefix of the engine's own errors, whose message suffices; others keep the class name."""
+NOUNS = {AUDIT: "audit", STRIP: "picture", PREVIEW: "picture", GIF: "film", MP4: "film"}
 VERSIONS = {REPLAY: REPLAY_VERSION}
 """Versions of formats that have changed: a rendering in an earlier one does not count."""
 ANONYMOUS_LIMIT = 8
@@ -25,8 +28,17 @@ ANONYMOUS_LIMIT = 8
 UNDERWAY = (JobStatus.QUEUED, JobStatus.STARTED, JobStatus.DEFERRED, JobStatus.SCHEDULED)
 
 
-class RenderingFailed(Exception):
-    """The renderer failed; the message says why."""
+class RenderingFailed(ProblemError):
+    """The renderer failed; the message says why, except to holders of a share.
+
+    Errors may name files and hosts.
+    """
+
+    def __init__(self, kind: str, reason: str | None):
+        why = f": {reason}" if reason else ""
+        detail = f"The {NOUNS.get(kind, kind)} failed{why}. Try again in a minute."
+        headers = {"Retry-After": str(FAILURE_SECONDS)}
+        super().__init__(500, "Rendering failed", detail, headers=headers)
 
 
 def find(session: Session, creature: str, kind: str = REPLAY) -> Artifact | None:
@@ -38,12 +50,12 @@ def _is(creature: str, kind: str) -> ColumnElement[bool]:
     return (Artifact.creature == creature) & (Artifact.kind == kind)
 
 
-def order(
+def enqueue(
     services: Services, creature: str, kind: str = REPLAY, *, anonymous: bool = False
 ) -> None:
-    """Order a rendering, once; raise `RenderingFailed` if the last try failed.
+    """Enqueue a rendering, once; raise `RenderingFailed` if the last try failed.
 
-    An `anonymous` order goes last, and is not accepted while many wait.
+    An `anonymous` request goes last, and is not accepted while many wait.
     """
     job = services.jobs.find(services.jobs.rendering_id(creature, kind))
     status = job.get_status(refresh=False) if job else None
@@ -52,20 +64,18 @@ def order(
     if job and status == JobStatus.FAILED:
         result = job.latest_result()
         text = (result.exc_string if result else None) or "the renderer's process died"
-        raise RenderingFailed(REFUSAL.sub("", _reason(text)))
+        raise RenderingFailed(kind, None if anonymous else REFUSAL.sub("", _reason(text)))
     if not (anonymous and services.jobs.renderings.count >= ANONYMOUS_LIMIT):
         services.jobs.render(creature, kind, anonymous=anonymous)
 
 
-def underway(services: Services, creature: str, kind: str) -> bool:
+def enqueue_again(services: Services, creature: str, kind: str) -> None:
+    """Enqueue a rendering in place of an earlier one, unless it is underway."""
     job = services.jobs.find(services.jobs.rendering_id(creature, kind))
-    return job is not None and job.get_status(refresh=False) in UNDERWAY
-
-
-def delete_rendering(services: Services, creature: str, kind: str) -> None:
-    """Delete the row of a rendering, so that the next order computes it again."""
-    with services.sessions.write.begin() as session:
-        session.execute(delete(Artifact).where(_is(creature, kind)))
+    if job is None or job.get_status(refresh=False) not in UNDERWAY:
+        with services.sessions.write.begin() as session:
+            session.execute(delete(Artifact).where(_is(creature, kind)))
+        services.jobs.render(creature, kind)
 
 
 def _reason(traceback: str) -> str:
@@ -89,14 +99,10 @@ def save(services: Services, creature: str, kind: str, data: bytes) -> None:
 
 
 def existing(services: Services, creature: str, kind: str) -> bytes | None:
-    """Return a rendering if it exists and is sound."""
+    """Return a rendering if it exists and is intact."""
     with services.sessions.read() as session:
         row = find(session, creature, kind)
-    return (
-        services.artifacts.read_verified(StoredFile(row.path, row.size, row.sha256))
-        if row
-        else None
-    )
+    return services.artifacts.read_verified(row.path, row.sha256) if row else None
 
 
 def creature(services: Services, name: str) -> dict[str, Any]:

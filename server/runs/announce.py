@@ -1,16 +1,18 @@
-"""Publish events of runs, after a transaction has changed them."""
+"""Change runs, and publish events of runs after a transaction has changed them."""
 
 import logging
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 from uuid import UUID
 
 from sqlalchemy import select
 from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import Session
 
 from ..services.services import Services
 from ..tables import Run
-from .overview import read_runs
+from .deps import find_run
+from .overview import read_run, read_runs
 from .schemas import RunRead
 
 log = logging.getLogger(__name__)
@@ -61,3 +63,27 @@ def _news(
 
 def _facts(run: RunRead) -> dict[str, Any]:
     return run.model_dump(exclude=CHANGING)
+
+
+def announced(services: Services, run_id: UUID) -> RunRead:
+    return next(iter(announce(services, run_id)), None) or current(services, run_id)
+
+
+def current(services: Services, run_id: UUID | None) -> RunRead:
+    with services.sessions.read() as session:
+        return read_run(services, session, session.get_one(Run, run_id))
+
+
+def changed(
+    services: Services,
+    run_id: UUID,
+    change: Callable[[Session, Run], Run],
+    deleted: bool = False,
+) -> RunRead:
+    """Change a run in a transaction, announce it and read it.
+
+    A request holds one connection at a time: with two, requests could wait for each other.
+    """
+    with services.sessions.write.begin() as session:
+        change(session, find_run(session, run_id, deleted))
+    return announced(services, run_id)

@@ -35,23 +35,14 @@ def summaries(
     ordered = rows.order_by(Generation.generation).execution_options(yield_per=1000)
     for generation, summary in session.execute(ordered):
         place = bisect_left(generations, generation)
-        if place < len(points):
-            points[place] = _joined(points[place], numbers(summary or {}))
+        for name, value in numbers(summary or {}).items() if place < len(points) else ():
+            counted = points[place].get(name, 0) if name.startswith(COUNT_PREFIX) else 0
+            points[place][name] = counted + value
     names = dict.fromkeys(name for point in points for name in point)
     return {name: [point.get(name) for point in points] for name in names}
 
 
-def _joined(before: dict[str, float], later: dict[str, float]) -> dict[str, float]:
-    added = {
-        name: before.get(name, 0) + value
-        for name, value in later.items()
-        if name.startswith(COUNT_PREFIX)
-    }
-    return before | later | added
-
-
 def numbers(summary: Mapping[str, Any]) -> dict[str, float]:
-    """Return those of the values that are numbers."""
     return {
         name: value
         for name, value in summary.items()

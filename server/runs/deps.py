@@ -1,16 +1,14 @@
 """FastAPI dependencies: the run that a path names."""
 
-from datetime import datetime
 from typing import Annotated
 from uuid import UUID
 
 from fastapi import Depends
 from sqlalchemy.orm import Session
 
-from ..auth.authorize import Writer, authorize_owner
-from ..auth.share_access import ShareAccessDep
+from ..auth.authorize import ShareAccessDep, Writer, authorize_owner
 from ..core.errors import ProblemError
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from ..tables import Run
 
 
@@ -20,13 +18,10 @@ def find_run(session: Session, run_id: UUID, deleted: bool = False) -> Run:
     if found is None:
         raise ProblemError(404, "Not found", f"No run has the id {run_id}.")
     if found.purge_at and not deleted:
-        raise ProblemError(404, "In the bin", in_the_bin(found.id, found.purge_at))
+        until = f"{found.purge_at:%Y-%m-%d %H:%M} UTC"
+        detail = f"Run {run_id} is in the bin until {until}; restore it to use it again."
+        raise ProblemError(404, "In the bin", detail)
     return found
-
-
-def in_the_bin(run_id: UUID, until: datetime) -> str:
-    moment = f"{until:%Y-%m-%d %H:%M} UTC"
-    return f"Run {run_id} is in the bin until {moment}; restore it to use it again."
 
 
 def run(run_id: UUID, session: SessionDep, share: ShareAccessDep) -> Run:

@@ -10,7 +10,8 @@ from microcosmos.spec import Folding, parse, targets
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED
 from ..core.errors import ProblemError
 from ..core.schemas import MAX_INTEGER
-from ..services.deps import SessionDep
+from ..services.services import SessionDep
+from ..specs.schemas import pictures
 from ..tables import Generation
 from . import curves, listing, log
 from .curves import evenly
@@ -79,16 +80,7 @@ def read_targets(run: RunDep) -> list[Target]:
     assert isinstance(spec, Folding)
     longest = min(spec.size, targets.MAX_PIXELS)
     fitted = [(one.name, targets.fitted(one.ink, longest)) for one in spec.targets]
-    return [
-        Target(
-            name=name,
-            width=ink.shape[1],
-            height=ink.shape[0],
-            size=spec.size,
-            pixels=targets.encoded(ink),
-        )
-        for name, ink in fitted
-    ]
+    return [Target(**dict(one), size=spec.size) for one in pictures(fitted)]
 
 
 @router.get("/tags", tags=["runs"], dependencies=[MAY_READ])

@@ -28,7 +28,6 @@ from .log import note, note_status
 log = logging.getLogger(__name__)
 
 NOT_IN_BIN = Run.deleted_at.is_(None)
-"""The condition that a run is not in the bin."""
 
 MAX_ATTEMPTS = 3
 """Number of attempts without a new checkpoint after which a run fails."""
@@ -105,12 +104,11 @@ def resume(session: Session, run: Run) -> Run:
     override = case(
         (Run.device_override == OVERRIDE_NEEDED, OVERRIDE_ALLOWED), else_=Run.device_override
     )
-    values = {"status": QUEUED, "attempts_without_checkpoint": 0, "device_override": override}
-    values |= {"queued_at": clock()}
+    values = {"status": QUEUED, "attempts_without_checkpoint": 0, "queued_at": clock()}
     waited = run.device_override == OVERRIDE_NEEDED
-    changed = change(session, run.id, NOT_IN_BIN, Run.status == PAUSED, **values) or refuse(
-        session, "resume", run, "paused"
-    )
+    paused = (NOT_IN_BIN, Run.status == PAUSED)
+    changed = change(session, run.id, *paused, device_override=override, **values)
+    changed = changed or refuse(session, "resume", run, "paused")
     allowed = " Another kind of device is allowed." if waited else ""
     note(session, changed, f"Resumed: queued again.{allowed}")
     return changed

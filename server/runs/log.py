@@ -6,23 +6,12 @@ from uuid import UUID
 from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
-from microcosmos.sizes import size
-
-from ..tables import CANCELLED, FAILED, FINISHED, PAUSED, QUEUED, RUNNING, LogEntry, Run
+from ..tables import QUEUED, LogEntry, Run
 
 Level = Literal["info", "warning", "error"]
 
 SAVED, UNSAVED = "saved", "unsaved"
 """Kinds of frequent entries: each attempt keeps only the first and the last of a kind."""
-
-STATUS_TEXTS = {
-    QUEUED: "Queued for another attempt.",
-    RUNNING: "Running.",
-    PAUSED: "Paused.",
-    FINISHED: "Finished.",
-    FAILED: "Failed.",
-    CANCELLED: "Cancelled.",
-}
 
 
 def note(
@@ -44,7 +33,9 @@ def note(
 
 def note_status(session: Session, run: Run) -> None:
     """Log the status of a run after an attempt has ended."""
-    note(session, run, STATUS_TEXTS[run.status])
+    queued = run.status == QUEUED
+    text = "Queued for another attempt." if queued else f"{run.status.capitalize()}."
+    note(session, run, text)
 
 
 def note_start(session: Session, run: Run, before: int) -> None:
@@ -62,12 +53,6 @@ def note_start(session: Session, run: Run, before: int) -> None:
             else f"generation {before}"
         )
         note(session, run, f"Discarded {discarded}, recorded after the checkpoint.", "warning")
-
-
-def note_checkpoint(session: Session, run: Run, generation: int, count: int) -> None:
-    """Log a written checkpoint of so many bytes."""
-    text = f"Checkpoint of generation {generation} written, {size(count)}."
-    note(session, run, text, kind=SAVED)
 
 
 def read(session: Session, run_id: UUID, after: int | None, limit: int) -> list[LogEntry]:

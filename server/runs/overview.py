@@ -11,12 +11,11 @@ from ..auth import tokens
 from ..estimates import position
 from ..services.services import Services
 from ..tables import FAILED, RUNNING, Generation, Run
-from ..workers.brief import progress
+from ..workers.registry import progress
 from .curves import evenly
 from .schemas import ForkedFrom, RunRead
 
-POINTS = 32
-"""Points of a sparkline."""
+SPARKLINE_POINTS = 32
 
 
 def read_runs(
@@ -25,7 +24,7 @@ def read_runs(
     """Read runs; without the `queue`, queued ones have no reason for waiting."""
     curves = _curves(session, runs)
     reasons = position.reasons(services, session, runs) if queue else {}
-    names = tokens.names(session, (run.owner for run in runs))
+    names = tokens.owner_names(session, (run.owner for run in runs))
     return [
         _read(run, curves[run.id], reasons.get(run.id), names.get(run.owner)) for run in runs
     ]
@@ -36,12 +35,11 @@ def read_run(services: Services, session: Session, run: Run) -> RunRead:
 
 
 def _curves(session: Session, runs: Sequence[Run]) -> dict[UUID, list[Generation]]:
-    """Read a few generations of each run in one query."""
     curves: dict[UUID, list[Generation]] = defaultdict(list)
     wanted = [
         and_(
             Generation.run_id == run.id,
-            Generation.generation.in_(evenly(run.generation, POINTS)),
+            Generation.generation.in_(evenly(run.generation, SPARKLINE_POINTS)),
         )
         for run in runs
         if run.generation
@@ -78,13 +76,10 @@ def _rates(run: Run, curve: list[Generation]) -> tuple[float | None, float | Non
     For other runs, since the first generation, which had to compile.
     """
     names = ("generation", "evaluations", "seconds")
-    first, last = ([getattr(row, name) for name in names] for row in _ends(run, curve))
+    points = [Generation(generation=0, evaluations=0, seconds=0.0), *curve]
+    start = (
+        points[-2 if run.status == RUNNING or len(points) < 3 else 1] if curve else points[0]
+    )
+    first, last = ([getattr(row, name) for name in names] for row in (start, points[-1]))
     generations, evaluations, seconds = (b - a for a, b in zip(first, last, strict=True))
     return (generations / seconds, evaluations / seconds) if seconds > 0 else (None, None)
-
-
-def _ends(run: Run, curve: list[Generation]) -> tuple[Generation, Generation]:
-    start = Generation(generation=0, evaluations=0, seconds=0.0)
-    if len(curve) < 2:
-        return start, [start, *curve][-1]
-    return curve[-2 if run.status == RUNNING else 0], curve[-1]

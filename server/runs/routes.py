@@ -13,19 +13,19 @@ from ..auth.authorize import MAY_READ, MAY_READ_SHARED, Writer
 from ..core.errors import invalid_field
 from ..core.json_body import json_route
 from ..estimates import position
-from ..estimates.eta import speed_of
+from ..estimates.eta import speeds_of
 from ..estimates.schemas import EstimateRead
 from ..queue.order import requeue
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from ..specs import parsing
-from ..specs.drawings import drawing_read
+from ..specs.schemas import DrawingRead
 from ..tables import Run, Status
 from . import lifecycle, listing
-from .commands import SPEC_BYTES, IdempotencyKey, changed, submitted
+from .announce import changed
 from .deps import AnyRunDep, OwnRunId
 from .overview import read_run, read_runs
 from .schemas import NAME_LENGTH, RunChange, RunPage, RunRead
-from .submission import IdempotentRequest, earlier_run, memory_limit, refuse_too_large, submit
+from .submission import SPEC_BYTES, IdempotencyKey, IdempotentRequest, answer, memory_limit
 
 router = APIRouter(prefix="/runs", tags=["runs"], route_class=json_route(SPEC_BYTES))
 
@@ -56,11 +56,7 @@ def create_run(
 ) -> RunRead:
     """Queue a run. The same key with the same spec gives the same run, with 200."""
     request = IdempotentRequest(spec.model_dump(mode="json"), idempotency_key, principal.token)
-    if known := earlier_run(services, response, request):
-        return known
-    refuse_too_large(services, spec)
-    run, new = submit(services, spec, request, name=name or None)
-    return submitted(response, run, new)
+    return answer(services, response, request, lambda: (spec, {"name": name or None}))
 
 
 @router.post("/estimate", dependencies=[MAY_READ])
@@ -68,7 +64,7 @@ def estimate_run(spec: SpecDep, services: ServicesDep, session: SessionDep) -> E
     """Return the needs of a run and a drawing, without queueing it."""
     needed = estimate(spec)
     queue = position.queue_state(services, session)
-    speed = speed_of(session, spec, queue.alive)
+    (speed,) = speeds_of(session, [spec], queue.alive)
     return EstimateRead(
         memory_bytes=needed.memory_bytes,
         memory_limit_bytes=memory_limit(services, session),
@@ -77,7 +73,7 @@ def estimate_run(spec: SpecDep, services: ServicesDep, session: SessionDep) -> E
         seconds=speed.seconds(needed.cell_steps) if speed else None,
         speed=speed.read(needed.cell_steps) if speed else None,
         queue=queue.ahead(),
-        drawing=drawing_read(drawing(spec)),
+        drawing=DrawingRead.model_validate(drawing(spec)),
     )
 
 

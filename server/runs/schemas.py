@@ -7,7 +7,8 @@ from uuid import UUID
 from pydantic import AfterValidator, Field, StringConstraints, model_validator
 
 from ..core.schemas import Wire
-from ..tables import Status
+from ..specs.schemas import PictureRead
+from ..workers.schemas import RunBrief
 
 NAME_LENGTH = 200
 
@@ -94,13 +95,9 @@ class ForkedFrom(Wire):
     """Number of creatures taken from it."""
 
 
-class RunRead(Wire):
-    id: UUID
-    experiment: str
-    name: str | None
+class RunRead(RunBrief):
     tags: list[str]
     note: str | None
-    status: Status
     requested_state: Literal["paused", "cancelled"] | None
     """A requested state that the worker has not reached yet."""
     waiting_reason: str | None
@@ -108,13 +105,8 @@ class RunRead(Wire):
     spec: dict[str, Any]
     created_at: datetime
     queued_at: datetime
-    """When it last entered the queue."""
     started_at: datetime | None
     finished_at: datetime | None
-    attempt: int
-    generation: int
-    generations: int
-    progress: float
     eta_seconds: float | None
     evaluations: int
     evaluations_per_second: float | None
@@ -122,7 +114,6 @@ class RunRead(Wire):
     coverage: float | None
     best: float | None
     summary: dict[str, Any] | None
-    """Figures of the whole result, if it is a table."""
     diverged: int
     sparkline: list[float]
     """QD scores, evenly spaced over the generations so far."""
@@ -130,12 +121,10 @@ class RunRead(Wire):
     warning: str | None
     device: str | None
     version: str
-    demonstration: bool
     owner: str | None
     """Name of the token that created it."""
     sweep: UUID | None
     deleted_at: datetime | None
-    """When it was moved to the bin."""
     purge_at: datetime | None
     """When it is deleted for good."""
     forked_from: ForkedFrom | None
@@ -170,16 +159,11 @@ class Species(Wire):
     members: list[list[int]]
 
 
-class Target(Wire):
+class Target(PictureRead):
     """A picture that a filament folds into, scaled to its world."""
 
-    name: str
-    width: int
-    height: int
     size: int
     """Cells of its longer side; its centre is that of the world."""
-    pixels: str
-    """Base64 of one byte a pixel, row by row from the top; 255 is ink."""
 
 
 class LogEntryRead(Wire):

@@ -2,14 +2,14 @@
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from datetime import timedelta
 from hashlib import sha256
-from typing import Any
+from typing import Annotated, Any
 from uuid import UUID
 
-from fastapi import Response
+from fastapi import Header, Response
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
@@ -22,8 +22,15 @@ from ..creatures import initial
 from ..services.services import Services
 from ..tables import Idempotency, LogEntry, Run, Sweep
 from ..workers import plugins, registry
-from .commands import announced, current, submitted
+from .announce import announced, current
 from .schemas import RunRead
+
+SPEC_BYTES = 1 << 20
+"""Limit on the body of a request with a spec."""
+
+IdempotencyKey = Annotated[
+    str | None, Header(alias="Idempotency-Key", min_length=1, max_length=255)
+]
 
 SEARCH_FIELDS = ("search.block", "search.batch", "archive")
 MEMORY_FIELDS = {
@@ -122,14 +129,6 @@ class IdempotentRequest:
         return known
 
 
-def earlier_run(
-    services: Services, response: Response, request: IdempotentRequest
-) -> RunRead | None:
-    """Answer a request with the run that its key created, if there is one."""
-    known = request.earlier(services)
-    return submitted(response, current(services, known.run_id), new=False) if known else None
-
-
 @dataclass(frozen=True)
 class Draft:
     """A run to create. The document is the spec as stored, which may have another seed."""
@@ -212,3 +211,21 @@ def submit(
     if isinstance(created, Idempotency):
         return current(services, created.run_id), False
     return announced(services, created[0].id), True
+
+
+def answer(
+    services: Services,
+    response: Response,
+    request: IdempotentRequest,
+    draft: Callable[[], tuple[Spec, dict[str, Any]]],
+) -> RunRead:
+    """Answer a request: 200 with the run that its key created, else 202 with a new one."""
+    if known := request.earlier(services):
+        run, new = current(services, known.run_id), False
+    else:
+        spec, columns = draft()
+        refuse_too_large(services, spec)
+        run, new = submit(services, spec, request, **columns)
+    response.status_code = 202 if new else 200
+    response.headers["Location"] = f"/api/v1/runs/{run.id}"
+    return run

@@ -2,7 +2,6 @@
 
 import json
 import logging
-import math
 from typing import Any
 from uuid import UUID
 
@@ -29,8 +28,3 @@ class Events:
         except RedisError as error:
             # SQL holds the content of the event, and pages fetch it when Redis is back.
             log.warning("no event %s of run %s: %s", kind, run_id, error)
-
-
-def finite(value: float | None) -> float | None:
-    """Return the value, or None where JSON and SQL cannot hold it (NaN, infinity)."""
-    return value if value is not None and math.isfinite(value) else None

@@ -1,8 +1,12 @@
-"""Services of server and workers: database, queues, events and files."""
+"""Services of server and workers: database, queues, events and files; their dependencies."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Annotated
 
+from fastapi import Depends, Request
 from redis import Redis
+from sqlalchemy.orm import Session
 
 from ..core import database
 from ..core.database import Sessions
@@ -37,3 +41,19 @@ def connect(settings: Settings) -> Services:
         events=Events(redis, settings.redis_prefix),
         artifacts=Artifacts(settings.artifacts),
     )
+
+
+def _services(request: Request) -> Services:
+    return request.app.state.services
+
+
+ServicesDep = Annotated[Services, Depends(_services)]
+
+
+def _session(services: ServicesDep) -> Iterator[Session]:
+    with services.sessions.read() as session:
+        yield session
+
+
+# Closed before the answer is sent: a long download must not hold a connection.
+SessionDep = Annotated[Session, Depends(_session, scope="function")]

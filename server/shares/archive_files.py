@@ -1,13 +1,12 @@
 """The archive file of a share: a copy of a checkpoint with its licence and credit."""
 
-from sqlalchemy import delete, select
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from microcosmos.archive import export
 
 from ..core.database import insert_missing
 from ..services.services import Services
-from ..storage.artifacts import StoredFile
 from ..tables import CHECKPOINT, PUBLISHED, Artifact, Share
 
 
@@ -21,37 +20,21 @@ def copy_checkpoint(services: Services, share: Share) -> None:
     The file may be large, so it is written outside any transaction.
     """
     with services.sessions.read() as session:
-        checkpoint = None if find(session, share) else _checkpoint(session, share)
-    if checkpoint is None:
+        mine = (Artifact.run_id == share.run_id) & (Artifact.kind == CHECKPOINT)
+        same = select(Artifact).where(mine, Artifact.generation == share.generation)
+        checkpoint = session.scalars(same.order_by(Artifact.number.desc()).limit(1)).first()
+        copied = find(session, share) is not None
+    if copied or checkpoint is None:
         return
-    data = services.artifacts.read_verified(
-        StoredFile(checkpoint.path, checkpoint.size, checkpoint.sha256)
-    )
+    data = services.artifacts.read_verified(checkpoint.path, checkpoint.sha256)
     if data is None:
         return
     licensed = export.licensed(data, share.licence, share.credit)
     stored = services.artifacts.write(path(share), licensed)
-    row = {
-        **vars(stored),
-        "kind": PUBLISHED,
-        "run_id": share.run_id,
-        "generation": share.generation,
-    }
+    of_run = {"run_id": share.run_id, "generation": share.generation}
     with services.sessions.write.begin() as session:
-        insert_missing(session, Artifact, [row])
-
-
-def _checkpoint(session: Session, share: Share) -> Artifact | None:
-    mine = (Artifact.run_id == share.run_id) & (Artifact.kind == CHECKPOINT)
-    same = select(Artifact).where(mine, Artifact.generation == share.generation)
-    return session.scalars(same.order_by(Artifact.number.desc()).limit(1)).first()
+        insert_missing(session, Artifact, [{**vars(stored), "kind": PUBLISHED, **of_run}])
 
 
 def find(session: Session, share: Share) -> Artifact | None:
     return session.get(Artifact, path(share))
-
-
-def remove_row(session: Session, share: Share) -> str | None:
-    """Delete the row of the file; return the path of the file, if there was one."""
-    rows = delete(Artifact).where(Artifact.path == path(share)).returning(Artifact.path)
-    return session.scalars(rows).one_or_none()

@@ -1,17 +1,17 @@
 """The page of a share, with the tags from which other sites make a preview."""
 
 from html import escape
-from typing import Any
 
 from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse, Response
+from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from ..core import static_files
 from ..core.errors import ProblemError
-from ..services.deps import SessionDep
-from ..tables import Creature, Share
-from . import publishing
+from ..services.services import SessionDep
+from ..tables import Creature, Elite, Share
+from .access import find_live
 
 WIDTH, HEIGHT = 1200, 630
 """Size of the preview: most sites cut pictures to it."""
@@ -27,7 +27,7 @@ def read_share_page(request: Request, slug: str, session: SessionDep) -> Respons
         return HTMLResponse(static_files.MISSING, 503)
     index = (static_files.BUILT / "index.html").read_text()
     try:
-        share = publishing.find_live(session, slug)
+        share = find_live(session, slug)
     except ProblemError as error:
         return HTMLResponse(index, error.problem.status)
     request.state.listed = share.listed
@@ -45,18 +45,16 @@ def description(session: Session, share: Share) -> str:
     by = f" By {', '.join(share.credit)}." if share.credit else ""
     licence = f" {share.licence}." if len(share.licence) <= 40 else ""
     if share.run_id:
-        count = publishing.elites(session, share)
+        mine = (Elite.run_id == share.run_id) & (Elite.generation <= share.generation)
+        count = session.scalars(select(func.count(Elite.cell.distinct())).where(mine)).one()
         text = f"An archive of {count:,} swimmers after {share.generation:,} generations."
     else:
-        text = _creature_description(session.get_one(Creature, share.cover).measured)
+        measured = session.get_one(Creature, share.cover).measured
+        distance = (measured or {}).get("measures", {}).get("displacement")
+        text = "A creature of Microcosmos."
+        if distance is not None:
+            text = f"An evolved swimmer that travels {distance:.3g} cells."
     return text + by + licence
-
-
-def _creature_description(measured: dict[str, Any] | None) -> str:
-    measures = (measured or {}).get("measures", {})
-    if "displacement" not in measures:
-        return "A creature of Microcosmos."
-    return f"An evolved swimmer that travels {measures['displacement']:.3g} cells."
 
 
 def tags(base: str, share: Share, description: str) -> dict[str, str]:

@@ -1,7 +1,7 @@
 """Routes of shares: publish, read, list, revoke."""
 
 import logging
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from pydantic import StringConstraints
@@ -11,6 +11,7 @@ from sqlalchemy.orm import Session
 
 from ..auth.authorize import PUBLIC, Reader, Writer, authorize_owner
 from ..auth.principal import ADMIN
+from ..core.api import sends
 from ..core.database import now
 from ..core.errors import ProblemError
 from ..core.json_body import json_route
@@ -19,17 +20,17 @@ from ..creatures.deps import find_creature
 from ..renderings import responses
 from ..renderings import storage as renderings
 from ..renderings.schemas import Rendering
-from ..services.deps import ServicesDep, SessionDep
-from ..services.services import Services
+from ..services.services import Services, ServicesDep, SessionDep
 from ..tables import PREVIEW, Share
-from . import archive_files, publishing
+from . import access, archive_files, publishing
 from .page import base
 from .schemas import ShareCreate, SharePage, ShareRead
 
 log = logging.getLogger(__name__)
 BODY_BYTES = 1 << 16
-Slug = Annotated[str, Path(pattern=f"^{publishing.SLUG.pattern}$")]
-SlugText = Annotated[str, StringConstraints(pattern=f"^{publishing.SLUG.pattern}$")]
+Limit = Annotated[int, Query(ge=1, le=200)]
+Slug = Annotated[str, Path(pattern=f"^{access.SLUG.pattern}$")]
+SlugText = Annotated[str, StringConstraints(pattern=f"^{access.SLUG.pattern}$")]
 NEWEST_FIRST = Order("-created", Share.created_at.expression, MOMENT, Share.slug, SlugText)
 
 router = APIRouter(tags=["shares"], route_class=json_route(BODY_BYTES))
@@ -49,33 +50,30 @@ def publish(
         read = share_read(request, session, share)
     if share.run_id:
         archive_files.copy_checkpoint(services, share)
-    _order_preview(services, share.cover)
+    _enqueue_preview(services, share.cover)
     response.status_code = 201 if new else 200
     response.headers["Location"] = f"/api/v1/shares/{share.slug}"
     return read
 
 
-def _order_preview(services: Services, cover: str) -> None:
-    """Order the picture, so that it exists when the first visitor comes."""
+def _enqueue_preview(services: Services, cover: str) -> None:
+    """Enqueue the picture, so that it exists when the first visitor comes."""
     try:
         with services.sessions.read() as session:
             if renderings.find(session, cover, PREVIEW) is None:
-                renderings.order(services, cover, PREVIEW)
+                renderings.enqueue(services, cover, PREVIEW)
     except (RedisError, renderings.RenderingFailed) as error:
         log.warning("The preview of %s is left to its first visitor: %s", cover, error)
 
 
 def share(request: Request, slug: Slug, session: SessionDep) -> Share:
-    found = publishing.find_live(session, slug)
+    found = access.find_live(session, slug)
     request.state.listed = found.listed
     return found
 
 
 ShareDep = Annotated[Share, Depends(share)]
-PNG: dict[int | str, dict[str, Any]] = {
-    200: {"content": {"image/png": {}}},
-    202: {"model": Rendering},
-}
+PNG = sends("image/png", {202: {"model": Rendering}})
 
 
 @router.get("/shares/{slug}", dependencies=[PUBLIC])
@@ -83,22 +81,14 @@ def read_share(request: Request, share: ShareDep, session: SessionDep) -> ShareR
     return share_read(request, session, share)
 
 
-@router.get(
-    "/shares/{slug}/preview.png",
-    response_class=Response,
-    responses=PNG,
-    dependencies=[PUBLIC],
-)
+@router.get("/shares/{slug}/preview.png", **PNG, dependencies=[PUBLIC])
 def read_preview(
     request: Request, share: ShareDep, session: SessionDep, services: ServicesDep
 ) -> Response:
     """Return a picture of the creature, or of the best of the archive; 202 while it is made."""
     cover = find_creature(session, share.cover)
     found = responses.existing(request, cover, session, services, PREVIEW)
-    return found or responses.order(services, share.cover, PREVIEW, anonymous=True)
-
-
-Limit = Annotated[int, Query(ge=1, le=200)]
+    return found or responses.enqueued(services, share.cover, PREVIEW, anonymous=True)
 
 
 @router.get("/shares")
@@ -124,7 +114,7 @@ def read_commons(
     request: Request, session: SessionDep, cursor: str | None = None, limit: Limit = 50
 ) -> SharePage:
     """Return the live listed shares, newest first."""
-    return _page(request, session, publishing.live().where(Share.listed), cursor, limit)
+    return _page(request, session, access.live().where(Share.listed), cursor, limit)
 
 
 def _page(
@@ -141,7 +131,7 @@ def _page(
 
 def own_share(slug: str, principal: Writer, services: ServicesDep) -> str:
     """Return the slug of a path; raise `ProblemError` if somebody else owns the share."""
-    if publishing.SLUG.fullmatch(slug):
+    if access.SLUG.fullmatch(slug):
         authorize_owner(services, principal, Share, slug)
     return slug
 
@@ -153,15 +143,17 @@ OwnSlug = Annotated[str, Depends(own_share)]
 def revoke(slug: OwnSlug, request: Request, services: ServicesDep) -> ShareRead:
     """Revoke a share: its address shows nothing from now on."""
     with services.sessions.write.begin() as session:
-        share = publishing.find(session, slug)
+        share = access.find(session, slug)
         if share is None:
             raise ProblemError(404, "Not found", "Nothing is shared under this name.")
         if share.revoked_at is None:
             share.revoked_at = now(session)
-        stored = archive_files.remove_row(session, share)
+        stored = archive_files.find(session, share)
+        if stored:
+            session.delete(stored)
         read = share_read(request, session, share)
     if stored:
-        services.artifacts.delete(stored)
+        services.artifacts.delete(stored.path)
     return read
 
 
@@ -170,6 +162,6 @@ def share_read(request: Request, session: Session, share: Share) -> ShareRead:
     return ShareRead(
         url=f"{base(request)}/s/{share.slug}",
         run=share.run_id,
-        state=publishing.state(session, share),
+        state=access.state(session, share),
         **{name: getattr(share, name) for name in names},
     )

@@ -1,7 +1,7 @@
 """Wire types of shares."""
 
 from datetime import datetime
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 from uuid import UUID
 
 from pydantic import AwareDatetime, BeforeValidator, Field, StringConstraints, model_validator
@@ -16,11 +16,11 @@ Licence = Annotated[
 ]
 
 
-def as_list(credit: Any) -> Any:
-    return [credit] if isinstance(credit, str) else credit
-
-
-Credit = Annotated[list[Line], Field(max_length=20), BeforeValidator(as_list)]
+Credit = Annotated[
+    list[Line],
+    Field(max_length=20),
+    BeforeValidator(lambda sent: [sent] if isinstance(sent, str) else sent),
+]
 
 
 class ShareCreate(Wire):
@@ -61,7 +61,6 @@ class ShareRead(Wire):
     run: UUID | None
     generation: int | None
     cover: str
-    """The creature on its picture."""
     title: str
     credit: list[str]
     licence: str

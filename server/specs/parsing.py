@@ -1,14 +1,16 @@
-"""Parse specs of requests; every plug-in in them must be known."""
+"""Parse specs: of requests, whose plug-ins must be known, and of stored runs."""
 
+import json
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 from microcosmos import spec as specs
-from microcosmos.spec import PluginUse, Spec, plugins_in
+from microcosmos.spec import Estimate, PluginUse, Spec, estimate, plugins_in
 
-from ..core.errors import ProblemError
-from ..core.schemas import FieldError
+from ..core.errors import FieldError, ProblemError
 from ..services.services import Services
 from ..workers.plugins import INSTALL_HINT, KnownPlugins
 
@@ -45,3 +47,23 @@ def _unknown(plugins: KnownPlugins, one: PluginUse) -> FieldError:
     have = f"workers have {', '.join(versions)}" if versions else INSTALL_HINT
     message = f"no worker has {one.name!r} in version {one.version.source[:12]}; {have}"
     return FieldError(field=one.path, message=message, got=one.version.source)
+
+
+@dataclass(frozen=True)
+class ParsedSpec:
+    spec: Spec
+    estimate: Estimate
+
+
+def parsed(document: dict[str, Any]) -> ParsedSpec | None:
+    """Return None if this version cannot read a spec of another version."""
+    return _parsed(json.dumps(document, sort_keys=True))
+
+
+@lru_cache(maxsize=1024)
+def _parsed(text: str) -> ParsedSpec | None:
+    try:
+        spec = specs.parse(json.loads(text))
+        return ParsedSpec(spec, estimate(spec))
+    except ValueError:
+        return None

@@ -25,7 +25,7 @@ def with_plugins(schema: Schema, offered: Sequence[Declaration], hosts: Hosts) -
         union = whole["properties"].get(field, {})
         if "oneOf" in union:
             mine = [one for one in offered if one.kind in kind]
-            union["oneOf"] += [_part(one, tag, parts, hosts) for one in mine]
+            union["oneOf"] += [_union_member(one, tag, parts, hosts) for one in mine]
     swimmers = whole["properties"].get("swimmers")
     if swimmers:
         swimmers["items"]["enum"] += [one.name for one in offered if one.kind == "gait"]
@@ -55,8 +55,7 @@ def _choose(
         properties["plugin"] = {"settings_of": field, "parts": settings}
 
 
-def _part(one: Declaration, tag: str, parts: Schema, hosts: Hosts) -> Schema:
-    """Return the schema of a plug-in in a union."""
+def _union_member(one: Declaration, tag: str, parts: Schema, hosts: Hosts) -> Schema:
     about = _about(one, hosts)
     workers = ", ".join(about["workers"])
     properties = {tag: {"const": one.name, "type": "string"}}
@@ -102,6 +101,5 @@ def _about(one: Declaration, hosts: Hosts) -> Schema:
 
 @cache
 def _actuation() -> Schema:
-    """Return the fields of every plug-in encoding."""
     properties = PluginControl.model_json_schema()["properties"]
     return {n: part for n, part in properties.items() if n not in ("encoding", "plugin")}

@@ -1,8 +1,11 @@
 """Wire types of experiments with schemas and presets, and of the drawing of a spec."""
 
-from typing import Any
+from collections.abc import Iterable
+from typing import Annotated, Any
 
-from pydantic import ConfigDict
+from pydantic import BeforeValidator, ConfigDict
+
+from microcosmos.spec import targets
 
 from ..core.schemas import Wire
 
@@ -33,9 +36,9 @@ class BodyRead(Wire):
     name: str
     nodes: int
     """Number of all nodes."""
-    positions: list[list[float]]
+    positions: Annotated[list[list[float]], BeforeValidator(lambda at: at.round(3).tolist())]
     """[x, y] in cells."""
-    edges: list[list[int]]
+    edges: Annotated[list[list[int]], BeforeValidator(lambda edges: edges.tolist())]
     whole: bool
     """Every filament is drawn."""
 
@@ -48,12 +51,22 @@ class PictureRead(Wire):
     """Base64 of one byte a pixel, row by row from the top; 255 is ink."""
 
 
+def pictures(drawn: Iterable[tuple[str, Any]]) -> list[PictureRead]:
+    """Convert pictures, given by name and ink (row, column)."""
+    return [
+        PictureRead(
+            name=name, width=ink.shape[1], height=ink.shape[0], pixels=targets.encoded(ink)
+        )
+        for name, ink in drawn
+    ]
+
+
 class DrawingRead(Wire):
     """Bodies, each in a world of its own, and the pictures that they fold into."""
 
     width: int
     height: int
     bodies: list[BodyRead]
-    pictures: list[PictureRead]
+    pictures: Annotated[list[PictureRead], BeforeValidator(pictures)]
     picture_size: int
     """The longer side of a picture, in cells."""

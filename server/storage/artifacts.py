@@ -54,13 +54,13 @@ class Artifacts:
     def read(self, path: str) -> bytes:
         return self.files.cat_file(self._full(path))
 
-    def read_verified(self, stored: StoredFile) -> bytes | None:
+    def read_verified(self, path: str, sha256: str) -> bytes | None:
         """Return the content, or None if the file is missing or has changed."""
         try:
-            data = self.read(stored.path)
+            data = self.read(path)
         except FileNotFoundError:
             return None
-        return data if hashlib.sha256(data).hexdigest() == stored.sha256 else None
+        return data if hashlib.sha256(data).hexdigest() == sha256 else None
 
     def stream(self, path: str, start: int, stop: int) -> Iterator[bytes]:
         """Yield the bytes from `start` up to `stop` in pieces."""
@@ -71,14 +71,12 @@ class Artifacts:
                 yield piece
 
     def delete(self, path: str) -> None:
-        """Delete a file, if it exists."""
+        """Delete a file, or a folder if the path ends with a slash; it may be gone."""
         with suppress(FileNotFoundError):
-            self.files.rm_file(self._full(path))
-
-    def delete_folder(self, path: str) -> None:
-        """Delete a folder with its content, if it exists."""
-        with suppress(FileNotFoundError):
-            self.files.rm(self._full(path), recursive=True)
+            if path.endswith("/"):
+                self.files.rm(self._full(path), recursive=True)
+            else:
+                self.files.rm_file(self._full(path))
 
     def _rename(self, temporary: str, target: str) -> None:
         if not self.local:

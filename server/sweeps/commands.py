@@ -1,4 +1,4 @@
-"""Change all runs of a sweep."""
+"""Create a sweep with all its runs in one transaction, and change all of its runs."""
 
 from collections.abc import Callable
 from uuid import UUID
@@ -8,12 +8,48 @@ from sqlalchemy.orm import Session
 
 from ..runs.announce import announce as announce_runs
 from ..runs.lifecycle import NOT_IN_BIN, Conflict
+from ..runs.submission import Draft, IdempotentRequest, create_runs
 from ..services.services import Services
-from ..tables import Run
+from ..tables import Idempotency, Run, Sweep
+from .plan import Plan, refuse_initial
 from .schemas import SkippedRun
 
 RUNS_PER_TRANSACTION = 50
 """Few, so that other writers do not wait for long."""
+
+
+def request_of(
+    plan: Plan, key: str | None = None, owner: UUID | None = None
+) -> IdempotentRequest:
+    """Return the request for a plan; grids with another order of fields differ."""
+    spec = plan.spec.model_dump(mode="json")
+    return IdempotentRequest(
+        {"sweep": [plan.name, spec, plan.seeds, list(plan.grid.items())]}, key, owner
+    )
+
+
+def submit_sweep(
+    services: Services, plan: Plan, request: IdempotentRequest | None = None
+) -> tuple[UUID, bool]:
+    """Create the sweep and enqueue its runs; return its id and whether it is new."""
+    with services.sessions.read() as session:
+        refuse_initial(session, plan)
+    request = request or request_of(plan)
+    sweep = Sweep(
+        experiment=plan.spec.experiment,
+        name=plan.name,
+        spec=plan.spec.model_dump(mode="json"),
+        seeds=plan.seeds,
+        grid=plan.grid,
+        owner=request.owner,
+    )
+    drafts = [Draft(spec, document, {"name": name}) for name, spec, document in plan.runs()]
+    created = create_runs(services, drafts, request, sweep)
+    if isinstance(created, Idempotency):
+        assert created.sweep is not None
+        return created.sweep, False
+    announce(services, sweep.id)
+    return sweep.id, True
 
 
 def change_all(

@@ -45,7 +45,6 @@ def _replaced(part: Any, names: Sequence[str], value: Any) -> Any:
 
 
 def paths(document: Any, before: str = "") -> Iterator[str]:
-    """Yield the paths of all parts, lists and values of a document."""
     items = document.items() if isinstance(document, dict) else enumerate(document)
     for name, value in items:
         path = f"{before}{name}"
@@ -55,12 +54,10 @@ def paths(document: Any, before: str = "") -> Iterator[str]:
 
 
 def nearest(document: Any, path: str) -> str | None:
-    """Return the path that was probably meant."""
     known = list(paths(document))
     ending = [each for each in known if each.endswith(f".{path}")]
     return next(iter(ending or get_close_matches(path, known, 1, SIMILARITY)), None)
 
 
 def inside(path: str, other: str) -> bool:
-    """Return whether a path leads into the value at another path."""
     return f"{path}.".startswith(f"{other}.")

@@ -10,14 +10,12 @@ from pydantic import ValidationError
 
 from microcosmos.spec import Spec
 
-from ..core.errors import ProblemError, field_errors, invalid_input
-from ..core.schemas import FieldError
+from ..core.errors import FieldError, field_errors, invalid_fields
 from ..runs.schemas import NAME_LENGTH
 from ..specs.parsing import Parse
 from . import fields
 
 MAX_ERRORS = 20
-"""Limit on the errors in one answer."""
 
 
 @dataclass(frozen=True)
@@ -42,43 +40,39 @@ def cases_of(
     for places in product(*(range(len(values)) for values in asked.values())):
         at = dict(zip(asked, places, strict=True))
         values = {path: asked[path][place] for path, place in at.items()}
+        changed = document
+        for path, value in values.items():
+            changed = fields.replaced(changed, path, value)
         try:
-            cases.append(Case(values, at, parse(_replaced(document, values))))
+            cases.append(Case(values, at, parse(changed)))
         except ValidationError as error:
             for found in field_errors(error):
-                blamed = _blamed(found, values, at)
-                errors.setdefault(blamed.field, blamed)
+                error_of_value = _at_value(found, values, at)
+                errors.setdefault(error_of_value.field, error_of_value)
     if errors:
-        raise refused(list(errors.values())[:MAX_ERRORS])
+        raise invalid_fields(*list(errors.values())[:MAX_ERRORS])
     _refuse_alike(cases)
     return cases
 
 
-def _replaced(document: dict[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
-    for path, value in values.items():
-        document = fields.replaced(document, path, value)
-    return document
-
-
-def _blamed(error: FieldError, values: dict[str, Any], places: dict[str, int]) -> FieldError:
-    """Move an error of a case to the responsible value, if one can be identified."""
-    concerning = concerned(error.field, values)
-    responsible = concerning or (list(values) if len(values) == 1 else [])
+def _at_value(error: FieldError, values: dict[str, Any], places: dict[str, int]) -> FieldError:
+    """Relocate an error of a case to the responsible value, if one can be identified."""
+    related = related_paths(error.field, values)
+    responsible = related or (list(values) if len(values) == 1 else [])
     field = f"grid.{responsible[0]}[{places[responsible[0]]}]" if responsible else "grid"
-    by_itself = error.field in concerning and error.needed is not None
+    by_itself = error.field in related and error.needed is not None
     if by_itself or not values:
-        return moved(error, field)
+        return relocated(error, field)
     named = "" if f"`{error.field}`" in error.message else f"{error.field}: "
-    return moved(error, field, f"with {combination(values)}: {named}")
+    return relocated(error, field, f"with {combination(values)}: {named}")
 
 
-def concerned(field: str, values: Mapping[str, Any]) -> list[str]:
+def related_paths(field: str, values: Mapping[str, Any]) -> list[str]:
     """Return the paths that lead to a field, into it, or to a part that contains it."""
     return [path for path in values if fields.inside(field, path) or fields.inside(path, field)]
 
 
 def _refuse_alike(cases: Sequence[Case]) -> None:
-    """Raise `ProblemError` for two cases with the same spec."""
     seen: dict[str, Case] = {}
     for case in cases:
         document = json.dumps(case.spec.model_dump(mode="json"), sort_keys=True)
@@ -86,16 +80,12 @@ def _refuse_alike(cases: Sequence[Case]) -> None:
         if earlier is not case:
             path = next(p for p in case.places if case.places[p] != earlier.places[p])
             message = f"gives the same run as {earlier.field(path)}: {combination(case.values)}"
-            raise refused([FieldError(field=case.field(path), message=message)])
+            raise invalid_fields(FieldError(field=case.field(path), message=message))
 
 
-def moved(error: FieldError, field: str, before: str = "") -> FieldError:
+def relocated(error: FieldError, field: str, before: str = "") -> FieldError:
     message = before + error.message
     return error.model_copy(update={"field": field, "message": message})
-
-
-def refused(errors: list[FieldError]) -> ProblemError:
-    return ProblemError.of(invalid_input(errors))
 
 
 def run_name(name: str | None, values: Mapping[str, Any], seed: int | None) -> str | None:
@@ -109,7 +99,6 @@ def run_name(name: str | None, values: Mapping[str, Any], seed: int | None) -> s
 
 
 def combination(values: Mapping[str, Any], between: str = ", ") -> str:
-    """Return the values of a case with their fields."""
     return between.join(f"{path}={_short(value)}" for path, value in values.items())
 
 

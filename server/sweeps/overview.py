@@ -10,17 +10,12 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from ..auth import tokens
-from ..core.paging import MOMENT, Order
-from ..runs.lifecycle import NOT_IN_BIN
 from ..tables import STATUSES, Run, Sweep
-from ..workers.brief import progress
-from .schemas import CaseRead, SweepPage, SweepRead
-
-NEWEST_FIRST = Order("-created", Sweep.created_at.expression, MOMENT, Sweep.id, UUID)
+from ..workers.registry import progress
+from .schemas import CaseRead, SweepRead
 
 
 def read_sweeps(session: Session, sweeps: Sequence[Sweep]) -> list[SweepRead]:
-    """Read sweeps and their runs in one query."""
     of_sweeps: dict[UUID, list[Any]] = defaultdict(list)
     names = ("id", "sweep", "sweep_index", "status", "generation", "generations", "deleted_at")
     columns = [getattr(Run, name) for name in names]
@@ -29,20 +24,12 @@ def read_sweeps(session: Session, sweeps: Sequence[Sweep]) -> list[SweepRead]:
         select(*columns).where(mine).order_by(Run.sweep, Run.sweep_index)
     ):
         of_sweeps[row.sweep].append(row)
-    owners = tokens.names(session, (sweep.owner for sweep in sweeps))
+    owners = tokens.owner_names(session, (sweep.owner for sweep in sweeps))
     return [_read(one, of_sweeps[one.id], owners.get(one.owner)) for one in sweeps]
 
 
 def read_sweep(session: Session, sweep: Sweep) -> SweepRead:
     return read_sweeps(session, [sweep])[0]
-
-
-def page(session: Session, cursor: str | None, limit: int, deleted: bool) -> SweepPage:
-    """Return sweeps, newest first: those with runs, or those with all runs in the bin."""
-    kept = select(Run.id).where(Run.sweep == Sweep.id, NOT_IN_BIN).exists()
-    listed = select(Sweep).where(~kept if deleted else kept)
-    sweeps, following = NEWEST_FIRST.page(session, listed, cursor, limit)
-    return SweepPage(items=read_sweeps(session, sweeps), next=following)
 
 
 def _read(sweep: Sweep, all_runs: Sequence[Any], owner: str | None) -> SweepRead:

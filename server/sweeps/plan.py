@@ -1,6 +1,6 @@
 """Plan a sweep: check the specs of all its runs before any run is created."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import prod
 from typing import Any
@@ -11,13 +11,19 @@ from sqlalchemy.orm import Session
 from microcosmos.archive.creature import CreatureError
 from microcosmos.spec import Spec
 
-from ..core.errors import ProblemError, bad_creature, brief, field_errors
-from ..core.schemas import FieldError
+from ..core.errors import (
+    FieldError,
+    ProblemError,
+    field_errors,
+    invalid_fields,
+    problem_of,
+    shortened,
+)
 from ..creatures import initial
 from ..runs.submission import TOO_LARGE, too_large
 from ..specs.parsing import Parse
 from . import fields
-from .grid import MAX_ERRORS, Case, cases_of, combination, concerned, moved, refused, run_name
+from .grid import MAX_ERRORS, Case, cases_of, combination, related_paths, relocated, run_name
 from .schemas import MAX_RUNS, SweepCreate
 
 FIXED = {
@@ -28,8 +34,6 @@ FIXED = {
 
 @dataclass(frozen=True)
 class Plan:
-    """All runs of a sweep."""
-
     name: str | None
     spec: Spec
     seeds: list[int]
@@ -51,28 +55,21 @@ class Plan:
 
 def plan(sent: SweepCreate, parse: Parse) -> Plan:
     """Return the plan of a request; raise `ProblemError` if any of its runs is invalid."""
-    base = _base(sent.spec, parse)
+    try:
+        base = parse(sent.spec)
+    except ValidationError as error:
+        errors = [relocated(one, f"spec.{one.field}") for one in field_errors(error)]
+        raise invalid_fields(*errors) from None
     document = base.model_dump(mode="json")
-    _refuse_paths(document, sent.grid)
+    wrong = (_wrong_path(document, path, sent.grid) for path in sent.grid)
+    if errors := [error for error in wrong if error]:
+        raise invalid_fields(*errors)
     seeds = _seeds(sent, document, parse)
     _refuse_many(sent, max(1, len(seeds)))
     if seeds:
         document = {**document, "seed": seeds[0]}
     cases = cases_of(document, sent.grid, parse)
     return Plan(sent.name or None, base, seeds, dict(sent.grid), cases)
-
-
-def _base(document: Mapping[str, Any], parse: Parse) -> Spec:
-    try:
-        return parse(document)
-    except ValidationError as error:
-        raise refused([moved(e, f"spec.{e.field}") for e in field_errors(error)]) from None
-
-
-def _refuse_paths(document: dict[str, Any], asked: Mapping[str, Sequence[Any]]) -> None:
-    errors = [error for path in asked if (error := _wrong_path(document, path, asked))]
-    if errors:
-        raise refused(errors)
 
 
 def _wrong_path(
@@ -101,7 +98,9 @@ def _seeds(sent: SweepCreate, document: dict[str, Any], parse: Parse) -> list[in
             f"a run of `{document['experiment']}` has no seed, so all runs would be the same; "
             "omit `seeds`"
         )
-        raise refused([FieldError(field="seeds", message=message, got=brief(sent.seeds))])
+        raise invalid_fields(
+            FieldError(field="seeds", message=message, got=shortened(sent.seeds))
+        )
     if isinstance(sent.seeds, list):
         return sent.seeds
     first, last = document["seed"], document["seed"] + sent.seeds - 1
@@ -110,7 +109,7 @@ def _seeds(sent: SweepCreate, document: dict[str, Any], parse: Parse) -> list[in
     except ValidationError as error:
         (found,) = field_errors(error)
         message = f"from the spec's own, {first}, {sent.seeds} seeds end at {last}: "
-        raise refused([moved(found, "seeds", message)]) from None
+        raise invalid_fields(relocated(found, "seeds", message)) from None
     return list(range(first, last + 1))
 
 
@@ -122,7 +121,8 @@ def _refuse_many(sent: SweepCreate, seeds: int) -> None:
     factors = " x ".join(f"{count}" for count in (*lengths, seeds))
     message = f"needs at most {MAX_RUNS:,} runs in all; got {factors} = {total:,}"
     field = "grid" if sent.grid else "seeds"
-    raise refused([FieldError(field=field, message=message, needed=f"{MAX_RUNS}", got=total)])
+    error = FieldError(field=field, message=message, needed=f"{MAX_RUNS}", got=total)
+    raise invalid_fields(error)
 
 
 def refuse_too_large(plan: Plan, limit: int) -> None:
@@ -130,7 +130,7 @@ def refuse_too_large(plan: Plan, limit: int) -> None:
     errors: dict[str, FieldError] = {}
     for case in plan.cases:
         if found := too_large(case.spec, limit):
-            placed = _placed(found, case)
+            placed = _at_field(found, case)
             errors.setdefault(placed.field, placed)
     if errors:
         some = list(errors.values())[:MAX_ERRORS]
@@ -145,12 +145,12 @@ def refuse_initial(session: Session, plan: Plan) -> None:
         try:
             initial.check(session, case.spec)
         except CreatureError as error:
-            found = bad_creature(error).errors or []
-            raise refused([_placed(one, case) for one in found]) from error
+            found = problem_of(error).errors or []
+            raise invalid_fields(*(_at_field(one, case) for one in found)) from error
 
 
-def _placed(found: FieldError, case: Case) -> FieldError:
-    """Move an error of a case's spec to the field of the request."""
-    concerning = concerned(found.field, case.values)
-    field = case.field(concerning[0]) if concerning else f"spec.{found.field}"
-    return moved(found, field, f"with {combination(case.values)}: " if case.values else "")
+def _at_field(found: FieldError, case: Case) -> FieldError:
+    """Relocate an error of a case's spec to the field of the request."""
+    related = related_paths(found.field, case.values)
+    field = case.field(related[0]) if related else f"spec.{found.field}"
+    return relocated(found, field, f"with {combination(case.values)}: " if case.values else "")

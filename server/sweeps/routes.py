@@ -5,28 +5,27 @@ from typing import Annotated
 from uuid import UUID
 
 from fastapi import APIRouter, Depends, Query, Response
-from sqlalchemy import ColumnElement
+from sqlalchemy import ColumnElement, select
 from sqlalchemy.orm import Session
 
 from microcosmos.spec import estimate
 
-from ..auth.authorize import MAY_READ, Writer
+from ..auth.authorize import MAY_READ, Writer, authorize_owner
+from ..core.errors import ProblemError
 from ..core.json_body import json_route
+from ..core.paging import MOMENT, Order
 from ..deletion import bin
 from ..estimates import position
 from ..estimates.eta import speeds_of
 from ..queue.order import requeue
 from ..runs import lifecycle
-from ..runs.commands import SPEC_BYTES, IdempotencyKey
-from ..runs.submission import memory_limit
-from ..services.deps import ServicesDep, SessionDep
-from ..services.services import Services
+from ..runs.submission import SPEC_BYTES, IdempotencyKey, memory_limit
+from ..services.services import Services, ServicesDep, SessionDep
 from ..specs import parsing
-from ..tables import Run
+from ..tables import Run, Sweep
 from . import summary
-from .commands import announce, change_all
-from .deps import OwnSweepId, SweepDep, find_sweep
-from .overview import page, read_sweep
+from .commands import announce, change_all, request_of, submit_sweep
+from .overview import read_sweep, read_sweeps
 from .plan import Plan, plan, refuse_too_large
 from .schemas import (
     SweepChange,
@@ -38,10 +37,33 @@ from .schemas import (
     SweepRead,
     SweepSummary,
 )
-from .submission import request_of, submit_sweep
 
 router = APIRouter(prefix="/sweeps", tags=["sweeps"], route_class=json_route(SPEC_BYTES))
+NEWEST_FIRST = Order("-created", Sweep.created_at.expression, MOMENT, Sweep.id, UUID)
 Points = Annotated[int | None, Query(ge=2, le=10_000)]
+
+
+def find_sweep(session: Session, sweep_id: UUID) -> Sweep:
+    found = session.get(Sweep, sweep_id)
+    if found is None:
+        raise ProblemError(404, "Not found", f"No sweep has the id {sweep_id}.")
+    return found
+
+
+def _sweep(sweep_id: UUID, session: SessionDep) -> Sweep:
+    return find_sweep(session, sweep_id)
+
+
+SweepDep = Annotated[Sweep, Depends(_sweep)]
+
+
+def own_sweep(sweep_id: UUID, principal: Writer, services: ServicesDep) -> UUID:
+    """Return the id of a path; raise `ProblemError` if somebody else owns the sweep."""
+    authorize_owner(services, principal, Sweep, sweep_id)
+    return sweep_id
+
+
+OwnSweepId = Annotated[UUID, Depends(own_sweep)]
 
 
 def plan_sent(sent: SweepCreate, services: ServicesDep) -> Plan:
@@ -107,7 +129,10 @@ def list_sweeps(
     deleted: bool = False,
 ) -> SweepPage:
     """Return sweeps, newest first; `deleted` selects those with all runs in the bin."""
-    return page(session, cursor, limit, deleted)
+    kept = select(Run.id).where(Run.sweep == Sweep.id, lifecycle.NOT_IN_BIN).exists()
+    listed = select(Sweep).where(~kept if deleted else kept)
+    sweeps, following = NEWEST_FIRST.page(session, listed, cursor, limit)
+    return SweepPage(items=read_sweeps(session, sweeps), next=following)
 
 
 @router.get("/{sweep_id}", dependencies=[MAY_READ])

@@ -12,9 +12,7 @@ from ..runs.schemas import Name
 from ..tables import Status
 
 MAX_RUNS = 1000
-"""Limit on the runs of a sweep."""
 MAX_FIELDS = 16
-"""Limit on the fields of a grid."""
 SEEDS = 2**32
 
 
@@ -76,11 +74,9 @@ class SweepRead(Wire):
     experiment: str
     spec: dict[str, Any]
     seeds: list[int]
-    """Empty if the experiment has no seed."""
     grid: dict[str, list[Any]]
     created_at: datetime
     owner: str | None
-    """Name of the token that created it."""
     cases: list[CaseRead]
     total: int
     deleted: int

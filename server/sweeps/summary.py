@@ -1,6 +1,6 @@
 """Statistics of a sweep: quantiles by generation, and figures at the common generation."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 from uuid import UUID
@@ -29,10 +29,7 @@ QUANTILES = {"median": 0.5, "low": 0.25, "high": 0.75, "min": 0.0, "max": 1.0}
 POINTS = 400_000
 """Limit on the values of each figure that one answer reads."""
 GENERATIONS_PER_QUERY = 10_000
-RUN_COLUMNS = ("id", "sweep_index", "status", "generation", "generations")
 
-Row = Any
-"""A row of the selected columns."""
 Values = np.ndarray[Any, np.dtype[np.float64]]
 
 
@@ -40,7 +37,7 @@ Values = np.ndarray[Any, np.dtype[np.float64]]
 class Recorded:
     """The curves of all runs of a sweep, over the same generations."""
 
-    runs: Sequence[Row]
+    runs: Sequence[Any]
     """In the order of their places."""
     generation: list[int]
     reached: np.ndarray[Any, np.dtype[np.bool_]]
@@ -51,7 +48,8 @@ class Recorded:
 
 def recorded(session: Session, sweep: Sweep, points: int | None) -> Recorded:
     """Read all generations, or about `points` of them; fewer for very many runs."""
-    columns = [getattr(Run, name) for name in RUN_COLUMNS]
+    names = ("id", "sweep_index", "status", "generation", "generations")
+    columns = [getattr(Run, name) for name in names]
     mine = select(*columns).where(Run.sweep == sweep.id, NOT_IN_BIN).order_by(Run.sweep_index)
     runs = session.execute(mine).all()
     last = max((run.generation for run in runs), default=0)
@@ -64,11 +62,10 @@ def recorded(session: Session, sweep: Sweep, points: int | None) -> Recorded:
 def _table(
     session: Session,
     sweep: Sweep,
-    runs: Sequence[Row],
+    runs: Sequence[Any],
     generation: Sequence[int],
     last: int,
 ) -> tuple[Any, dict[str, Values]]:
-    """Read the generations of all runs in one query."""
     columns = [getattr(Generation, name) for name in FIGURES]
     # Runs may have continued since they were read, or have come back from the bin.
     wanted = (
@@ -165,18 +162,15 @@ def _plain(column: Values) -> list[float | None]:
 
 
 def finals(figures: Sequence[Mapping[str, float]]) -> dict[str, Final]:
-    """Return each figure of some runs, with its quantiles."""
-    names = dict.fromkeys(name for one in figures for name in one)
-    return {name: _final([one.get(name) for one in figures]) for name in names}
+    found: dict[str, Final] = {}
+    for name in dict.fromkeys(name for one in figures for name in one):
+        known = np.array([one.get(name) for one in figures], float)
+        quantiles = {key: _plain(one)[0] for key, one in spread(known[:, None]).items()}
+        found[name] = Final(values=_plain(known), **quantiles)
+    return found
 
 
-def _final(values: Iterable[float | None]) -> Final:
-    known = np.array(list(values), float)
-    quantiles = {name: _plain(one)[0] for name, one in spread(known[:, None]).items()}
-    return Final(values=_plain(known), **quantiles)
-
-
-def common_generation(runs: Sequence[Row]) -> int | None:
+def common_generation(runs: Sequence[Any]) -> int | None:
     """Return the last generation that every started run has reached; None before the first.
 
     A finished run counts as complete, so it does not limit the generation. Failed and
@@ -191,7 +185,7 @@ def common_generation(runs: Sequence[Row]) -> int | None:
 
 
 def figures_at(
-    session: Session, runs: Sequence[Row], generation: int | None, has_archive: bool
+    session: Session, runs: Sequence[Any], generation: int | None, has_archive: bool
 ) -> dict[UUID, dict[str, float]]:
     """Return the figures of each run at a generation; the last ones of a shorter finished run.
 
@@ -221,7 +215,6 @@ def figures_at(
 
 
 def curves(session: Session, sweep: Sweep, points: int | None) -> SweepCurves:
-    """Return the curves of each run, over the same generations."""
     found = recorded(session, sweep, points)
     lines = [
         RunCurves(run=run.id, **{name: _plain(one[i]) for name, one in found.values.items()})

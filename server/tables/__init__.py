@@ -14,8 +14,15 @@ from .artifacts import (
     GarbageFile,
 )
 from .base import Base, Expiring, Owned, Sha256
-from .creatures import Creature, GarbageCreature, InitialCreature, Parent
-from .results import Elite, Generation, Result
+from .results import (
+    Creature,
+    Elite,
+    GarbageCreature,
+    Generation,
+    InitialCreature,
+    Parent,
+    Result,
+)
 from .runs import (
     CANCELLED,
     FAILED,
@@ -33,6 +40,5 @@ from .runs import (
     Status,
     Sweep,
 )
-from .shares import Share
-from .tokens import Token
+from .tokens import Share, Token
 from .workers import Plugin, Worker

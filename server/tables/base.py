@@ -69,7 +69,6 @@ class Expiring:
 
 
 def refuse_past(session: Session, expires_at: datetime | None) -> None:
-    """Raise `ProblemError` for an expiry that has passed."""
     if expires_at is not None and expires_at <= (current := now(session)):
         needed = f"a moment after now, {current:%Y-%m-%d %H:%M} UTC"
         raise invalid_field("expires_at", needed, expires_at.isoformat())

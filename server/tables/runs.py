@@ -79,7 +79,6 @@ class Run(Owned, Base):
     sweep_index: Mapped[int | None]
     """Its place in the sweep, from 0: every case with the first seed, then with the next."""
     deleted_at: Mapped[datetime | None]
-    """When it was moved to the bin."""
     purge_at: Mapped[datetime | None]
     """When it is deleted for good; it can be restored until then."""
     n_initial: Mapped[int | None]

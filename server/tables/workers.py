@@ -29,7 +29,6 @@ class Worker(Base):
     """When its status or its run last changed."""
     heartbeat_at: Mapped[datetime] = mapped_column(default=clock())
     plugins: Mapped[list[dict[str, Any]]] = mapped_column(default=list)
-    """Declarations of its plug-ins."""
     unloaded: Mapped[list[dict[str, Any]]] = mapped_column(default=list)
     """Modules that it could not load: `module` and `reason`."""
 

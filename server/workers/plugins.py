@@ -38,7 +38,6 @@ class KnownPlugins:
         return sorted(found, key=lambda one: not self.workers_with(one.source))
 
     def workers_with(self, source: str) -> list[str]:
-        """Return the names of the live workers that have a version."""
         return [one.name for one in self.alive if source in versions_of(one)]
 
     def offered(self) -> list[Declaration]:
@@ -90,12 +89,12 @@ def versions_of(worker: Worker) -> set[str]:
     return {one["source"] for one in worker.plugins}
 
 
-def fit(worker: Worker | None, needed: Sequence[str] | None) -> bool:
+def has_versions(worker: Worker | None, needed: Sequence[str] | None) -> bool:
     """Return whether a worker has all versions that a run needs."""
     return not needed or (worker is not None and set(needed) <= versions_of(worker))
 
 
-def missing(alive: Sequence[Worker], document: Any) -> str:
+def missing_plugins(alive: Sequence[Worker], document: Any) -> str:
     """Return a sentence about a run that none of the live workers can compute."""
     absent = {
         one.name: one.version.source

@@ -8,7 +8,8 @@ from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
 from ..core.database import Sessions, ago, clock
-from ..tables import RUNNING, Plugin, Run, Worker
+from ..tables import FINISHED, RUNNING, Plugin, Run, Worker
+from .schemas import RunBrief
 
 
 def report(
@@ -18,31 +19,17 @@ def report(
     memory_bytes: int,
     status: Literal["idle", "busy"],
     run_id: UUID | None = None,
-    *,
-    kind: Literal["cpu", "gpu"] = "cpu",
-    memory_used_bytes: int | None = None,
-    load: float | None = None,
-    plugins: Sequence[dict[str, Any]] = (),
-    unloaded: Sequence[dict[str, Any]] = (),
+    **columns: Any,
 ) -> None:
-    """Report a live worker: its run, the load of its device, and its plug-ins."""
-    reported = Worker(
-        name=name,
-        device=device,
-        kind=kind,
-        memory_bytes=memory_bytes,
-        memory_used_bytes=memory_used_bytes,
-        load=load,
-        status=status,
-        run_id=run_id,
-        plugins=list(plugins),
-        unloaded=list(unloaded),
-    )
+    """Report a live worker: its run, and in other columns its load and its plug-ins."""
+    columns = {"kind": "cpu", "plugins": [], "unloaded": [], **columns}
+    columns |= {"device": device, "memory_bytes": memory_bytes}
+    reported = Worker(name=name, status=status, run_id=run_id, **columns)
     with sessions.write.begin() as session:
         known = session.get(Worker, name)
         same = known is not None and (known.status, known.run_id) == (status, run_id)
         if known is None or known.plugins != reported.plugins:
-            for one in plugins:  # They stay known when the worker is gone.
+            for one in reported.plugins:  # They stay known when the worker is gone.
                 key = {key: one[key] for key in ("kind", "name", "source")}
                 session.merge(Plugin(**key, declaration=dict(one))).seen_at = clock()
         row = session.merge(reported)
@@ -52,7 +39,6 @@ def report(
 
 
 def retire(sessions: Sessions, name: str) -> None:
-    """Remove a worker that has ended."""
     with sessions.write.begin() as session:
         session.execute(delete(Worker).where(Worker.name == name))
 
@@ -68,3 +54,16 @@ def running(session: Session, alive: Sequence[Worker]) -> dict[str, Run]:
     names = [worker.name for worker in alive]
     runs = select(Run).where(Run.status == RUNNING, Run.worker.in_(names))
     return {str(run.worker): run for run in session.scalars(runs)}
+
+
+def run_brief(run: Run) -> RunBrief:
+    names = (name for name in RunBrief.model_fields if name != "progress")
+    return RunBrief(**{name: getattr(run, name) for name in names}, progress=progress(run))
+
+
+def progress(run: Run) -> float:
+    """Return the completed share of a run's generations.
+
+    A finished run counts as complete, even if it stopped early.
+    """
+    return 1.0 if run.status == FINISHED else min(1.0, run.generation / run.generations)

@@ -3,10 +3,9 @@
 from fastapi import APIRouter
 
 from ..auth.authorize import MAY_READ
-from ..services.deps import ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from ..tables import Run, Worker
-from . import registry
-from .brief import brief
+from .registry import live, run_brief, running
 from .schemas import PluginRead, WorkerRead
 
 router = APIRouter(prefix="/workers", tags=["workers"])
@@ -15,8 +14,8 @@ router = APIRouter(prefix="/workers", tags=["workers"])
 @router.get("", dependencies=[MAY_READ])
 def list_workers(services: ServicesDep, session: SessionDep) -> list[WorkerRead]:
     """Return the live workers by name, with their load and their runs."""
-    alive = registry.live(session, services.settings.lease)
-    runs = registry.running(session, alive)
+    alive = live(session, services.settings.lease)
+    runs = running(session, alive)
     return [_read(worker, runs.get(worker.name)) for worker in alive]
 
 
@@ -26,5 +25,7 @@ def _read(worker: Worker, run: Run | None) -> WorkerRead:
     names = list(PluginRead.model_fields)
     columns["plugins"] = [{name: one[name] for name in names} for one in worker.plugins]
     return WorkerRead(
-        **columns, run=run.id if run else reported, current_run=brief(run) if run else None
+        **columns,
+        run=run.id if run else reported,
+        current_run=run_brief(run) if run else None,
     )

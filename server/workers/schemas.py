@@ -51,7 +51,6 @@ class WorkerRead(Wire):
     """Load of the machine over a minute per core, or of the GPU; 1 is fully busy."""
     status: Literal["idle", "busy"]
     since: datetime
-    """When its status or its run last changed."""
     run: UUID | None
     current_run: RunBrief | None
     heartbeat_at: datetime

@@ -1,9 +1,9 @@
 """Real servers, workers, databases and queues, to be disturbed."""
 
-from types import SimpleNamespace
+from contextlib import ExitStack
 
 import pytest
-from drive import QUICK, Installation
+from drive import QUICK, running
 
 SHORT = QUICK | {
     "MICROCOSMOS_DEMONSTRATION": "0",
@@ -25,30 +25,18 @@ SPEC = {
 """The smallest run that is still a run."""
 
 
-def installations(tmp_path_factory):
-    """Makes installations, each in its own data folder, and ends them afterwards."""
-    made = []
-
-    def make(**environment):
-        made.append(Installation(tmp_path_factory.mktemp("data"), SHORT | environment))
-        return made[-1]
-
-    yield make
-    for place in made:
-        place.close()
-
-
-installation = pytest.fixture(installations)
-installation_of_file = pytest.fixture(installations, scope="module")
-installation_of_folder = pytest.fixture(installations, scope="package")
+@pytest.fixture
+def installation(tmp_path):
+    """Starts an installation with these settings."""
+    with ExitStack() as stack:
+        yield lambda **more: stack.enter_context(running(tmp_path / "data", SHORT | more))
 
 
 @pytest.fixture(scope="package")
-def place(installation_of_folder):
+def place(tmp_path_factory):
     """A running installation with two workers, which all tests may disturb."""
-    place = installation_of_folder(WORKERS="2")
-    place.start()
-    return place
+    with running(tmp_path_factory.mktemp("data"), SHORT | {"WORKERS": "2"}) as place:
+        yield place
 
 
 @pytest.fixture(scope="session")
@@ -58,7 +46,7 @@ def spec():
 
 @pytest.fixture(scope="package")
 def undisturbed(place, spec):
-    """The archive of an undisturbed run, and the API's account of it."""
+    """The results of an undisturbed run."""
     run = place.submit(spec)
     place.wait(run, "finished", seconds=300)  # It has to compile.
-    return SimpleNamespace(archive=place.archive(run), account=place.account(run))
+    return place.results(run)

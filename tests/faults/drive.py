@@ -8,8 +8,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import closing, contextmanager
-from dataclasses import dataclass, field
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +22,7 @@ QUICK = {
     "XLA_FLAGS": "--xla_backend_optimization_level=0 --xla_cpu_use_fusion_emitters=false "
     "--xla_cpu_parallel_codegen_split_count=1",
 }
-"""Settings under which programs compile in a fifth of the time, and are kept for later runs."""
+"""Settings with which programs compile in a fifth of the time, and are cached."""
 TERMINAL = ("finished", "failed", "cancelled")
 SERVICES = ("MICROCOSMOS_REDIS_URL", "MICROCOSMOS_DATABASE_URL", "MICROCOSMOS_ARTIFACTS_URL")
 """Settings that an installation does not inherit."""
@@ -47,16 +46,14 @@ def free_port() -> int:
         return probe.getsockname()[1]
 
 
-@dataclass
 class Installation:
     """`python -m server.local` in a data folder; `environment` holds its settings."""
 
-    folder: Path
-    environment: dict[str, str] = field(default_factory=dict)
-    python: str = sys.executable
-    port: int = field(default_factory=free_port)
-
-    def __post_init__(self) -> None:
+    def __init__(self, folder: Path, environment: dict[str, str]) -> None:
+        self.folder, self.environment = folder, environment
+        self.output = folder / "output.txt"
+        self.port = free_port()
+        self.url = f"http://127.0.0.1:{self.port}"
         self.http = httpx.Client(base_url=self.url, timeout=30)
 
     def start(self, seconds: float = 60) -> None:
@@ -65,7 +62,7 @@ class Installation:
         inherited = {name: value for name, value in os.environ.items() if name not in SERVICES}
         with self.output.open("ab") as output:
             self.process = subprocess.Popen(
-                [self.python, "-m", "server.local"],
+                [sys.executable, "-m", "server.local"],
                 cwd=ROOT,
                 env=inherited | self.environment | settings,
                 stdin=subprocess.DEVNULL,
@@ -74,14 +71,6 @@ class Installation:
                 start_new_session=True,
             )
         wait_until(self.answers, seconds, f"the server answers; {self.output.read_text()}")
-
-    @property
-    def url(self) -> str:
-        return f"http://127.0.0.1:{self.port}"
-
-    @property
-    def output(self) -> Path:
-        return self.folder / "output.txt"
 
     def answers(self) -> bool:
         if self.process.poll() is not None:
@@ -102,8 +91,6 @@ class Installation:
         if hasattr(self, "process"):
             self.process.wait()
         self.http.close()
-
-    # Runs, over HTTP.
 
     def get(self, path: str, **query: Any) -> Any:
         """Return the JSON of a path of the API."""
@@ -127,61 +114,59 @@ class Installation:
 
     def wait(self, run: str, *statuses: str, seconds: float = 120) -> dict[str, Any]:
         """Wait until a run has one of the statuses."""
-
-        def there() -> dict[str, Any] | None:
-            found = self.read(run)
-            if found["status"] in TERMINAL and found["status"] not in statuses:
-                raise RuntimeError(f"the run {found['status']}: {found['error']}")
-            return found if found["status"] in statuses else None
-
-        return wait_until(there, seconds, f"run {run} is {' or '.join(statuses)}")
+        what = f"run {run} is {' or '.join(statuses)}"
+        return self.follow(run, lambda found: found["status"] in statuses, seconds, what)
 
     def reach(self, run: str, generation: int, after: int = 0, seconds: float = 120) -> int:
         """Wait for an attempt, beyond `after`, that has recorded a generation."""
 
-        def there() -> int:
-            found = self.read(run)
-            if found["status"] in TERMINAL:
-                raise RuntimeError(f"the run {found['status']} too soon: {found['error']}")
-            there = found["status"] == "running" and found["generation"] >= generation
-            return found["attempt"] if there and found["attempt"] > after else 0
+        def reached(found: dict[str, Any]) -> bool:
+            recorded = found["status"] == "running" and found["generation"] >= generation
+            return recorded and found["attempt"] > after
 
         what = f"run {run} reaches generation {generation}"
-        return wait_until(there, seconds, what, every=0.03)  # Generations are that short.
+        return self.follow(run, reached, seconds, what, 0.03)["attempt"]
+
+    def follow(self, run: str, condition: Callable[[Any], bool], *limits: Any) -> Any:
+        """Read a run, as `wait_until`, until a condition holds; raise if it ends before."""
+
+        def there() -> dict[str, Any] | None:
+            found = self.read(run)
+            if condition(found):
+                return found
+            if found["status"] in TERMINAL:
+                raise RuntimeError(f"the run {found['status']} too soon: {found['error']}")
+            return None
+
+        return wait_until(there, *limits)
 
     def archive(self, run: str) -> bytes:
-        """The file that people download."""
         return self.http.get(f"/api/v1/runs/{run}/archive.h5").raise_for_status().content
 
-    def account(self, run: str) -> dict[str, Any]:
-        """Curves and archive of a run in the API, without wall times."""
+    def results(self, run: str) -> dict[str, Any]:
+        """The archive's file, and curves and archive in the API, without wall times."""
         curves = self.get(f"runs/{run}/generations")
         curves |= {"seconds": None, "summary": curves["summary"] | {"device_seconds": None}}
-        return {"curves": curves, "archive": self.get(f"runs/{run}/archive")}
-
-    # Processes.
+        archive = self.get(f"runs/{run}/archive")
+        return {"file": self.archive(run), "curves": curves, "archive": archive}
 
     def processes(self) -> Iterator[psutil.Process]:
-        """Every process of this installation, however it came to be."""
         for process in psutil.process_iter():
-            try:
+            with suppress(psutil.Error):
                 ours = process.environ().get("MICROCOSMOS_DATA") == str(self.folder)
                 # Redis writes over its environment, but it works inside of our folder.
                 if ours or self.folder in Path(process.cwd()).parents:
                     yield process
-            except psutil.Error:
-                continue
 
     def owner(self, run: str) -> psutil.Process:
         """The supervisor whose job computes a run."""
 
-        def there() -> psutil.Process | None:
-            for worker in self.get("workers"):
-                if worker["run"] == run:
-                    return psutil.Process(int(worker["name"].rpartition("-")[2]))
-            return None
+        def name() -> str | None:
+            workers = self.get("workers")
+            return next((one["name"] for one in workers if one["run"] == run), None)
 
-        return wait_until(there, 10, f"a worker tells that it computes {run}")
+        found = wait_until(name, 10, f"a worker reports that it computes {run}")
+        return psutil.Process(int(found.rpartition("-")[2]))
 
     @contextmanager
     def frozen(self, processes: Sequence[psutil.Process]) -> Iterator[None]:
@@ -190,21 +175,22 @@ class Installation:
         A suspended writer would keep SQLite's lock, and no other process could write.
         """
 
+        def resume() -> None:
+            for process in processes:
+                process.resume()
+
         def freeze() -> bool:
             for process in processes:
                 process.suspend()
-            if self.writable():
-                return True
-            for process in processes:
-                process.resume()
-            return False
+            if not (writable := self.writable()):
+                resume()
+            return writable
 
         wait_until(freeze, 60, "the processes are frozen outside of a transaction")
         try:
             yield
         finally:
-            for process in processes:
-                process.resume()
+            resume()
 
     def writable(self) -> bool:
         """Tell whether the embedded database can be written to within a second."""
@@ -221,12 +207,10 @@ class Installation:
         """Living processes that run a Python module or a program."""
         found = []
         for process in self.processes():
-            try:
+            with suppress(psutil.Error):
                 runs = any(module in part for part in process.cmdline())
                 if runs and process.status() != psutil.STATUS_ZOMBIE:
                     found.append(process)
-            except psutil.Error:
-                continue
         return found
 
     def signal(self, module: str, sent: signal.Signals) -> None:
@@ -284,7 +268,7 @@ def interrupt(
     moments: Sequence[int],
     seconds: float = 120,
 ) -> None:
-    """Cause the faults, each to an attempt of its own that has reached a generation."""
+    """Cause each fault in an attempt of its own, once that has reached a generation."""
     attempt = 0
     for fault, generation in zip(faults, moments, strict=True):
         attempt = place.reach(run, generation, after=attempt, seconds=seconds)

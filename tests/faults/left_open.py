@@ -6,21 +6,24 @@ third the median may be larger than in the second by 5 % or 1 MB of memory, whic
 and by 5 % or 50 nodes: what a run adds to its curves meanwhile is far less than that.
 """
 
+import os
 import random
 import statistics
 import time
 from collections.abc import Sequence
-from typing import NamedTuple
 
+import rich
 from browser import launched
 from drive import Installation
-from playwright.sync_api import CDPSession, Page
-from rich.console import Console
+from playwright.sync_api import Page
 from rich.table import Table
 
 SAMPLES = 30
-SHARE, BYTES, NODES = 0.05, 1_000_000, 50
-HOVER_S = 2.0
+MINUTES = float(os.environ.get("MINUTES", "30"))
+SHARE = 0.05
+MORE = {"heap": 1.0, "nodes": 50}
+"""Growth that the last third may always show: megabytes and number."""
+HOVER_MS = 2000
 PARTS = {
     "usedSize": "objects of scripts",
     "backingStorageSize": "arrays behind them, as of replays",
@@ -48,15 +51,7 @@ SPEC = {
 """A generation takes a second or so, as those of real runs do; it is cancelled at the end."""
 
 
-class Sample(NamedTuple):
-    seconds: float
-    parts: Sequence[float]
-    """Bytes of each of `PARTS`."""
-    nodes: int
-    generation: int
-
-
-def leave_open(place: Installation, console: Console, minutes: float) -> bool:
+def leave_open(place: Installation) -> bool:
     """Tell whether the page uses no more memory at the end than in the middle."""
     run = place.submit(SPEC)
     place.reach(run, 2, seconds=300)
@@ -65,31 +60,36 @@ def leave_open(place: Installation, console: Console, minutes: float) -> bool:
         page.add_init_script("localStorage.setItem('microcosmos:tour-taken', '1')")
         page.goto(f"{place.url}/runs/{run}")
         page.evaluate("window.neverReloaded = true")
-        samples = watched(page, place, run, 60 * minutes)
+        samples = measured(page, place, run)
         assert page.evaluate("window.neverReloaded")
     place.ask(run, "cancel")
-    return judged(samples, console)
+    return judged(samples)
 
 
-def watched(page: Page, place: Installation, run: str, seconds: float) -> list[Sample]:
-    """Take samples at even distances, using the page in between."""
+def measured(page: Page, place: Installation, run: str) -> list[dict[str, float]]:
+    """Measure the page at equal intervals, using it in between."""
     session = page.context.new_cdp_session(page)
     session.send("HeapProfiler.enable")
     began, found = time.monotonic(), []
     for k in range(SAMPLES):
-        until = began + seconds * (k + 1) / SAMPLES
-        look_at_gallery(page)
+        until = began + 60 * MINUTES * (k + 1) / SAMPLES
+        for query in ("?view=gallery", "?"):
+            page.evaluate(MOVE, query)
+            page.wait_for_timeout(HOVER_MS)
         while time.monotonic() < until:
             hover_somewhere(page)
-        generation = place.read(run)["generation"]
-        found.append(sample(session, time.monotonic() - began, generation))
+        session.send("HeapProfiler.collectGarbage")
+        usage = session.send("Runtime.getHeapUsage")
+        parts = {title: usage.get(part, 0.0) / 1e6 for part, title in PARTS.items()}
+        sample = {
+            "minutes": (time.monotonic() - began) / 60,
+            "generation": place.read(run)["generation"],
+            "heap": sum(parts.values()),
+            **parts,
+            "nodes": session.send("Memory.getDOMCounters")["nodes"],
+        }
+        found.append(sample)
     return found
-
-
-def look_at_gallery(page: Page) -> None:
-    for query in ("?view=gallery", "?"):
-        page.evaluate(MOVE, query)
-        page.wait_for_timeout(1000 * HOVER_S)
 
 
 def hover_somewhere(page: Page) -> None:
@@ -98,36 +98,22 @@ def hover_somewhere(page: Page) -> None:
     assert box
     x, y = random.random(), random.random()
     page.mouse.move(box["x"] + x * box["width"], box["y"] + y * box["height"], steps=5)
-    page.wait_for_timeout(1000 * HOVER_S)
+    page.wait_for_timeout(HOVER_MS)
 
 
-def sample(session: CDPSession, seconds: float, generation: int) -> Sample:
-    session.send("HeapProfiler.collectGarbage")
-    usage = session.send("Runtime.getHeapUsage")
-    parts = [usage.get(part, 0.0) for part in PARTS]
-    nodes = session.send("Memory.getDOMCounters")["nodes"]
-    return Sample(seconds, parts, nodes, generation)
-
-
-def judged(samples: Sequence[Sample], console: Console) -> bool:
-    """Print the thirds of the samples, and whether the last is no more than the second."""
-    size = len(samples) // 3
-    thirds = [samples[i * size : (i + 1) * size] for i in range(3)]
-    table = Table(
-        "", "first third", "second", "last", "bar for the last", "", title="Left open"
-    )
-    heaps = [statistics.median(sum(one.parts) for one in third) for third in thirds]
-    nodes = [statistics.median(one.nodes for one in third) for third in thirds]
-    most_heap = heaps[1] + max(SHARE * heaps[1], BYTES)
-    most_nodes = nodes[1] + max(SHARE * nodes[1], NODES)
-    good = heaps[2] <= most_heap, nodes[2] <= most_nodes
-    verdicts = ["holds" if one else "FAILS" for one in good]
-    table.add_row("minutes", *(f"to {third[-1].seconds / 60:.1f}" for third in thirds), "", "")
-    table.add_row("generation", *(f"to {third[-1].generation}" for third in thirds), "", "")
-    table.add_row("heap, MB", *(f"{one / 1e6:.2f}" for one in (*heaps, most_heap)), verdicts[0])
-    for i, part in enumerate(PARTS.values()):
-        medians = (statistics.median(one.parts[i] for one in third) for third in thirds)
-        table.add_row(f"  {part}", *(f"{one / 1e6:.2f}" for one in medians), "", "")
-    table.add_row("nodes", *(f"{one:.0f}" for one in (*nodes, most_nodes)), verdicts[1])
-    console.print(table)
-    return all(good)
+def judged(samples: Sequence[dict[str, float]]) -> bool:
+    """Print medians of each third; tell whether the last is no larger than the second."""
+    size, good = len(samples) // 3, True
+    columns = ("first third", "second", "last", "bar for the last", "")
+    table = Table("median", *columns, title="Left open; memory in MB")
+    for name in samples[0]:
+        values = [one[name] for one in samples]
+        thirds = [statistics.median(values[k * size : (k + 1) * size]) for k in range(3)]
+        cells = [f"{third:.2f}" for third in thirds]
+        if name in MORE:
+            bar = thirds[1] + max(SHARE * thirds[1], MORE[name])
+            good &= thirds[2] <= bar
+            cells += [f"{bar:.2f}", "holds" if thirds[2] <= bar else "FAILS"]
+        table.add_row(name, *cells)
+    rich.print(table)
+    return good

@@ -1,8 +1,10 @@
 """Malformed HDF5 files of creatures, and some that refer to other files."""
 
 import random
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from functools import partial
 from io import BytesIO
+from operator import delitem, setitem
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +14,11 @@ from malformed import Case, good
 
 from microcosmos.archive import creature, creature_h5
 
-HDF5 = "application/x-hdf5"
 ELSEWHERE = "external storage|lie in the file itself|virtual dataset"
-HUGE = (1 << 40,)
+hdf5 = partial(Case, kind="application/x-hdf5")
 
-Edit = Callable[[h5py.File], None]
+Edits = Iterator[tuple[Any, ...]]
+"""The name of a case, a pattern of its refusal, a function of a file, and its arguments."""
 
 
 def whole() -> bytes:
@@ -27,44 +29,40 @@ def cases(canary: Path) -> Iterator[Case]:
     """`canary` is a file of this machine that the server must not open."""
     file = whole()
     yield from damaged(file)
-    for name, edit, says in (*foreign(canary), *bombs(), *others()):
-        yield Case(name, edited(file, edit), says, HDF5)
+    for name, says, edit, *arguments in (*foreign(canary), *bombs(), *others()):
+        stream = BytesIO(file)
+        with h5py.File(stream, "r+", libver=("v110", "v110")) as opened:
+            edit(opened, *arguments)
+        yield hdf5(name, stream.getvalue(), says)
 
 
 def damaged(file: bytes) -> Iterator[Case]:
     """Files cut off, with bits flipped, and with wrong addresses and lengths."""
-    chance = random.Random(11)
-    for at in sorted(chance.sample(range(8, len(file) - 1), 120)):
-        yield Case(f"cut off at {at}", file[:at], "", HDF5)
-    for at in sorted(chance.sample(range(8, len(file)), 250)):
+    rng = random.Random(11)
+    for at in sorted(rng.sample(range(8, len(file) - 1), 120)):
+        yield hdf5(f"cut off at {at}", file[:at])
+    for at in sorted(rng.sample(range(8, len(file)), 250)):
         flipped = bytearray(file)
-        flipped[at] ^= 1 << chance.randrange(8)
-        yield Case(f"turned over in {at}", bytes(flipped), "", HDF5, harmless=True)
+        flipped[at] ^= 1 << rng.randrange(8)
+        yield hdf5(f"bit flipped in {at}", bytes(flipped), harmless=True)
     for at in range(8, 1200, 8):
         for word in (b"\xff" * 8, b"\0" * 8, at.to_bytes(8, "little")):
             body = file[:at] + word + file[at + 8 :]
-            yield Case(f"{word.hex()} in {at}", body, "", HDF5, harmless=True)
+            yield hdf5(f"{word.hex()} in {at}", body, harmless=True)
     for size in (8, 64, 4096, 1 << 20):
-        yield Case(f"{size} bytes before it", bytes(size) + file, "", HDF5)
-        yield Case(f"the first {size} bytes alone", file[:8] + bytes(size), "", HDF5)
+        yield hdf5(f"{size} bytes before it", bytes(size) + file)
+        yield hdf5(f"the first {size} bytes alone", file[:8] + bytes(size))
 
 
-def edited(file: bytes, edit: Edit) -> bytes:
-    stream = BytesIO(file)
-    with h5py.File(stream, "r+", libver=("v110", "v110")) as found:
-        edit(found)
-    return stream.getvalue()
-
-
-def members(file: bytes) -> list[str]:
+def members() -> list[str]:
+    """The paths of all datasets."""
     names: list[str] = []
-    with h5py.File(BytesIO(file), "r") as opened:
-        opened.visit(names.append)
-        return [name for name in names if isinstance(opened[name], h5py.Dataset)]
+    with h5py.File(BytesIO(whole())) as file:
+        file.visit(names.append)
+        return [name for name in names if isinstance(file[name], h5py.Dataset)]
 
 
-MEMBERS = members(whole())
-Edits = Iterator[tuple[str, Edit, str]]
+MEMBERS = members()
 
 
 def foreign(canary: Path) -> Edits:
@@ -76,46 +74,42 @@ def foreign(canary: Path) -> Edits:
             ("soft link", h5py.SoftLink("/identity")),
             ("loop of links", h5py.SoftLink(f"/{name}")),
         ):
-            yield f"{name}: {title}", replacing(name, link), ELSEWHERE
+            yield f"{name}: {title}", ELSEWHERE, replace, name, link
     for name in MEMBERS:
         for path in (str(canary), "/etc/passwd", "/dev/zero", "../" * 12 + str(canary)[1:]):
-            yield f"{name}: storage in {path}", stored(name, path), ELSEWHERE
-        yield f"{name}: virtual", virtual(name, str(canary)), ELSEWHERE
+            yield f"{name}: storage in {path}", ELSEWHERE, store, name, path
+        yield f"{name}: virtual", ELSEWHERE, make_virtual, name, str(canary)
 
 
-def replacing(name: str, value: Any) -> Edit:
-    def edit(file: h5py.File) -> None:
-        del file[name]
-        file[name] = value
-
-    return edit
+def replace(file: h5py.File, name: str, value: Any) -> None:
+    del file[name]
+    file[name] = value
 
 
-def stored(name: str, path: str) -> Edit:
-    """As large as it was, with its bytes in another file."""
-
-    def edit(file: h5py.File) -> None:
-        shape, dtype = file[name].shape or (1,), file[name].dtype
-        size = max(1, int(np.prod(shape))) * dtype.itemsize
-        del file[name]
-        file.create_dataset(name, shape, dtype, external=[(path, 0, size)])
-
-    return edit
+def store(file: h5py.File, name: str, path: str) -> None:
+    """Put as many bytes into another file."""
+    shape, dtype = file[name].shape or (1,), file[name].dtype
+    size = max(1, int(np.prod(shape))) * dtype.itemsize
+    create(file, name, shape=shape, dtype=dtype, external=[(path, 0, size)])
 
 
-def virtual(name: str, path: str) -> Edit:
-    def edit(file: h5py.File) -> None:
-        dtype = file[name].dtype
-        del file[name]
-        layout = h5py.VirtualLayout((16,), dtype)
-        layout[:] = h5py.VirtualSource(path, "identity", (16,), dtype)
-        file.create_virtual_dataset(name, layout)
+def make_virtual(file: h5py.File, name: str, path: str) -> None:
+    dtype = file[name].dtype
+    del file[name]
+    layout = h5py.VirtualLayout((16,), dtype)
+    layout[:] = h5py.VirtualSource(path, "identity", (16,), dtype)
+    file.create_virtual_dataset(name, layout)
 
-    return edit
+
+def create(file: h5py.File, name: str, **options: Any) -> None:
+    del file[name]
+    file.create_dataset(name, **options)
 
 
 def bombs() -> Edits:
     """Small files that claim to be large."""
+    huge = partial(create, shape=(1 << 40,), dtype="u1")
+    growing = partial(create, shape=(0,), maxshape=(None,), chunks=(8,), dtype="f4")
     for name in MEMBERS:
         for title, options in (
             ("zeros in gzip", {"chunks": (1 << 20,), "compression": "gzip"}),
@@ -124,94 +118,67 @@ def bombs() -> Edits:
             ("huge chunks", {"chunks": (1 << 29,)}),
             ("nothing at all", {}),
         ):
-            edit = made(name, shape=HUGE, dtype="u1", **options)
-            yield f"{name}: {title}", edit, "stored plainly|one text|must be"
-        many = {"shape": (0,), "maxshape": (None,), "chunks": (8,), "dtype": "f4"}
-        yield f"{name}: growing", made(name, **many), "stored plainly"
-    yield "many attributes", lambda file: with_attributes(file, 3000), "attributes must be"
-    yield "many groups", lambda file: with_groups(file, 3000), "must hold"
-    yield "deep groups", lambda file: deep(file, 500), "must hold"
-    yield "a group in itself", cycle, "must hold|must be"
+            edit = partial(huge, **options)
+            yield f"{name}: {title}", "stored plainly|one text|must be", edit, name
+        yield f"{name}: growing", "stored plainly", growing, name
+    attributes = {f"surprise {number}": np.bytes_(b"a" * 50) for number in range(3000)}
+    yield "many attributes", "attributes must be", lambda file: file.attrs.update(attributes)
+    yield "many groups", "must hold", add_groups, map("surprise {}".format, range(3000))
+    yield "deep groups", "must hold", add_groups, ["/".join("a" * 500)]
+    yield "a group in itself", "must hold|must be", add_cycle
 
 
-def made(name: str, **options: Any) -> Edit:
-    def edit(file: h5py.File) -> None:
-        del file[name]
-        file.create_dataset(name, **options)
-
-    return edit
+def add_groups(file: h5py.File, names: Iterator[str]) -> None:
+    for name in names:
+        file.create_group(name)
 
 
-def with_attributes(file: h5py.File, count: int) -> None:
-    for number in range(count):
-        file.attrs[f"surprise {number}"] = np.bytes_(b"a" * 50)
-
-
-def with_groups(file: h5py.File, count: int) -> None:
-    for number in range(count):
-        file.create_group(f"surprise {number}")
-
-
-def deep(file: h5py.File, levels: int) -> None:
-    group = file
-    for _ in range(levels):
-        group = group.create_group("a")
-
-
-def cycle(file: h5py.File) -> None:
+def add_cycle(file: h5py.File) -> None:
     file["genome/nodes/inside"] = file["genome"]
+
+
+VALUES = {
+    "another type": np.zeros(3, "c16"),
+    "a record": np.zeros(2, [("a", "f4"), ("b", "S8")]),
+    "text of any length": "text",
+    "opaque": np.void(b"12345678"),
+    "many": np.zeros(5000, "f4"),
+    "NaN": np.float32(np.nan),
+    "nothing": h5py.Empty("f4"),
+    "enumeration": np.array(1, h5py.enum_dtype({"a": 1})),
+}
+TEXTS = (b"", b"\xff", b"NaN", b"null ", b"[" * 20_000, b'{"a": 1, "a": 2}', b"0" * 64)
 
 
 def others() -> Edits:
     """Members of another kind, with other values, missing, or one too many."""
-    values = {
-        "another type": np.zeros(3, "c16"),
-        "a record": np.zeros(2, [("a", "f4"), ("b", "S8")]),
-        "text of any length": "text",
-        "opaque": np.void(b"12345678"),
-        "many": np.zeros(5000, "f4"),
-        "NaN": np.float32(np.nan),
-        "nothing": h5py.Empty("f4"),
-        "enumeration": np.array(1, h5py.enum_dtype({"a": 1})),
-    }
     for name in MEMBERS:
-        for title, value in values.items():
-            yield f"{name}: {title}", replacing(name, value), ""
-        yield f"{name} missing", lambda file, name=name: file.pop(name), ""
-        yield f"{name}: a group", lambda file, name=name: grouped(file, name), "dataset"
-        yield f"{name} turned round", lambda file, name=name: negated(file, name), ""
-    for name in (*MEMBERS, "x", "body/x", "genome/nodes/x"):
-        yield f"{name} beside", lambda file, name=name: beside(file, name), "must hold"
-    for name in creature_h5.ATTRIBUTES:
-        for title, value in values.items():
-            yield f"@{name}: {title}", with_attribute(name, value), ""
-        texts = (b"", b"\xff", b"NaN", b"null ", b"[" * 20_000, b'{"a": 1, "a": 2}', b"0" * 64)
-        for text in texts:
-            yield f"@{name}: {text[:9]!r}", with_attribute(name, np.bytes_(text)), ""
-        yield f"@{name} missing", lambda file, n=name: file.attrs.pop(n), "attributes must be"
+        for title, value in VALUES.items():
+            yield f"{name}: {title}", "", replace, name, value
+        yield f"{name} missing", "", delitem, name
+        yield f"{name}: a group", "dataset", make_group, name
+        yield f"{name} with a bit flipped", "", flip, name
+    for name in (*(f"{name}_" for name in MEMBERS), "x", "body/x", "genome/nodes/x"):
+        yield f"{name} beside", "must hold", setitem, name, np.zeros(2)
+    for name in sorted(creature_h5.ATTRIBUTES):
+        texts = {repr(text[:9]): np.bytes_(text) for text in TEXTS}
+        for title, value in (VALUES | texts).items():
+            yield f"@{name}: {title}", "", set_attribute, name, value
+        yield f"@{name} missing", "attributes must be", lambda file, n=name: file.attrs.pop(n)
 
 
-def grouped(file: h5py.File, name: str) -> None:
+def make_group(file: h5py.File, name: str) -> None:
     del file[name]
     file.create_group(name)
 
 
-def negated(file: h5py.File, name: str) -> None:
+def flip(file: h5py.File, name: str) -> None:
     value = np.array(file[name][()])
     raw = bytearray(value.tobytes() or b"\0")
     raw[-1] ^= 0x40
-    del file[name]
-    turned = np.frombuffer(bytes(raw), value.dtype if value.size else "u1")
-    file[name] = turned.reshape(value.shape if value.size else (1,))
+    flipped = np.frombuffer(bytes(raw), value.dtype if value.size else "u1")
+    replace(file, name, flipped.reshape(value.shape if value.size else (1,)))
 
 
-def beside(file: h5py.File, name: str) -> None:
-    file[f"{name}_" if name in MEMBERS else name] = np.zeros(2)
-
-
-def with_attribute(name: str, value: Any) -> Edit:
-    def edit(file: h5py.File) -> None:
-        del file.attrs[name]
-        file.attrs[name] = value
-
-    return edit
+def set_attribute(file: h5py.File, name: str, value: Any) -> None:
+    file.attrs[name] = value

@@ -1,22 +1,22 @@
 """Searches at full size, compared with each other, as tables and figures."""
 
 import statistics
-from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
+import time
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
-from drive import Installation
+import rich
+from drive import ROOT, Installation
 from matplotlib.figure import Figure
-from rich.console import Console
 from rich.table import Table
 
 from microcosmos.naming import decode, encode, name
 from microcosmos.spec import parse
 
 SEEDS = (0, 1, 2, 3, 4)
-CarryOut = Callable[[Installation, dict, str], dict]
-"""Carries out a spec under a title; returns the finished run."""
+PICTURES = ROOT / "docs" / "pictures"
+HOURS = 3600
 
 METHODS = {
     "random": {"search": {"emitters": [{"operator": "random"}]}},
@@ -54,6 +54,19 @@ SENSOR = 3
 """The input of the CPPN for energy, after position, sine and cosine."""
 
 
+def carry_out(place: Installation, document: dict, title: str) -> dict:
+    """Carry out a run, print a line about it and return it from the API."""
+    began = time.monotonic()
+    found = place.wait(place.submit(document), "finished", seconds=2 * HOURS)
+    seconds = time.monotonic() - began
+    rich.print(
+        f"{title}: QD score {found['qd_score']:.1f}, coverage {found['coverage']:.3f}, best "
+        f"{found['best']:.2f}, diverged {found['diverged']}, {seconds / 60:.1f} min, "
+        f"{found['evaluations'] / seconds:.1f} evaluations/s"
+    )
+    return found
+
+
 def written(spec: dict[str, Any]) -> dict[str, Any]:
     return parse({"experiment": "quality-diversity", **spec}).model_dump(mode="json")
 
@@ -65,19 +78,19 @@ def spec(seed: int, method: str) -> dict:
     return written({**chosen, "seed": seed, "search": search})
 
 
-def compare(runs: dict[str, list[dict]], console: Console) -> bool:
+def compare(runs: dict[str, list[dict]]) -> bool:
     """Print medians and ranges; tell whether medians reach their bars."""
     found = {n: [[run[f] for run in some] for f in FIGURES] for n, some in runs.items()}
-    console.print(table("median (range)", FIGURES.values(), found))
+    rich.print(table("median (range)", FIGURES.values(), found))
     good = True
     for (method, figure), bar in BARS.items():
         own, other = (statistics.median(r[figure] for r in runs[n]) for n in (method, "random"))
         good &= own / other > bar
-        console.print(f"{method}, {figure}: {own / other:.2f} × random search (bar {bar})")
+        rich.print(f"{method}, {figure}: {own / other:.2f} × random search (bar {bar})")
     return good
 
 
-def table(title: str, columns: Sequence[str], found: Mapping[str, list[list[float]]]) -> Table:
+def table(title: str, columns: Iterable[str], found: Mapping[str, list[list[float]]]) -> Table:
     """Medians and ranges of lists of values: a row for each name."""
     rows = Table(title, *columns)
     for method, lists in found.items():
@@ -91,7 +104,7 @@ def summary(values: list[float]) -> str:
     return f"{middle:.{digits}f} ({low:.{digits}f}–{high:.{digits}f})"
 
 
-def draw(runs: dict[str, list[dict]], path: Path) -> None:
+def draw(runs: dict[str, list[dict]]) -> None:
     """A panel for each figure, a point for each seed, a bar at the median."""
     figure = Figure(figsize=(10, 3.2), layout="constrained")
     for axes, (key, title) in zip(figure.subplots(1, 3), FIGURES.items(), strict=True):
@@ -105,7 +118,7 @@ def draw(runs: dict[str, list[dict]], path: Path) -> None:
         axes.set_title(title, fontsize=10)
         axes.set_ylim(bottom=0)
         axes.spines[["top", "right"]].set_visible(False)
-    figure.savefig(path, dpi=150)
+    figure.savefig(PICTURES / "searches.png", dpi=150)
 
 
 def fittest(place: Installation, run: str, count: int) -> list[dict]:
@@ -114,12 +127,11 @@ def fittest(place: Installation, run: str, count: int) -> list[dict]:
     return [place.get(f"creatures/{archive['creature'][i]}") for i in order]
 
 
-def sinusoidal(place: Installation, runs: dict[str, list[dict]], console: Console) -> None:
+def sinusoidal(place: Installation, runs: dict[str, list[dict]]) -> None:
     """Print the share of the fittest creatures that move by sinusoidal gaits."""
     for method, found in runs.items():
-        files = [file for run in found for file in fittest(place, run["id"], 10)]
-        purities = [purity(file) for file in files]
-        console.print(
+        purities = [purity(file) for run in found for file in fittest(place, run["id"], 10)]
+        rich.print(
             f"{method}: {np.mean(np.array(purities) >= PURE):.0%} of the ten fittest of each "
             f"seed are sinusoidal (median {statistics.median(purities):.0%} of the power in "
             "one harmonic)"
@@ -155,10 +167,11 @@ def slope_spec(seed: int, method: str) -> dict:
     return written({**size, "seed": seed, "control": control, "search": search})
 
 
-def compare_slopes(
-    place: Installation, carry_out: CarryOut, console: Console, path: Path
-) -> None:
-    """Compare searches with derivatives and without, by evaluations and by device-seconds."""
+def compare_slopes(place: Installation) -> bool:
+    """Compare searches with derivatives and without, by evaluations and by device-seconds.
+
+    Either may win.
+    """
     curves = {
         method: [
             curve(place, carry_out(place, slope_spec(s, method), f"{method}, seed {s}"))
@@ -172,16 +185,17 @@ def compare_slopes(
         for method, runs in curves.items()
     }
     columns = ("equal evaluations", "equal device-seconds")
-    console.print(table("median QD score (range)", columns, found))
-    console.print(f"at {most[0]:.0f} evaluations, and at {most[1]:.1f} device-seconds")
+    rich.print(table("median QD score (range)", columns, found))
+    rich.print(f"at {most[0]:.0f} evaluations, and at {most[1]:.1f} device-seconds")
     for pair in PAIRS:
         with_slopes, without = ([statistics.median(v) for v in found[n]] for n in pair)
         ratios = [a / b for a, b in zip(with_slopes, without, strict=True)]
-        console.print(
+        rich.print(
             f"{pair[0]}: {ratios[0]:.2f} × {pair[1]} at equal evaluations, "
             f"{ratios[1]:.2f} × at equal device-seconds"
         )
-    draw_slopes(curves, path)
+    draw_slopes(curves)
+    return True
 
 
 def curve(place: Installation, run: dict) -> np.ndarray:
@@ -197,7 +211,7 @@ def at(one: np.ndarray, axis: int, most: float) -> float:
     return float(one[2, np.searchsorted(one[axis], most, side="right") - 1])
 
 
-def draw_slopes(curves: dict[str, list[np.ndarray]], path: Path) -> None:
+def draw_slopes(curves: dict[str, list[np.ndarray]]) -> None:
     """QD score against evaluations and against device-seconds, a line for each seed."""
     figure = Figure(figsize=(10, 3.6), layout="constrained")
     panels = figure.subplots(1, 2, sharey=True)
@@ -211,7 +225,7 @@ def draw_slopes(curves: dict[str, list[np.ndarray]], path: Path) -> None:
         panels[axis].spines[["top", "right"]].set_visible(False)
     panels[0].set_ylabel("QD score")
     panels[0].legend(fontsize=8, frameon=False)
-    figure.savefig(path, dpi=150)
+    figure.savefig(PICTURES / "slopes.png", dpi=150)
 
 
 def forage_spec(seed: int, fitness: str) -> dict:
@@ -232,7 +246,7 @@ def forage_spec(seed: int, fitness: str) -> dict:
     return written({**parts, "seed": seed, "control": control})
 
 
-def forage(place: Installation, carry_out: CarryOut, console: Console) -> bool:
+def forage(place: Installation) -> bool:
     """Tell whether selection for energy collects more, and blindness less, as medians."""
     found: dict[str, list[float]] = {"displacement+energy": [], "displacement": [], "blind": []}
     for seed in FORAGERS:
@@ -245,7 +259,7 @@ def forage(place: Installation, carry_out: CarryOut, console: Console) -> bool:
     middle = {kind: statistics.median(values) for kind, values in found.items()}
     for kind, values in found.items():
         listed = ", ".join(f"{value:.0f}" for value in values)
-        console.print(f"energy collected by {kind}: median {middle[kind]:.0f} ({listed})")
+        rich.print(f"energy collected by {kind}: median {middle[kind]:.0f} ({listed})")
     return middle["displacement+energy"] > max(middle["displacement"], middle["blind"])
 
 

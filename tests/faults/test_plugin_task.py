@@ -31,35 +31,26 @@ SMALL = {
 }
 
 
-@pytest.fixture(scope="module")
-def own_place(installation_of_file):
-    """An installation whose worker has no plug-in."""
-    place = installation_of_file(WORKERS="1")
-    place.start()
-    wait_until(lambda: place.get("workers"), 60, "its worker reports")
-    return place
+@pytest.fixture
+def module(tmp_path):
+    return Path(shutil.copy(EXAMPLE, tmp_path))
 
 
-@pytest.fixture(scope="module")
-def module(tmp_path_factory):
-    return Path(shutil.copy(EXAMPLE, tmp_path_factory.mktemp("mine")))
-
-
-@pytest.fixture(scope="module")
-def hire(own_place, module):
-    """Starts a second worker, with the example module and a broken one."""
+@pytest.fixture
+def hire(module):
+    """Starts a second worker of an installation, with the example and a broken module."""
     hired = []
     broken = module.with_name("broken.py")
     broken.write_text("import os\nos.nothing\n")
 
-    def start():
-        (other,) = own_place.named(SUPERVISOR)
+    def start(place):
+        (other,) = place.named(SUPERVISOR)
         environment = other.environ() | {"MICROCOSMOS_MODULES": f"{module}:{broken}"}
         command = [sys.executable, "-m", SUPERVISOR, "0"]
-        with (own_place.folder / "hired.txt").open("ab") as output:
+        with (place.folder / "hired.txt").open("ab") as output:
             streams = {"stdout": output, "stderr": output}
             hired.append(subprocess.Popen(command, cwd=ROOT, env=environment, **streams))
-        return wait_until(lambda: having(own_place), 60, "it tells what it has")
+        return wait_until(lambda: worker_with_plugins(place), 60, "it reports its plug-ins")
 
     yield start
     for process in hired:
@@ -67,51 +58,52 @@ def hire(own_place, module):
         process.wait(30)
 
 
-def having(place):
-    """The worker with the plug-in module."""
+def worker_with_plugins(place):
     return next((one for one in place.get("workers") if one["plugins"]), None)
 
 
-def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(own_place, hire, module):
-    refused = own_place.http.post("/api/v1/runs", json=SMALL)
+def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(installation, hire, module):
+    place = installation(WORKERS="1")
+    wait_until(lambda: place.get("workers"), 60, "its worker lives")
+    refused = place.http.post("/api/v1/runs", json=SMALL)
     assert refused.status_code == 422
     messages = {one["field"]: one["message"] for one in refused.json()["errors"]}
     assert "no worker has 'plugin_task.straight'" in messages["task.fitness"]
     assert "docs/plugins.md" in messages["body.builder"]
 
-    worker = hire()
+    worker = hire(place)
     names = [f"plugin_task.{name}" for name in ("straight", "sway", "cross")]
     assert {one["name"] for one in worker["plugins"]} == set(names)
     (failed,) = worker["unloaded"]
     assert failed["module"].endswith("broken.py")
     assert "AttributeError" in failed["reason"]
 
-    run = own_place.submit(SMALL)
-    done = own_place.wait(run, "finished", seconds=240)
-    log = own_place.get(f"runs/{run}/log")["entries"]
+    run = place.submit(SMALL)
+    done = place.wait(run, "finished", seconds=240)
+    log = place.get(f"runs/{run}/log")["entries"]
     assert any(f"begins on worker {worker['name']}" in entry["text"] for entry in log)
-    tree, attributes = file.load(own_place.archive(run))
+    tree, attributes = file.load(place.archive(run))
     spec = json.loads(attributes["spec"])
     assert spec == done["spec"]
     assert spec["task"]["plugin"]["source"] == sha256(EXAMPLE.read_bytes()).hexdigest()
     measures = json.loads(attributes["measures"])
     assert measures[-2:] == ["plugin_task.straight", "plugin_task.sway"]
-    archive = own_place.get(f"runs/{run}/archive", measures="plugin_task.straight")
+    archive = place.get(f"runs/{run}/archive", measures="plugin_task.straight")
     assert archive["measures"]["plugin_task.straight"] == archive["fitness"]
     assert archive["fitness"] == tree["archive"]["fitness"].tolist()
 
     module.write_text(f"{EXAMPLE.read_text()}# Changed.\n")
     wait_until(
-        lambda: having(own_place)["plugins"][0]["source"] != worker["plugins"][0]["source"],
+        lambda: worker_with_plugins(place)["plugins"] != worker["plugins"],
         60,
-        "the worker notices that the module is another one",
+        "the worker notices the changed module",
     )
-    again = own_place.http.post("/api/v1/runs", json=spec).json()
-    waiting = own_place.read(again["id"])
+    again = place.submit(spec)
+    waiting = place.read(again)
     assert waiting["status"] == "queued"
     assert "Waits for a worker that has plugin_task.cross" in waiting["waiting_reason"]
     assert f"{worker['name']} has another version" in waiting["waiting_reason"]
     shutil.copy(EXAMPLE, module)
-    finished = own_place.wait(again["id"], "finished", seconds=240)
+    finished = place.wait(again, "finished", seconds=240)
     assert finished["attempt"] == 1
-    assert own_place.archive(again["id"]) == own_place.archive(run)
+    assert place.archive(again) == place.archive(run)

@@ -7,7 +7,7 @@ import random
 import shutil
 import signal
 import subprocess
-from contextlib import ExitStack, suppress
+from contextlib import suppress
 
 import h5py
 import pytest
@@ -39,8 +39,7 @@ def test_a_run_that_is_killed_stopped_and_paused_ends_with_the_same_archive(
     run = place.submit(spec)
     interrupt(place, run, faults, moments)
     assert place.wait(run, "finished")["attempt"] == 1 + len(faults)
-    assert place.archive(run) == undisturbed.archive, f"interrupted at {moments}"
-    assert place.account(run) == undisturbed.account
+    assert place.results(run) == undisturbed, f"interrupted at {moments}"
 
 
 @pytest.mark.long
@@ -49,7 +48,7 @@ def test_a_run_goes_on_while_redis_is_killed_and_started_again(place, spec, undi
     attempt = place.reach(run, 1)
     place.signal(REDIS, signal.SIGKILL)
     assert place.wait(run, "finished")["attempt"] == attempt
-    assert place.archive(run) == undisturbed.archive
+    assert place.results(run) == undisturbed
     place.wait(place.submit(spec), "finished")
 
 
@@ -61,22 +60,25 @@ def test_a_frozen_worker_is_replaced_and_writes_nothing_when_it_wakes(place, spe
     with place.frozen([owner, *owner.children(recursive=True)]):
         successor = place.reach(run, 0, after=attempt)
     assert place.wait(run, "finished")["attempt"] == successor == attempt + 1
-    assert place.archive(run) == undisturbed.archive
-    assert place.account(run) == undisturbed.account
+    assert place.results(run) == undisturbed
     wait_until(lambda: not owner.children(), 10, "the woken job has ended")
     assert owner.is_running()
 
 
 @pytest.mark.long
-def test_ctrl_c_leaves_no_process_and_the_next_start_goes_on(place, spec, undisturbed):
+@pytest.mark.parametrize(
+    ("sent", "status", "seconds"), [(signal.SIGINT, 0, 0), (signal.SIGKILL, -9, 30)]
+)
+def test_the_end_of_the_root_ends_all_and_the_next_start_resumes(
+    place, spec, undisturbed, sent, status, seconds
+):
     run = place.submit(spec)
     place.reach(run, 3)
-    assert place.end(signal.SIGINT) == 0
-    assert not list(place.processes())
+    assert place.end(sent) == status
+    wait_until(lambda: not list(place.processes()), seconds, "all processes have ended")
     place.start()
     place.wait(run, "finished")
-    assert place.archive(run) == undisturbed.archive
-    assert place.account(run) == undisturbed.account
+    assert place.results(run) == undisturbed
 
 
 SWEEP = {
@@ -89,37 +91,29 @@ SWEEP = {
 }
 
 
-@pytest.fixture
-def result(place):
-    """The results of a run: its table, as JSON and CSV, and its file."""
+@pytest.mark.long
+def test_a_sweep_that_is_killed_and_paused_ends_with_the_same_table(place):
+    undisturbed, disturbed = place.submit(SWEEP), place.submit(SWEEP)
+    interrupt(place, disturbed, [kill_job, pause_and_resume], [0, 1])
 
-    def read(run):
+    def results(run):
+        place.wait(run, "finished", seconds=300)
         table = place.http.get(f"/api/v1/runs/{run}/results.csv").raise_for_status().text
         return place.get(f"runs/{run}/results"), table, place.archive(run)
 
-    return read
-
-
-@pytest.mark.long
-def test_a_sweep_that_is_killed_and_paused_ends_with_the_same_table(place, result):
-    undisturbed, disturbed = place.submit(SWEEP), place.submit(SWEEP)
-    interrupt(place, disturbed, [kill_job, pause_and_resume], [0, 1])
-    place.wait(disturbed, "finished", seconds=300)
-    place.wait(undisturbed, "finished", seconds=300)
-    whole, table, file = result(undisturbed)
+    whole, *others = results(undisturbed)
     assert [row["swimmer"] for row in whole["rows"][::2]] == SWEEP["swimmers"]
-    assert result(disturbed) == (whole, table, file)
+    assert results(disturbed) == (whole, *others)
 
 
 @pytest.fixture
 def elsewhere():
     """The settings of an installation on this machine's PostgreSQL and Redis."""
-    with ExitStack() as stack:
-        try:
-            settings = stack.enter_context(services())
-        except Missing as missing:
-            pytest.skip(str(missing))
-        yield settings
+    try:
+        with services() as settings:
+            yield settings
+    except Missing as missing:
+        pytest.skip(str(missing))
 
 
 @pytest.mark.long
@@ -128,21 +122,18 @@ def test_postgresql_and_a_redis_server_give_the_same_bytes(
 ):
     """`undisturbed` is of SQLite and the embedded Redis."""
     place = installation(**elsewhere)
-    place.start()
     assert "the one that MICROCOSMOS_REDIS_URL names" in place.output.read_text()
     assert not place.named(REDIS)
     assert not list(place.folder.glob("*.sqlite"))
     run = place.submit(spec)
     interrupt(place, run, [kill_job, kill_supervisor, stop_worker], [1, 4, 7])
     assert place.wait(run, "finished")["attempt"] == 4
-    assert place.archive(run) == undisturbed.archive
-    assert place.account(run) == undisturbed.account
+    assert place.results(run) == undisturbed
 
 
 @pytest.mark.long
 def test_a_run_changes_device_only_when_resumed_by_a_person(installation, spec):
     place = installation()
-    place.start()
     run = place.submit(spec)
     place.reach(run, 3)
     place.end()
@@ -185,7 +176,6 @@ def test_a_full_disk_leaves_the_last_checkpoint_and_the_run_says_so(
     small_disk, installation, spec, undisturbed
 ):
     place = installation(MICROCOSMOS_ARTIFACTS_URL=str(small_disk))
-    place.start()
     run = place.submit(spec)
     place.reach(run, 3)
     ballast = fill(small_disk)
@@ -196,13 +186,12 @@ def test_a_full_disk_leaves_the_last_checkpoint_and_the_run_says_so(
     ballast.unlink()
     place.ask(run, "resume")
     assert place.wait(run, "finished")["warning"] is None
-    assert place.archive(run) == undisturbed.archive
-    assert place.account(run) == undisturbed.account
+    assert place.results(run) == undisturbed
 
 
 @pytest.mark.long
 def test_a_replay_is_made_though_its_renderer_is_killed(place, undisturbed):
-    creature = undisturbed.account["archive"]["creature"][0]
+    creature = undisturbed["archive"]["creature"][0]
     address = f"/api/v1/creatures/{creature}/replay"
     assert place.http.get(address).status_code == 202
     place.signal(RENDERER, signal.SIGKILL)

@@ -1,4 +1,4 @@
-"""Reasons for which an installation does not start, and how it ends."""
+"""Reasons for which an installation does not start."""
 
 import os
 import re
@@ -76,18 +76,6 @@ def test_a_server_without_an_admin_token_does_not_listen(tmp_path, refused):
     shared.close()
     message = refused(MICROCOSMOS_AUTH="required", PORT=str(free_port()))
     assert "there is none: create one with `python -m server.auth create" in message
-
-
-@pytest.mark.long
-def test_killing_the_root_ends_all_and_the_next_start_resumes(place, spec, undisturbed):
-    run = place.submit(spec)
-    place.reach(run, 2)
-    place.process.kill()
-    place.process.wait()
-    wait_until(lambda: not list(place.processes()), 30, "all processes have ended")
-    place.start()
-    place.wait(run, "finished")
-    assert place.archive(run) == undisturbed.archive
 
 
 def test_a_killed_server_is_started_again(place, undisturbed):

@@ -20,6 +20,7 @@ from malformed import Case
 
 IN_ACCESS, IN_OPEN = 0x1, 0x20
 EVENT = struct.Struct("iIII")
+MEASURED = (["-m", "server.main"], ["-m", "server.creatures.sandbox_process"])
 OURS = ("Errno", "No module", "took too long", "cannot be read", "Traceback")
 """Words of internal errors, which a refusal must not contain."""
 
@@ -30,7 +31,7 @@ class Findings:
     wrong: list[str] = field(default_factory=list)
     slowest: float = 0.0
     growth: int = 0
-    """Bytes by which the server and its quarantine have grown, at most."""
+    """Most bytes by which the server and its sandboxes have grown."""
 
 
 @contextmanager
@@ -43,18 +44,11 @@ def watched(canary: Path) -> Iterator[list[str]]:
     assert added >= 0, os.strerror(ctypes.get_errno())
     try:
         yield readings
-        readings += [f"event {kind:#x}" for kind in events(watch)]
+        with suppress(BlockingIOError):
+            data = os.read(watch, 1 << 16)
+            readings += [f"event {kind:#x}" for _, kind, _, _ in EVENT.iter_unpack(data)]
     finally:
         os.close(watch)
-
-
-def events(watch: int) -> Iterator[int]:
-    try:
-        data = os.read(watch, 1 << 16)
-    except BlockingIOError:
-        return
-    for at in range(0, len(data), EVENT.size):  # Without names: a file is watched, no folder.
-        yield EVENT.unpack_from(data, at)[1]
 
 
 def all_cases(canary: Path) -> Iterable[Case]:
@@ -62,42 +56,35 @@ def all_cases(canary: Path) -> Iterable[Case]:
 
 
 def send(place: Installation, cases: Iterable[Case]) -> Findings:
-    """Post each file as a creature's; the answer has to refuse it with what was wrong."""
-    found, expected = Findings(), malformed.good()["sha256"]
-    before = None
+    """Post each file as a creature; the server has to refuse it with the reason."""
+    found, valid, before = Findings(), malformed.good()["sha256"], None
     for case in cases:
         began = time.monotonic()
         answer = place.http.post(
             "/api/v1/creatures", content=case.body, headers={"Content-Type": case.kind}
         )
-        if before is None:  # Its first file has started the quarantine, and warmed it up.
+        if before is None:  # The first file has started the sandbox and warmed it up.
             before = memory(place)
         else:
             found.slowest = max(found.slowest, time.monotonic() - began)
             found.growth = max(found.growth, memory(place) - before)
-        if answer.is_success and case.harmless and answer.json()["creature"] == expected:
+        if answer.is_success and case.harmless and answer.json()["creature"] == valid:
             continue
         found.refused += 1
-        if fault := complaint(case, answer.status_code, answer.text):
-            found.wrong.append(f"{case.name}: {fault}")
+        text = f"{answer.status_code}: {answer.text}"
+        reason = re.search(case.says, answer.text) and not any(word in text for word in OURS)
+        if answer.status_code not in (413, 422) or not reason:
+            found.wrong.append(f"{case.name}: not {case.says!r} but {text:.200}")
     return found
 
 
-def complaint(case: Case, status: int, text: str) -> str | None:
-    if status not in (413, 422):
-        return f"status {status}: {text:.200}"
-    if not re.search(case.says, text) or any(word in text for word in OURS):
-        return f"not {case.says!r} but {text:.200}"
-    return None
-
-
 def memory(place: Installation) -> int:
-    """Bytes in the memory of the server and of the sandboxes that read files for it."""
+    """Bytes in the memory of the server and its sandboxes."""
     total = 0
-    sandboxes = place.named("server.creatures.sandbox_process")
-    for process in place.named("server.main") + sandboxes:
-        with suppress(psutil.Error, OSError):  # A sandbox may end meanwhile.
-            total += process.memory_info().rss
+    for process in place.processes():
+        with suppress(psutil.Error, OSError):  # A sandbox may end while it is measured.
+            if process.cmdline()[1:] in MEASURED:
+                total += process.memory_info().rss
     return total
 
 
@@ -105,18 +92,15 @@ HEAD = (
     b"POST /api/v1/creatures HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
 )
 LIES = {
-    "less than it says": (b"Content-Length: 100\r\n\r\n{}", b""),
-    "more than it says": (b"Content-Length: 1\r\nConnection: close\r\n\r\n{}", b" 4"),
+    "too short a body": (b"Content-Length: 100\r\n\r\n{}", b""),
+    "too long a body": (b"Content-Length: 1\r\nConnection: close\r\n\r\n{}", b" 4"),
     "no number": (b"Content-Length: many\r\n\r\n{}", b" 4"),
-    "below zero": (b"Content-Length: -1\r\n\r\n{}", b" 4"),
-    "two of them": (b"Content-Length: 2\r\nContent-Length: 1\r\n\r\n{}", b" 4"),
-    "more than there is room for": (
-        b"Content-Length: 10000000000\r\n\r\n" + b" " * (9 << 20),
-        b" 413",
-    ),
-    "chunks that are none": (b"Transfer-Encoding: chunked\r\n\r\nmany\r\n{}", b" 4"),
+    "negative": (b"Content-Length: -1\r\n\r\n{}", b" 4"),
+    "two lengths": (b"Content-Length: 2\r\nContent-Length: 1\r\n\r\n{}", b" 4"),
+    "over the limit": (b"Content-Length: %d\r\n\r\n%s" % (10**10, b" " * (9 << 20)), b" 413"),
+    "no chunks": (b"Transfer-Encoding: chunked\r\n\r\nmany\r\n{}", b" 4"),
 }
-"""Lengths that are not those of what is sent, and the beginning of the status they get."""
+"""Requests with false lengths, and the beginning of the status of their answers."""
 
 
 def lie(port: int, sent: bytes) -> bytes:
@@ -126,5 +110,5 @@ def lie(port: int, sent: bytes) -> bytes:
             connection.sendall(HEAD + sent)
             connection.shutdown(socket.SHUT_WR)
             return connection.recv(1 << 16).partition(b"\r\n")[0]
-        except OSError:  # The server hung up in the midst of it.
+        except OSError:  # The server hung up before the end.
             return b""

@@ -2,14 +2,17 @@
 
 import socket
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from typing import Any
 from urllib.parse import urlsplit
+
+ENDLESS = 1 << 60
 
 
 class Relay:
-    """Hands bytes on between a client and a server, and breaks connections off."""
+    """Forwards bytes between clients and a server, and breaks connections off."""
 
     def __init__(self, address: str):
         parts = urlsplit(address)
@@ -18,48 +21,44 @@ class Relay:
         """Bytes of an answer after which a connection breaks, for one after another."""
         self.asked: list[bytes] = []
         self.open: list[socket.socket] = []
-        self.door = socket.create_server(("127.0.0.1", 0))
-        self.url = f"http://127.0.0.1:{self.door.getsockname()[1]}"
-        threading.Thread(target=self.serve, daemon=True).start()
+        self.listener = socket.create_server(("127.0.0.1", 0))
+        self.url = f"http://127.0.0.1:{self.listener.getsockname()[1]}"
+        start(self.serve)
 
     def serve(self) -> None:
         with suppress(OSError):
             while True:
-                client, _ = self.door.accept()
+                client, _ = self.listener.accept()
                 server = socket.create_connection(self.to)
                 self.open += [client, server]
-                left = self.allowance.pop(0) if self.allowance else None
-                for work in (
-                    (self.requests, client, server),
-                    (self.answers, server, client, left),
-                ):
-                    threading.Thread(target=work[0], args=work[1:], daemon=True).start()
-
-    def requests(self, client: socket.socket, server: socket.socket) -> None:
-        with suppress(OSError):
-            while sent := client.recv(65536):
-                self.asked.append(sent)
-                server.sendall(sent)
-
-    def answers(self, server: socket.socket, client: socket.socket, left: int | None) -> None:
-        with suppress(OSError):
-            while came := server.recv(65536):
-                client.sendall(came if left is None else came[:left])
-                left = left if left is None else left - len(came)
-                if left is not None and left <= 0:
-                    break
-        hang_up(client)
-        hang_up(server)
+                start(forward, client, server, ENDLESS, self.asked)
+                start(forward, server, client, (self.allowance or [ENDLESS]).pop(0), [])
 
     def cut(self) -> None:
         for each in self.open:
             hang_up(each)
 
     def close(self) -> None:
-        self.door.close()
+        self.listener.close()
         self.cut()
         for each in self.open:
             each.close()
+
+
+def start(work: Callable[..., None], *arguments: Any) -> None:
+    threading.Thread(target=work, args=arguments, daemon=True).start()
+
+
+def forward(
+    source: socket.socket, target: socket.socket, allowance: int, seen: list[bytes]
+) -> None:
+    with suppress(OSError):
+        while allowance > 0 and (data := source.recv(65536)):
+            seen.append(data)
+            target.sendall(data[:allowance])
+            allowance -= len(data)
+    hang_up(source)
+    hang_up(target)
 
 
 def hang_up(end: socket.socket) -> None:
@@ -87,12 +86,11 @@ def other(*answers: tuple[int, dict[str, str], bytes]) -> Iterator[tuple[str, li
 
         def log_message(self, *_: object) -> None: ...
 
-    server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
-    thread = threading.Thread(target=server.serve_forever)
-    thread.start()
-    try:
-        yield f"http://127.0.0.1:{server.server_port}", asked
-    finally:
-        server.shutdown()
-        server.server_close()
-        thread.join()
+    with ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        try:
+            yield f"http://127.0.0.1:{server.server_port}", asked
+        finally:
+            server.shutdown()
+            thread.join()

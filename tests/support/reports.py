@@ -78,27 +78,28 @@ def identity(number: int = 1) -> dict[str, Any]:
     }
 
 
+def creature_of(number: int) -> dict[str, Any]:
+    found = identity(number)
+    return {"creature": creature.name(found), "identity": creature.canonical(found)}
+
+
 def table(generation: int, *rows: dict[str, Any], summary: Any = None) -> Any:
     """The report of an experiment without an archive: rows of values."""
+    nothing = dict.fromkeys(("creature", "identity", "measured", "provenance"))
     return SimpleNamespace(
         generation=generation,
         evaluations=generation,
         diverged=0,
         elites=(),
-        rows=tuple(row(values) for values in rows),
+        rows=tuple(
+            SimpleNamespace(
+                values=values,
+                **nothing | (creature_of(values["number"]) if "number" in values else {}),
+            )
+            for values in rows
+        ),
         summary=summary,
         **dict.fromkeys(("qd_score", "coverage", "best", "mean")),
-    )
-
-
-def row(values: dict[str, Any]) -> Any:
-    found = identity(values["number"]) if "number" in values else None
-    return SimpleNamespace(
-        values=values,
-        creature=creature.name(found) if found else None,
-        identity=creature.canonical(found) if found else None,
-        measured=None,
-        provenance=None,
     )
 
 
@@ -110,9 +111,32 @@ def report(
     summary: dict[str, Any] | None = None,
 ) -> Any:
     """The report of a generation: new elites by cell, with their fitness."""
-    found = [
-        elite(generation, *item, descriptors, measures or {}) for item in (elites or {}).items()
-    ]
+    efforts = {"bending_effort": 0.25, "stretching_effort": 0.5}
+
+    def elite(cell: int, fitness: float) -> Any:
+        return SimpleNamespace(
+            cell=cell,
+            fitness=fitness,
+            descriptors=descriptors,
+            generation=generation,
+            **creature_of(1000 * generation + cell),
+            measured={
+                "fitness": fitness,
+                "descriptors": efforts,
+                "measures": {"displacement": fitness, **efforts, **(measures or {})},
+                "block": 16,
+                "room": [24, 64],
+                "device": "a device",
+            },
+            provenance={
+                "parents": ["ab" * 32],
+                "operator": "neat",
+                "generation": generation,
+                "seed": 0,
+                "version": "0.1.0",
+            },
+        )
+
     return SimpleNamespace(
         generation=generation,
         qd_score=10.0 * generation,
@@ -121,45 +145,7 @@ def report(
         mean=0.5 * generation,
         evaluations=16 * generation,
         diverged=generation,
-        elites=tuple(found),
+        elites=tuple(elite(*item) for item in (elites or {}).items()),
         rows=(),
         summary=summary,
-    )
-
-
-def elite(
-    generation: int,
-    cell: int,
-    fitness: float,
-    descriptors: tuple[float, ...],
-    measures: dict[str, float],
-) -> Any:
-    found = identity(1000 * generation + cell)
-    return SimpleNamespace(
-        cell=cell,
-        fitness=fitness,
-        descriptors=descriptors,
-        creature=creature.name(found),
-        identity=creature.canonical(found),
-        generation=generation,
-        measured={
-            "fitness": fitness,
-            "descriptors": {"bending_effort": 0.25, "stretching_effort": 0.5},
-            "measures": {
-                "displacement": fitness,
-                "bending_effort": 0.25,
-                "stretching_effort": 0.5,
-                **measures,
-            },
-            "block": 16,
-            "room": [24, 64],
-            "device": "a device",
-        },
-        provenance={
-            "parents": ["ab" * 32],
-            "operator": "neat",
-            "generation": generation,
-            "seed": 0,
-            "version": "0.1.0",
-        },
     )

@@ -4,11 +4,13 @@ import os
 import subprocess
 import sys
 from threading import Event
+from types import SimpleNamespace
 
+import pynvml
 import pytest
 
 from server.workers import registry
-from worker import cpu, device, usage
+from worker import device, usage
 from worker.device import Device, memory
 from worker.heartbeats import Heartbeats
 from worker.usage import Usage
@@ -24,14 +26,49 @@ DIVIDED = {
 
 
 @pytest.fixture
-def driver(nvml, monkeypatch):
+def nvml(monkeypatch):
+    """A function that replaces NVIDIA's library by one that knows some cards.
+
+    `cards` has name and memory by UUID, None for a card that fails; None is no driver.
+    `divided` is the UUID of a card with the parts `DIVIDED`.
+    """
     for name in ("JAX_PLATFORMS", "CUDA_VISIBLE_DEVICES", device.MEMORY_FRACTION):
         monkeypatch.delenv(name, raising=False)
-    return nvml
+
+    def install(cards, divided=None, used=0, load=None):
+        every = DIVIDED | (cards or {})
+
+        def known(value):
+            if value is None:
+                raise pynvml.NVMLError(pynvml.NVML_ERROR_NOT_SUPPORTED)
+            return value
+
+        answers = {
+            "Init": lambda: known(cards),
+            "Shutdown": lambda: None,
+            "DeviceGetCount": lambda: len(cards),
+            "DeviceGetHandleByIndex": lambda i: list(cards)[i],
+            "DeviceGetHandleByUUID": lambda uuid: uuid,
+            "DeviceGetUUID": lambda uuid: uuid,
+            "DeviceGetName": lambda uuid: known(every[uuid])[0],
+            "DeviceGetMemoryInfo": lambda uuid: SimpleNamespace(
+                total=known(every[uuid])[1], used=known(used)
+            ),
+            "DeviceGetUtilizationRates": lambda _: SimpleNamespace(gpu=known(load)),
+            "DeviceGetMigMode": lambda uuid: (known(1 if uuid == divided else None), 1),
+            "DeviceGetMaxMigDeviceCount": lambda _: 7,
+            "DeviceGetMigDeviceHandleByIndex": lambda _, i: known(
+                dict(enumerate(DIVIDED)).get(i)
+            ),
+        }
+        for name, answer in answers.items():
+            monkeypatch.setattr(pynvml, f"nvml{name}", answer)
+
+    return install
 
 
-def test_every_worker_has_a_gpu_of_its_own(driver):
-    driver(TWO)
+def test_every_worker_has_a_gpu_of_its_own(nvml):
+    nvml(TWO)
     first, second = device.find(0, 2), device.find(1, 2)
     assert (first.name, first.memory_bytes) == ("NVIDIA H200", 143771 << 20)
     assert first.environment == {"CUDA_VISIBLE_DEVICES": "GPU-aaaa1111"}
@@ -40,8 +77,8 @@ def test_every_worker_has_a_gpu_of_its_own(driver):
     assert first.threads == second.threads == ()
 
 
-def test_more_workers_than_gpus_share_them_and_their_memory(driver):
-    driver(TWO)
+def test_more_workers_than_gpus_share_them_and_their_memory(nvml):
+    nvml(TWO)
     first, second, third = (device.find(i, 3) for i in range(3))
     assert first == third
     assert first.name == "NVIDIA H200 (shared by 2 workers)"
@@ -53,8 +90,8 @@ def test_more_workers_than_gpus_share_them_and_their_memory(driver):
     assert device.MEMORY_FRACTION not in second.environment
 
 
-def test_a_given_memory_fraction_stays(driver, monkeypatch):
-    driver(TWO)
+def test_a_given_memory_fraction_stays(nvml, monkeypatch):
+    nvml(TWO)
     monkeypatch.setenv(device.MEMORY_FRACTION, "0.2")
     assert device.find(0, 4).environment[device.MEMORY_FRACTION] == "0.2"
 
@@ -70,14 +107,14 @@ def test_a_given_memory_fraction_stays(driver, monkeypatch):
         ("-1", [None, None]),
     ],
 )
-def test_only_gpus_that_the_environment_allows_are_used(driver, monkeypatch, allowed, found):
-    driver(TWO)
+def test_only_gpus_that_the_environment_allows_are_used(nvml, monkeypatch, allowed, found):
+    nvml(TWO)
     monkeypatch.setenv("CUDA_VISIBLE_DEVICES", allowed)
     assert [device.find(i, 2).gpu for i in range(2)] == found
 
 
-def test_parts_of_a_divided_card_are_devices(driver, monkeypatch):
-    driver(TWO, {"GPU-aaaa1111": DIVIDED})
+def test_parts_of_a_divided_card_are_devices(nvml, monkeypatch):
+    nvml(TWO, divided="GPU-aaaa1111")
     first, second, third = (device.find(i, 3) for i in range(3))
     assert (first.gpu, first.name) == ("MIG-cccc3333", "NVIDIA H200 MIG 3g.71gb")
     assert first.memory_bytes == 71 << 30
@@ -88,22 +125,22 @@ def test_parts_of_a_divided_card_are_devices(driver, monkeypatch):
 
 
 @pytest.mark.parametrize("cards", [None, {}, {"GPU-aaaa1111": None}])
-def test_the_processor_is_used_without_a_gpu(driver, cards):
-    driver(cards)
+def test_the_processor_is_used_without_a_gpu(nvml, cards):
+    nvml(cards)
     found = device.find(0)
     assert found.memory_bytes > 1 << 20
     assert found.environment == {}
-    assert set(found.threads) == set(cpu.threads())
+    assert set(found.threads) == set(device.threads())
     assert found.name.endswith(f"({len(found.threads)} threads)")
 
 
 def test_threads_are_given_out_evenly_and_shared_if_there_are_too_few():
     for threads, workers in ((8, 1), (8, 2), (8, 3), (7, 7)):
         given = [10 + i for i in range(threads)]
-        shares = [cpu.share(given, i, workers) for i in range(workers)]
+        shares = [device.share_threads(given, i, workers) for i in range(workers)]
         assert [thread for share in shares for thread in share] == given
         assert max(map(len, shares)) - min(map(len, shares)) <= 1
-    assert [cpu.share([4, 5], i, 5) for i in range(5)] == [[4], [5], [4], [5], [4]]
+    assert [device.share_threads([4, 5], i, 5) for i in range(5)] == [[4], [5], [4], [5], [4]]
 
 
 def test_threads_of_a_core_are_neighbours(tmp_path, monkeypatch):
@@ -113,26 +150,26 @@ def test_threads_of_a_core_are_neighbours(tmp_path, monkeypatch):
         topology.mkdir(parents=True)
         (topology / "physical_package_id").write_text(f"{thread % 2}\n")
         (topology / "core_id").write_text(f"{thread // 2 % 2}\n")
-    monkeypatch.setattr(cpu, "TOPOLOGY", tmp_path)
+    monkeypatch.setattr(device, "TOPOLOGY", tmp_path)
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: set(range(8)), raising=False)
-    assert cpu.threads() == [0, 4, 2, 6, 1, 5, 3, 7]
+    assert device.threads() == [0, 4, 2, 6, 1, 5, 3, 7]
 
 
 def test_a_machine_without_processor_information_works(tmp_path, monkeypatch):
-    monkeypatch.setattr(cpu, "CPUINFO", tmp_path / "none")
+    monkeypatch.setattr(device, "CPUINFO", tmp_path / "none")
     monkeypatch.delattr(os, "sched_getaffinity", raising=False)
     monkeypatch.delattr(os, "sched_setaffinity", raising=False)
-    assert cpu.model()
-    assert cpu.threads() == list(range(os.cpu_count()))
-    cpu.pin([0])
+    assert device.cpu_model()
+    assert device.threads() == list(range(os.cpu_count()))
+    device.pin([0])
 
 
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="the system has no affinity")
 def test_child_processes_keep_to_the_workers_threads():
-    one = cpu.threads()[-1]
+    one = device.threads()[-1]
     program = (
-        "import subprocess, sys; from worker import cpu\n"
-        "cpu.pin([int(sys.argv[1])])\n"
+        "import subprocess, sys; from worker import device\n"
+        "device.pin([int(sys.argv[1])])\n"
         "ask = 'import os; print(*os.sched_getaffinity(0))'\n"
         "subprocess.run([sys.executable, '-c', ask], check=True)"
     )

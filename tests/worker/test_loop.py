@@ -14,14 +14,17 @@ from sqlalchemy import select, update
 
 from server.attempts.claim import claim
 from server.local import process_tree
-from server.renderings.storage import RenderingFailed, order
+from server.renderings.storage import RenderingFailed, enqueue
 from server.tables import CANCELLED, Run, Worker
 from server.workers import registry
-from worker import loop, process_setup, renderer, supervisor
+from worker import loop, process_setup, supervisor
 from worker.device import Device
 from worker.heartbeats import HEARTBEATS_AFTER_END, Heartbeats
 from worker.renderer import retry_interrupted
 from worker.supervisor import Supervisor
+
+CREATURE = "ab" * 32
+ENGINE_FREE = ("supervisor", "heartbeats", "loop", "job_process")
 
 
 @pytest.fixture
@@ -30,22 +33,10 @@ def worker(services):
     return SimpleWorker([services.jobs.renderings], "renderer", serializer=JSONSerializer)
 
 
-@pytest.fixture
-def ask(services):
-    """Enqueues a call."""
-
-    def enqueue(name):
-        return services.jobs.renderings.enqueue(
-            "builtins.len", name, job_id=name, result_ttl=60
-        )
-
-    return enqueue
-
-
-def test_jobs_are_carried_out_also_after_redis_was_emptied(services, worker, ask):
+def test_jobs_are_carried_out_also_after_redis_was_emptied(services, worker):
     for empty in (lambda: None, services.redis.flushdb):
         empty()
-        job = ask("abc")
+        job = services.jobs.renderings.enqueue("builtins.len", "abc", result_ttl=60)
         loop.take_one(worker)
         assert job.is_finished
     assert services.redis.exists(worker.key)
@@ -66,7 +57,7 @@ def test_an_error_of_redis_does_not_end_it(worker, monkeypatch):
 
 
 def test_a_replay_whose_renderer_died_is_asked_for_again(services, worker):
-    services.jobs.render("ab" * 32)
+    services.jobs.render(CREATURE)
     job_id = services.jobs.renderings.job_ids[0]
     services.jobs.renderings.pop_job_id()
     job = Job.fetch(job_id, connection=services.redis, serializer=JSONSerializer)
@@ -74,12 +65,9 @@ def test_a_replay_whose_renderer_died_is_asked_for_again(services, worker):
     execution = worker.prepare_execution(job)
     services.redis.delete(execution.key)  # It expires, before what leads there.
     assert services.jobs.renderings.started_job_registry.get_job_ids() == [job_id]
-    renderer.retry_interrupted(services.jobs, services.jobs.renderings)
+    retry_interrupted(services.jobs, services.jobs.renderings)
     assert services.jobs.renderings.job_ids == [job_id]
     assert not services.jobs.renderings.started_job_registry.get_job_ids()
-
-
-CREATURE = "ab" * 32
 
 
 @pytest.fixture
@@ -100,7 +88,7 @@ def begin(services):
 
 
 def test_a_replay_that_ends_the_renderer_twice_is_given_up_with_a_reason(services, begin):
-    order(services, CREATURE)
+    enqueue(services, CREATURE)
     begin()
     retry_interrupted(services.jobs, services.jobs.renderings)
     assert services.jobs.renderings.count == 1
@@ -108,18 +96,15 @@ def test_a_replay_that_ends_the_renderer_twice_is_given_up_with_a_reason(service
     retry_interrupted(services.jobs, services.jobs.renderings)
     assert services.jobs.renderings.count == 0
     with pytest.raises(RenderingFailed, match="ended the renderer twice"):
-        order(services, CREATURE)
+        enqueue(services, CREATURE)
 
 
 def test_a_long_rendering_counts_as_alive_for_all_its_time(services, begin):
-    order(services, CREATURE)
+    enqueue(services, CREATURE)
     job = begin()
     (execution,) = job.execution_registry.get_execution_ids()
     ends = services.redis.zscore(job.started_job_registry.key, f"{job.id}:{execution}")
     assert ends - time.time() > job.timeout
-
-
-ENGINE_FREE = ("supervisor", "heartbeats", "loop", "job_process")
 
 
 def test_the_supervisor_never_loads_jax_and_starts_in_any_folder(tmp_path):
@@ -129,11 +114,16 @@ def test_the_supervisor_never_loads_jax_and_starts_in_any_folder(tmp_path):
 
 
 @pytest.fixture
-def busy(services):
+def heartbeat(services):
+    return Heartbeats(services.sessions, "worker", Device("some device", 8 << 30, {}), lease=20)
+
+
+@pytest.fixture
+def busy(services, heartbeat):
     """A supervisor whose job can be replaced by another process."""
     worker = Supervisor([services.jobs.runs], "worker", serializer=JSONSerializer)
     worker.services, worker.lease, worker.environment = services, 20, {}
-    worker.heartbeats = Heartbeats(services.sessions, "worker", Device("a device", 1, {}), 20.0)
+    worker.heartbeats = heartbeat
     worker.register_birth()
     return worker
 
@@ -164,18 +154,8 @@ def test_a_job_is_stopped_before_its_supervisor_is_killed():
 
 
 @pytest.fixture
-def heartbeat(services):
-    return Heartbeats(services.sessions, "worker", Device("some device", 8 << 30, {}), lease=20)
-
-
-@pytest.fixture
 def killed():
     return []
-
-
-def change(services, **values):
-    with services.sessions.write.begin() as session:
-        session.execute(update(Run).values(**values))
 
 
 @pytest.fixture
@@ -189,7 +169,8 @@ def watched(services, heartbeat, run_id, killed):
 def test_a_heartbeat_renews_the_lease_and_reports_device_memory_and_run(
     services, watched, run_id, row, killed
 ):
-    change(services, heartbeat_at=None)
+    with services.sessions.write.begin() as session:
+        session.execute(update(Run).values(heartbeat_at=None))
     watched.beat()
     assert row().heartbeat_at is not None
     with services.sessions.read() as session:
@@ -199,17 +180,17 @@ def test_a_heartbeat_renews_the_lease_and_reports_device_memory_and_run(
     assert not killed
 
 
-def test_the_job_of_a_lost_run_is_killed(services, watched, run_id, killed):
+@pytest.mark.parametrize(
+    ("changes", "patience"),
+    [({"worker": "another"}, 0), ({"status": CANCELLED, "worker": None}, HEARTBEATS_AFTER_END)],
+)
+def test_a_job_that_loses_or_outlives_its_run_is_killed(
+    services, watched, run_id, killed, changes, patience
+):
     watched.beat()
-    change(services, worker="another")
-    watched.beat()
-    assert killed == [run_id]
-
-
-def test_a_job_that_outlives_its_run_is_killed(services, watched, run_id, killed):
-    watched.beat()
-    change(services, status=CANCELLED, worker=None)
-    for _ in range(HEARTBEATS_AFTER_END):
+    with services.sessions.write.begin() as session:
+        session.execute(update(Run).values(**changes))
+    for _ in range(patience):
         watched.beat()
     assert not killed
     watched.beat()

@@ -40,7 +40,6 @@ def revision(sessions: Sessions) -> str | None:
 
 
 def newest() -> str:
-    """Return the last revision that this version knows."""
     head = ScriptDirectory.from_config(config()).get_current_head()
     assert head is not None
     return head

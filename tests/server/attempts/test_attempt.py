@@ -10,8 +10,8 @@ from fsspec.implementations.local import LocalFileSystem
 from sqlalchemy.exc import OperationalError
 
 from server.attempts import attempt as attempts
-from server.attempts import retry
 from server.attempts.claim import claimed
+from server.core import database
 from server.runs import lifecycle
 from server.storage.artifacts import Artifacts
 from server.tables import Run
@@ -149,7 +149,7 @@ def test_a_running_run_cannot_be_claimed(held):
 @pytest.fixture
 def away(monkeypatch):
     """A database that fails a number of times."""
-    monkeypatch.setattr(retry, "RETRY_SECONDS", 0)
+    monkeypatch.setattr(database, "RETRY_SECONDS", 0)
 
     def leave(tries):
         answers = [OperationalError("", {}, Exception("away"))] * tries

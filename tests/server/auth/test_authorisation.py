@@ -22,10 +22,10 @@ from server.settings import Settings
 from server.shares import publishing
 from server.shares.routes import own_share
 from server.shares.schemas import ShareCreate
-from server.sweeps.deps import own_sweep
+from server.sweeps.commands import request_of, submit_sweep
 from server.sweeps.plan import plan
+from server.sweeps.routes import own_sweep
 from server.sweeps.schemas import SweepCreate
-from server.sweeps.submission import request_of, submit_sweep
 from server.tables import Token
 
 ROOT = "/api/v1"

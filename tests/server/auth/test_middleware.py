@@ -10,8 +10,8 @@ from pydantic import SecretStr
 from sqlalchemy.exc import OperationalError
 
 from server.auth import authenticate, tokens
+from server.auth.authenticate import ADDRESSES, BURST, INTERVAL, RateLimit, network_of
 from server.auth.cookies import COOKIE
-from server.auth.ratelimit import ADDRESSES, BURST, INTERVAL, RateLimit, network_of
 from server.settings import MIN_TOKEN_LENGTH, Settings
 
 

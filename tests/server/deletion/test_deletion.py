@@ -189,7 +189,7 @@ def test_a_file_that_cannot_be_removed_is_removed_later(
 
     finish(services, run_id, report(1, {0: 1.0}))
     with monkeypatch.context() as patch:
-        patch.setattr(services.artifacts, "delete_folder", refuse)
+        patch.setattr(services.artifacts, "delete", refuse)
         delete_for_good(api, services, run_id)
     assert len(files(services)) == rows(services)["garbage_files"] == 1
     reconcile(services)

@@ -3,7 +3,7 @@
 import httpx
 import pytest
 
-from server.maintenance import health
+from server.maintenance import health_report
 from server.tables import migrations
 from server.workers import registry
 
@@ -30,9 +30,9 @@ def test_a_part_that_does_not_answer_is_reported_with_its_error(services, serve,
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(services.artifacts, "write", full)
-    assert "No space left" in health.disk(services).error
+    assert "No space left" in health_report.disk(services).error
     monkeypatch.setattr(migrations, "newest", lambda: "9999")
-    assert health.database(services).newest_revision == "9999"
+    assert health_report.database(services).newest_revision == "9999"
     with serve(redis_url="redis://127.0.0.1:1/0") as address:
         found = httpx.get(f"{address}/api/v1/health", timeout=30).json()
     assert found["redis"]["reachable"] is False
@@ -40,4 +40,4 @@ def test_a_part_that_does_not_answer_is_reported_with_its_error(services, serve,
 
 
 def test_the_location_of_the_database_has_no_password(services):
-    assert "@" not in health.database(services).location
+    assert "@" not in health_report.database(services).location

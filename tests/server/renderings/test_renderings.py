@@ -31,7 +31,7 @@ def test_a_rendering_job_that_vanishes_is_no_error(services, known, monkeypatch)
     job = services.jobs.find(services.jobs.rendering_id(known))
     services.jobs.forget(job.id)
     monkeypatch.setattr(services.jobs, "find", lambda _: job)
-    renderings.order(services, known)
+    renderings.enqueue(services, known)
 
 
 def test_a_range_beyond_all_numbers_is_ignored(api, services, known):

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from server.auth.share_access import SHARE_HEADER
+from server.auth.authorize import SHARE_HEADER
 
 
 @pytest.fixture

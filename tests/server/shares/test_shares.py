@@ -9,7 +9,7 @@ from answers import detail, fields
 from pydantic import SecretStr
 
 from microcosmos.archive import creature
-from server.auth.share_access import SHARE_HEADER
+from server.auth.authorize import SHARE_HEADER
 from server.renderings import storage as renderings
 from server.tables import PREVIEW, Share
 

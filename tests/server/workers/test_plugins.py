@@ -207,8 +207,9 @@ def test_plug_ins_that_no_worker_has_together_are_named(services, have):
         alive = KnownPlugins(services, session).alive
     task = {"fitness": "mine.straight", "plugin": {"source": A, "title": "x"}}
     body = {"builder": "mine.cross", "plugin": {"source": B, "title": "x"}}
-    assert plugins.needed_versions({"task": task, "body": body}) == [A, B]
-    assert "none has them together" in plugins.missing(alive, {"task": task, "body": body})
+    document = {"task": task, "body": body}
+    assert plugins.needed_versions(document) == [A, B]
+    assert "none has them together" in plugins.missing_plugins(alive, document)
 
 
 def test_plugin_gaits_encodings_and_folded_bodies_are_queued(api, have, mine, sweep, waiting):

@@ -3,7 +3,6 @@
 import shutil
 import time
 from pathlib import Path
-from typing import Literal
 from urllib.parse import urlsplit
 from uuid import uuid4
 
@@ -11,7 +10,6 @@ import psutil
 from redis import RedisError
 from sqlalchemy import text
 from sqlalchemy.exc import SQLAlchemyError
-from sqlalchemy.orm import Session
 
 from microcosmos.version import VERSION
 
@@ -21,7 +19,6 @@ from ..tables import migrations
 from ..workers import registry
 
 PROBE = bytes(4096)
-Answer = Literal["ok", "unreachable"]
 
 
 class DatabaseHealth(Wire):
@@ -71,22 +68,6 @@ class HealthReport(Wire):
     """Jobs that wait, by queue; empty where Redis does not answer."""
     workers: dict[str, int]
     """Live workers by status; empty where the database does not answer."""
-
-
-def database_answers(session: Session) -> Answer:
-    try:
-        session.execute(text("SELECT 1"))
-    except SQLAlchemyError:
-        return "unreachable"
-    return "ok"
-
-
-def redis_answers(services: Services) -> Answer:
-    try:
-        services.redis.ping()
-    except RedisError:
-        return "unreachable"
-    return "ok"
 
 
 def database(services: Services) -> DatabaseHealth:
