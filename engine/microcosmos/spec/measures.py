@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from ..naming import MeasureName as Name
-
 Scale = Literal["log10", "linear"]
 
 
