@@ -1,9 +1,7 @@
 """The measures of every evaluation, and the default axis of each."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
-
-from ..naming import MeasureName as Name
+from typing import Literal
 
 Scale = Literal["log10", "linear"]
 
@@ -42,8 +40,3 @@ MEASURES: dict[str, Measure] = {
     "nodes": Measure("Nodes", "", 0.0, 64.0),
 }
 """The measures, in the order in which they are recorded."""
-
-if TYPE_CHECKING:
-    Name = str
-else:
-    Name = Literal[tuple(MEASURES)]

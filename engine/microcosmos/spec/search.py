@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 
+from ..naming import MeasureName
 from ..plugins.declaration import refuse_empty_axis
 from . import measures
 from .base import Digest, Part, after, field
@@ -45,7 +46,7 @@ def _end(schema: dict[str, Any]) -> None:
 class Descriptor(Part):
     """One axis of the archive."""
 
-    name: Annotated[measures.Name, *OR_PLUGIN]
+    name: Annotated[MeasureName, *OR_PLUGIN]
     """Measure on the axis; it provides the default ends and scale."""
     low: float = Field(default=0.0, ge=-1e30, le=1e30, json_schema_extra=_end)
     """Lower end of the axis; lower values count in the first bin."""

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from microcosmos import bodies, filaments, search, spec, world
+from microcosmos.naming import MeasureName
 from microcosmos.search.measures import curvature, efficiency, symmetry
 from microcosmos.spec import measures
 
@@ -16,7 +17,7 @@ STEPS = 40
 
 @pytest.mark.fast
 def test_the_table_of_axes_names_what_is_recorded_in_the_same_order():
-    assert tuple(measures.MEASURES) == search.MEASURES == get_args(measures.Name)
+    assert tuple(measures.MEASURES) == search.MEASURES == get_args(MeasureName)
     for name, measure in measures.MEASURES.items():
         axis = spec.Descriptor.model_validate({"name": name})
         assert (axis.low, axis.high, axis.scale) == (measure.low, measure.high, measure.scale)

@@ -1,22 +1,282 @@
-"""All tables as the models declare them.
+"""All tables."""
 
-Nothing has been released, so tables change in place. The first release replaces this revision
-by a generated one, which later changes of the models leave as it is.
-"""
+from typing import Any
 
+import sqlalchemy as sa
 from alembic import op
-
-from server.tables import Base
 
 revision = "0001"
 down_revision = None
 branch_labels = None
 depends_on = None
 
+HASH, MOMENT = sa.LargeBinary(length=32), sa.DateTime(timezone=True)
+JSON_OR_NULL = sa.JSON(none_as_null=True)
+
+
+def _required(kind: Any, *names: str) -> list[sa.Column[Any]]:
+    return [sa.Column(name, kind, nullable=False) for name in names]
+
+
+def _optional(kind: Any, *names: str) -> list[sa.Column[Any]]:
+    return [sa.Column(name, kind) for name in names]
+
+
+def _to_creature() -> sa.ForeignKey:
+    return sa.ForeignKey("creatures.sha256")
+
+
+def _to_run() -> sa.ForeignKey:
+    return sa.ForeignKey("runs.id", ondelete="CASCADE")
+
 
 def upgrade() -> None:
-    Base.metadata.create_all(op.get_bind())
+    for create in (
+        _creatures,
+        _workers,
+        _runs,
+        _sweeps_and_logs,
+        _tokens,
+        _files,
+        _results,
+        _shares,
+    ):
+        create()
+
+
+def _creatures() -> None:
+    op.create_table(
+        "creatures",
+        sa.Column("sha256", HASH, primary_key=True),
+        sa.Column("identity", sa.LargeBinary(), nullable=False),
+        *_required(sa.JSON(), "parents", "credit"),
+        sa.Column("operator", sa.Text()),
+        *_optional(JSON_OR_NULL, "measured", "provenance"),
+        sa.Column("licence", sa.Text(), nullable=False),
+        sa.Column("created_at", MOMENT, nullable=False),
+        sa.Column("imported", sa.Boolean(), nullable=False),
+    )
+    op.create_table(
+        "garbage_creatures",
+        sa.Column("run_id", sa.Uuid(), primary_key=True),
+        sa.Column("creature", HASH, primary_key=True),
+    )
+    op.create_table(
+        "parents",
+        sa.Column("child", HASH, _to_creature(), primary_key=True),
+        sa.Column("position", sa.Integer(), primary_key=True, autoincrement=False),
+        sa.Column("parent", HASH, nullable=False),
+    )
+    op.create_index("ix_parents_parent", "parents", ["parent"])
+
+
+def _workers() -> None:
+    op.create_table(
+        "plugins",
+        sa.Column("kind", sa.String(length=16), primary_key=True),
+        sa.Column("name", sa.String(length=128), primary_key=True),
+        sa.Column("source", HASH, primary_key=True),
+        sa.Column("declaration", sa.JSON(), nullable=False),
+        sa.Column("seen_at", MOMENT, nullable=False),
+    )
+    op.create_table(
+        "workers",
+        sa.Column("name", sa.String(length=255), primary_key=True),
+        sa.Column("device", sa.Text(), nullable=False),
+        *_required(sa.String(length=16), "kind", "status"),
+        sa.Column("memory_bytes", sa.BigInteger(), nullable=False),
+        sa.Column("memory_used_bytes", sa.BigInteger()),
+        sa.Column("load", sa.Double()),
+        sa.Column("run_id", sa.Uuid()),
+        *_required(MOMENT, "since", "heartbeat_at"),
+        *_required(sa.JSON(), "plugins", "unloaded"),
+    )
+
+
+def _runs() -> None:
+    op.create_table(
+        "runs",
+        sa.Column("id", sa.Uuid(), primary_key=True),
+        *_required(sa.String(length=64), "experiment", "version"),
+        sa.Column("spec", JSON_OR_NULL, nullable=False),
+        *_optional(JSON_OR_NULL, "plugin_versions", "summary"),
+        sa.Column("demonstration", sa.Boolean(), nullable=False),
+        sa.Column("name", sa.String(length=200)),
+        sa.Column("tags", sa.JSON(), nullable=False),
+        *_optional(sa.Text(), "note", "device", "error", "warning"),
+        sa.Column("status", sa.String(length=16), nullable=False),
+        *_optional(sa.String(length=16), "requested_state", "device_override"),
+        *_optional(
+            MOMENT,
+            "requested_at",
+            "started_at",
+            "finished_at",
+            "heartbeat_at",
+            "deleted_at",
+            "purge_at",
+        ),
+        *_required(MOMENT, "created_at", "queued_at"),
+        *_required(
+            sa.Integer(),
+            "attempt",
+            "attempts_without_checkpoint",
+            "generations",
+            "generation",
+            "checkpoint_generation",
+        ),
+        sa.Column("worker", sa.String(length=255)),
+        *_required(sa.BigInteger(), "evaluations", "diverged"),
+        sa.Column("seconds", sa.Double(), nullable=False),
+        *_optional(sa.Double(), "qd_score", "coverage", "best"),
+        *_optional(sa.Uuid(), "sweep", "forked_from", "owner"),
+        *_optional(sa.Integer(), "sweep_index", "n_initial"),
+        sa.CheckConstraint(
+            "requested_state IN ('paused', 'cancelled')", name="requested_state"
+        ),
+        sa.CheckConstraint(
+            "status IN ('queued', 'running', 'paused', 'finished', 'failed', 'cancelled')",
+            name="status",
+        ),
+    )
+    op.create_index("ix_runs_created_at_id", "runs", ["created_at", "id"])
+    op.create_index("ix_runs_purge_at", "runs", ["purge_at"])
+    op.create_index("ix_runs_status_heartbeat_at", "runs", ["status", "heartbeat_at"])
+    op.create_index("ix_runs_sweep_sweep_index", "runs", ["sweep", "sweep_index"])
+
+
+def _sweeps_and_logs() -> None:
+    op.create_table(
+        "sweeps",
+        sa.Column("id", sa.Uuid(), primary_key=True),
+        sa.Column("experiment", sa.String(length=64), nullable=False),
+        sa.Column("name", sa.String(length=200)),
+        *_required(JSON_OR_NULL, "spec", "grid"),
+        sa.Column("seeds", sa.JSON(), nullable=False),
+        sa.Column("created_at", MOMENT, nullable=False),
+        sa.Column("owner", sa.Uuid()),
+    )
+    op.create_index("ix_sweeps_created_at_id", "sweeps", ["created_at", "id"])
+    op.create_table(
+        "idempotency",
+        sa.Column("key", sa.String(length=255), primary_key=True),
+        sa.Column("body_sha256", HASH, nullable=False),
+        sa.Column("run_id", sa.Uuid(), _to_run()),
+        sa.Column("sweep", sa.Uuid(), sa.ForeignKey("sweeps.id", ondelete="CASCADE")),
+        sa.Column("created_at", MOMENT, nullable=False),
+    )
+    op.create_table(
+        "log_entries",
+        sa.Column("id", sa.Integer(), primary_key=True),
+        sa.Column("run_id", sa.Uuid(), _to_run(), nullable=False),
+        sa.Column("at", MOMENT, nullable=False),
+        sa.Column("level", sa.String(length=16), nullable=False),
+        sa.Column("attempt", sa.Integer(), nullable=False),
+        sa.Column("kind", sa.String(length=16)),
+        sa.Column("text", sa.Text(), nullable=False),
+    )
+    op.create_index("ix_log_entries_run_id_id", "log_entries", ["run_id", "id"])
+
+
+def _tokens() -> None:
+    op.create_table(
+        "tokens",
+        sa.Column("id", sa.Uuid(), primary_key=True),
+        sa.Column("name", sa.String(length=64), nullable=False),
+        sa.Column("secret_sha256", HASH, nullable=False),
+        *_required(sa.String(length=16), "prefix", "scope"),
+        sa.Column("created_at", MOMENT, nullable=False),
+        *_optional(MOMENT, "expires_at", "revoked_at", "last_used_at"),
+        sa.CheckConstraint("scope IN ('read', 'write', 'admin')", name="scope"),
+        sa.UniqueConstraint("secret_sha256"),
+    )
+    op.create_index(
+        "ix_tokens_name",
+        "tokens",
+        ["name"],
+        unique=True,
+        sqlite_where=sa.text("revoked_at IS NULL"),
+        postgresql_where=sa.text("revoked_at IS NULL"),
+    )
+
+
+def _files() -> None:
+    op.create_table(
+        "garbage_files",
+        sa.Column("path", sa.String(length=255), primary_key=True),
+    )
+    op.create_table(
+        "artifacts",
+        sa.Column("path", sa.String(length=255), primary_key=True),
+        sa.Column("kind", sa.String(length=16), nullable=False),
+        sa.Column("run_id", sa.Uuid(), _to_run()),
+        *_optional(sa.Integer(), "number", "generation"),
+        sa.Column("creature", HASH, _to_creature()),
+        sa.Column("size", sa.BigInteger(), nullable=False),
+        sa.Column("sha256", HASH, nullable=False),
+        sa.Column("created_at", MOMENT, nullable=False),
+        sa.UniqueConstraint("creature", "kind"),
+        sa.UniqueConstraint("run_id", "kind", "number"),
+    )
+    op.create_table(
+        "initial_creatures",
+        sa.Column("run_id", sa.Uuid(), _to_run(), primary_key=True),
+        sa.Column("creature", HASH, _to_creature(), primary_key=True),
+    )
+    op.create_index("ix_initial_creatures_creature", "initial_creatures", ["creature"])
+
+
+def _results() -> None:
+    op.create_table(
+        "elites",
+        sa.Column("run_id", sa.Uuid(), _to_run(), primary_key=True),
+        sa.Column("cell", sa.Integer(), primary_key=True, autoincrement=False),
+        sa.Column("generation", sa.Integer(), primary_key=True, autoincrement=False),
+        sa.Column("fitness", sa.Double(), nullable=False),
+        sa.Column("descriptors", sa.JSON(), nullable=False),
+        sa.Column("creature", HASH, _to_creature(), nullable=False),
+    )
+    op.create_index("ix_elites_creature", "elites", ["creature"])
+    op.create_table(
+        "generations",
+        sa.Column("run_id", sa.Uuid(), _to_run(), primary_key=True),
+        sa.Column("generation", sa.Integer(), primary_key=True, autoincrement=False),
+        *_optional(sa.Double(), "qd_score", "coverage", "best", "mean"),
+        *_required(sa.BigInteger(), "evaluations", "diverged"),
+        sa.Column("seconds", sa.Double(), nullable=False),
+        sa.Column("summary", JSON_OR_NULL),
+    )
+    op.create_table(
+        "results",
+        sa.Column("run_id", sa.Uuid(), _to_run(), primary_key=True),
+        sa.Column("number", sa.Integer(), primary_key=True, autoincrement=False),
+        sa.Column("generation", sa.Integer(), nullable=False),
+        sa.Column("values", JSON_OR_NULL, nullable=False),
+        sa.Column("creature", HASH, _to_creature()),
+    )
+    op.create_index("ix_results_creature", "results", ["creature"])
+
+
+def _shares() -> None:
+    op.create_table(
+        "shares",
+        sa.Column("slug", sa.String(length=43), primary_key=True),
+        sa.Column("creature", HASH, _to_creature()),
+        sa.Column("run_id", sa.Uuid(), _to_run()),
+        sa.Column("generation", sa.Integer()),
+        sa.Column("cover", HASH, _to_creature(), nullable=False),
+        *_required(sa.Text(), "title", "licence"),
+        sa.Column("credit", sa.JSON(), nullable=False),
+        sa.Column("listed", sa.Boolean(), nullable=False),
+        sa.Column("created_at", MOMENT, nullable=False),
+        *_optional(MOMENT, "expires_at", "revoked_at"),
+        sa.Column("owner", sa.Uuid()),
+        sa.CheckConstraint("(creature IS NULL) <> (run_id IS NULL)", name="one_thing"),
+    )
+    op.create_index("ix_shares_created_at_slug", "shares", ["created_at", "slug"])
 
 
 def downgrade() -> None:
-    Base.metadata.drop_all(op.get_bind())
+    tables = sa.inspect(op.get_bind()).get_table_names()
+    metadata = sa.MetaData()
+    metadata.reflect(op.get_bind(), only=[name for name in tables if name != "alembic_version"])
+    metadata.drop_all(op.get_bind())

@@ -1,0 +1,66 @@
+"""Tables of creatures, their parents, and the runs that start from them."""
+
+from datetime import datetime
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy import ForeignKey, Index, Text
+from sqlalchemy.orm import Mapped, mapped_column
+
+from ..core.database import clock
+from .base import Base, Sha256
+
+
+class Creature(Base):
+    """A creature. It stays after another one has taken its cell."""
+
+    __tablename__ = "creatures"
+
+    sha256: Mapped[str] = mapped_column(Sha256, primary_key=True)
+    identity: Mapped[bytes]
+    """The canonical bytes, whose hash is the name."""
+    parents: Mapped[list[str]]
+    operator: Mapped[str | None] = mapped_column(Text)
+    measured: Mapped[dict[str, Any] | None]
+    provenance: Mapped[dict[str, Any] | None]
+    """Generation, seed, version, without the parents and the operator."""
+    licence: Mapped[str] = mapped_column(Text)
+    credit: Mapped[list[str]] = mapped_column(default=list)
+    """People to name wherever the creature is shown."""
+    created_at: Mapped[datetime] = mapped_column(default=clock())
+    imported: Mapped[bool] = mapped_column(default=False)
+    """An imported creature stays without any run."""
+
+
+class Parent(Base):
+    """One parent of a creature; narrow, so that children are found as fast as parents."""
+
+    __tablename__ = "parents"
+    __table_args__ = (Index(None, "parent"),)
+
+    child: Mapped[str] = mapped_column(Sha256, ForeignKey("creatures.sha256"), primary_key=True)
+    position: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    parent: Mapped[str] = mapped_column(Sha256)
+    """Only elites are kept as creatures, so the parent may have no row."""
+
+
+class InitialCreature(Base):
+    """A creature that a run starts from, by its spec."""
+
+    __tablename__ = "initial_creatures"
+
+    run_id: Mapped[UUID] = mapped_column(
+        ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True
+    )
+    creature: Mapped[str] = mapped_column(
+        Sha256, ForeignKey("creatures.sha256"), primary_key=True, index=True
+    )
+
+
+class GarbageCreature(Base):
+    """A creature to delete once its run is gone, unless something else uses it."""
+
+    __tablename__ = "garbage_creatures"
+
+    run_id: Mapped[UUID] = mapped_column(primary_key=True)
+    creature: Mapped[str] = mapped_column(Sha256, primary_key=True)
