@@ -94,7 +94,7 @@ peers: install
 bench: peers web
 	$(BIN)/python engine/benchmarks/physics.py
 	$(BIN)/python engine/benchmarks/gradients.py
-	$(BIN)/python engine/benchmarks/derivatives.py
+	$(BIN)/python engine/benchmarks/cma_mega.py
 	$(BIN)/python engine/benchmarks/archive.py
 	$(BIN)/python engine/benchmarks/networks.py
 	$(BIN)/python engine/benchmarks/xor.py

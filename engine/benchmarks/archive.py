@@ -14,7 +14,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import timing
-from functions import FUNCTIONS, ours, theirs
+from functions import FUNCTIONS, ours, qdax
 
 from microcosmos import device, genomes, search
 
@@ -88,7 +88,7 @@ def tessellation(count: int) -> None:
 
 def scores() -> None:
     """Print the QD score of MAP-Elites on plain functions, ours and QDax's."""
-    libraries = {"ours": ours} | ({"QDax": theirs} if timing.installed("qdax") else {})
+    libraries = {"ours": ours} | ({"QDax": qdax} if timing.installed("qdax") else {})
     rows = []
     for name in FUNCTIONS:
         columns = ([run(name, seed) for seed in SEEDS] for run in libraries.values())

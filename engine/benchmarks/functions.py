@@ -54,7 +54,7 @@ def ours(name: str, seed: int, generations: int = GENERATIONS, batch: int = BATC
     return score(loops.ours(emitter, function, cells(), GENES, generations, seed), name)
 
 
-def theirs(name: str, seed: int, generations: int = GENERATIONS, batch: int = BATCH) -> float:
+def qdax(name: str, seed: int, generations: int = GENERATIONS, batch: int = BATCH) -> float:
     """Return the QD score of QDax with the same operator, budget and centroids."""
     standard: Any = importlib.import_module("qdax.core.emitters.standard_emitters")
     operators: Any = importlib.import_module("qdax.core.emitters.mutation_operators")

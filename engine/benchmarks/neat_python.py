@@ -6,7 +6,7 @@ import tempfile
 import time
 from typing import Any
 
-from populations import GROWTH, LINES, OUTPUTS, STEPS_APART
+from populations import ANCESTORS, GROWTH, OUTPUTS, STEPS_APART
 
 CONFIG = """
 [NEAT]
@@ -56,7 +56,7 @@ FIXED = dict.fromkeys(VARIED, 0.0) | {"init_mean": 1.0} | LIMITS
 GENES = {"bias": VARIED, "weight": VARIED, "response": FIXED}
 
 
-class Theirs:
+class NeatPython:
     """A population of neat-python's that advances by generations."""
 
     def __init__(self, peer: Any, size: int, hidden: int) -> None:
@@ -73,13 +73,13 @@ class Theirs:
     def _grow(self, hidden: int) -> None:
         """Grow as `grown` does: copy a few ancestors, then vary each copy."""
         settings, networks = self.config.genome_config, self.population.population
-        ancestors = list(networks.values())[:LINES]
+        ancestors = list(networks.values())[:ANCESTORS]
         for one in ancestors:
             for _ in range(2 * hidden - STEPS_APART):
                 self._vary(one, settings)
         for place, one in enumerate(networks.values()):
-            if place >= LINES:
-                ancestor = ancestors[place % LINES]
+            if place >= ANCESTORS:
+                ancestor = ancestors[place % ANCESTORS]
                 one.nodes = {k: gene.copy() for k, gene in ancestor.nodes.items()}
                 one.connections = {k: gene.copy() for k, gene in ancestor.connections.items()}
         for one in networks.values():
@@ -96,16 +96,16 @@ class Theirs:
 
     def advance(self) -> float:
         """Advance by one generation; return its seconds."""
-        it, config = self.population, self.config
-        for network in it.population.values():
+        peer, config = self.population, self.config
+        for network in peer.population.values():
             network.fitness = random.random()
         start = time.perf_counter()
-        it.population = it.reproduction.reproduce(
-            config, it.species, config.pop_size, it.generation
+        peer.population = peer.reproduction.reproduce(
+            config, peer.species, config.pop_size, peer.generation
         )
-        it.species.speciate(config, it.population, it.generation)
+        peer.species.speciate(config, peer.population, peer.generation)
         seconds = time.perf_counter() - start
-        it.generation += 1
+        peer.generation += 1
         return seconds
 
     def sizes(self) -> tuple[float, float, int]:

@@ -13,7 +13,7 @@ from typing import Any
 import jax
 import neat_python
 import timing
-from populations import INPUTS, OUTPUTS, Ours, grown
+from populations import INPUTS, OUTPUTS, OurPopulation, grown
 
 from microcosmos import device, genomes, search
 
@@ -34,12 +34,12 @@ def main() -> None:
         forward(hidden)
 
 
-def compare(peer: ModuleType | None, size: int, hidden: int, repeats: int, slow: int) -> None:
+def compare(peer: ModuleType | None, size: int, hidden: int, repeats: int, theirs: int) -> None:
     """Print a row for each library: the median time of a generation, and its ratio."""
-    ours = Ours(size, hidden)
+    ours = OurPopulation(size, hidden)
     libraries: dict[str, tuple[Any, int]] = {"ours": (ours, repeats)}
     if peer:
-        libraries["neat-python"] = (neat_python.Theirs(peer, size, hidden), slow)
+        libraries["neat-python"] = (neat_python.NeatPython(peer, size, hidden), theirs)
     seconds: dict[str, list[float]] = {name: [] for name in libraries}
     for repeat in range(repeats):
         for name, (population, count) in libraries.items():
@@ -51,7 +51,7 @@ def compare(peer: ModuleType | None, size: int, hidden: int, repeats: int, slow:
         median = statistics.median(seconds[name])
         sizes = (f"{nodes:.1f}", f"{connections:.1f}", f"{species}")
         rows.append((name, f"{1e3 * median:.1f}", f"{median / first:.1f}", *sizes))
-    title = f"Next generation of {size:,} networks, {repeats} and {slow} repeats, interleaved"
+    title = f"Next generation of {size:,} networks, {repeats} and {theirs} repeats, interleaved"
     columns = ("", "ms", "× ours", "hidden nodes", "connections", "species")
     timing.print_table(f"{title}; compilation {ours.compilation:.1f} s", columns, rows)
 

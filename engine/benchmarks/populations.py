@@ -11,7 +11,7 @@ import numpy as np
 from microcosmos import genomes, neat
 
 INPUTS, OUTPUTS, NODES, CONNECTIONS = 4, 2, 50, 100
-LINES, STEPS_APART = 8, 3
+ANCESTORS, STEPS_APART = 8, 3
 """The number of ancestors, and of variations since their copies diverged."""
 SETTINGS = neat.PRESETS["tensorneat"]
 GROWTH = replace(SETTINGS.rates, add_node=0.5, add_connection=0.3, blind=False)
@@ -24,7 +24,7 @@ next_generation = jax.jit(
 )
 
 
-class Ours:
+class OurPopulation:
     """A population of ours that advances by generations."""
 
     def __init__(self, size: int, hidden: int) -> None:
@@ -61,7 +61,7 @@ def grown(size: int, hidden: int) -> tuple[genomes.CPPN, neat.Counters]:
     for step in range(2 * hidden):
         networks, counters = vary(networks, counters, jax.random.key(step))
         if step == 2 * hidden - STEPS_APART - 1:
-            networks = jax.tree.map(lambda x: x[jnp.arange(size) % LINES], networks)
+            networks = jax.tree.map(lambda x: x[jnp.arange(size) % ANCESTORS], networks)
     return networks, counters
 
 

@@ -21,11 +21,11 @@ from ..filaments import Rest
 from ..genomes import Drive
 from ..viz.replay import CELL_STEPS, actuator_of, unmeasured
 from .variants import (
+    at_full_strength,
     body_of,
     other_delta,
     reciprocal,
     refine,
-    strong,
     with_other_delta,
 )
 
@@ -88,7 +88,7 @@ def audit(file: Mapping[str, Any]) -> dict[str, Any]:
     body, rest = _developed(scene, driven, rest)
     refined, _ = _simulate_rest(*refine(scene, rest, body))
     other, _ = _simulate_rest(with_other_delta(scene, body), rest)
-    back, _ = _simulate_rest(strong(scene, body), reciprocal(rest))
+    back, _ = _simulate_rest(at_full_strength(scene, body), reciprocal(rest))
     rows = [
         *_simulation_rows(scene, nominal),
         _agreement_row(

@@ -49,14 +49,14 @@ def _repeat(file: Mapping[str, Any]) -> dict[str, float]:
     scene, block = creature.scene_of(file), file["measured"]["block"]
     if isinstance(scene.control, Gait):
         program, point = build_stroke_block(scene), build_point(scene)
-        found = search.evaluate_blocks(program, _alone(point), block=block)
+        found = search.evaluate_blocks(program, _batch_of_one(point), block=block)
         return dict(zip(search.STROKE_MEASURES, found.measures[0].tolist(), strict=True))
     genotype = actuator_of(file, scene)
-    found = search.evaluate_blocks(build_block(scene), _alone(genotype), block=block)
+    found = search.evaluate_blocks(build_block(scene), _batch_of_one(genotype), block=block)
     return dict(zip(measures_of(scene), found.measures[0].tolist(), strict=True))
 
 
-def _alone(item: Any) -> Any:
+def _batch_of_one(item: Any) -> Any:
     return jax.tree.map(lambda x: np.asarray(x)[None], item)
 
 
@@ -82,11 +82,11 @@ def differing(recorded: Mapping[str, float], repeated: Mapping[str, float]) -> l
     """Return the measures that differ, largest relative difference first."""
     both = {name: (value, repeated.get(name, np.nan)) for name, value in recorded.items()}
     wrong = [name for name, (value, other) in both.items() if value != other]
-    wrong.sort(key=lambda name: (-_share(*both[name]), name))
+    wrong.sort(key=lambda name: (-_relative_difference(*both[name]), name))
     return [_compared(name, *both[name]) for name in wrong]
 
 
-def _share(recorded: float, repeated: float) -> float:
+def _relative_difference(recorded: float, repeated: float) -> float:
     if not np.isfinite(repeated):
         return np.inf
     return abs(repeated - recorded) / max(abs(recorded), 1e-30)

@@ -91,7 +91,7 @@ def with_other_delta(scene: spec.Scene, body: bodies.Body | None = None) -> sear
     return _with(scene, body, kernel=other_delta(scene))
 
 
-def strong(scene: spec.Scene, body: bodies.Body | None = None) -> search.Task:
+def at_full_strength(scene: spec.Scene, body: bodies.Body | None = None) -> search.Task:
     """Return the scene with actuators of full strength.
 
     A soft body lags behind its rest shape: its shapes are not reciprocal although the gait is.

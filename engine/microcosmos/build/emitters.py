@@ -76,7 +76,7 @@ def _population(
         assert encoding.room is not None
         backend = tensorneat.build(settings, inputs, outputs, *encoding.room)
         return TensorNeat(slots, backend, chosen.seed)
-    return emitters.population.Neat(slots, encoding.newcomer, settings, inputs, outputs)
+    return emitters.PopulationNeat(slots, encoding.newcomer, settings, inputs, outputs)
 
 
 def build_settings(

@@ -16,8 +16,8 @@ def build_encoding(scene: spec.Scene, room: tuple[int, int]) -> genomes.Encoding
     if isinstance(control, spec.Gait):
         raise ValueError("`control` must have a genome, got a hand-made gait")
     if isinstance(control, spec.Fold):
-        lengths = LENGTHS[control.lengths]
-        return genomes.Fold(body.rest_angle, body.rest_length, scene.task.steps, lengths)
+        steps, lengths = scene.task.steps, LENGTHS[control.lengths]
+        return genomes.FoldEncoding(body.rest_angle, body.rest_length, steps, lengths)
     controls = build_controls(control, body, scene.task.steps)
     return _encoding(control, controls, body, room)
 

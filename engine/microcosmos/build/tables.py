@@ -34,7 +34,7 @@ def build_scaling(chosen: spec.Scaling) -> TableRun:
 
     def rows(number: int, stop: Callable[[], bool]) -> tuple[Row, ...]:
         nodes = chosen.nodes[number]
-        plan = scaling.Plan(chosen.steps, chosen.part_steps, device.compiler_options(), stop)
+        plan = scaling.Timing(chosen.steps, chosen.part_steps, device.compiler_options(), stop)
         scene, start = build_crowd(chosen, nodes)
         found = [scaling.step_row(scene, start, plan)]
         if nodes <= chosen.all_pairs:

@@ -8,7 +8,7 @@ from .delta import (
     Windows,
     divided,
     interpolate,
-    only,
+    masked,
     peskin,
     roma,
     spread,

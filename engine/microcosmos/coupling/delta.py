@@ -134,7 +134,7 @@ def divided(at: Windows, plane: Plane) -> Windows:
     return Windows(at.cells, at.weights, at.points, density)
 
 
-def only(at: Windows, present: Bool[Array, "node"] | None) -> Windows:
+def masked(at: Windows, present: Bool[Array, "node"] | None) -> Windows:
     """Empty the windows of absent points."""
     if present is None:
         return at

@@ -80,7 +80,7 @@ class Evolution:
         )
         elites, inserted = programs.insert(state.elites, candidates, state.cells)
         outcome = search.emitters.outcome(candidates, inserted)
-        emitters = offspring.allowed(programs.tell(offspring.emitters, outcome))
+        emitters = offspring.without_replaced(programs.tell(offspring.emitters, outcome))
         inserted = jax.device_get(inserted)
         clipped = search.clipped(candidates, state.cells)
         simulated = offspring.results.simulated + len(evaluation.fitness)

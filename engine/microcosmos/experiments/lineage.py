@@ -31,7 +31,7 @@ def record(
     """
     slots = np.flatnonzero(inserted.entered)
     cells = np.asarray(inserted.cell)[slots]
-    forebears = _forebears(names, state.nearest_ancestors, np.asarray(children.parents))
+    ancestors = _ancestors_of(names, state.nearest_ancestors, np.asarray(children.parents))
     operator, fitness = np.asarray(children.operator), np.asarray(evaluation.fitness)
     measures = np.asarray(evaluation.measures)
     elites = tuple(
@@ -43,14 +43,14 @@ def record(
             cell=int(cell),
             generation=state.generation + 1,
             operator=int(operator[slot]),
-            parents=forebears[slot],
+            parents=ancestors[slot],
             device=plan.device,
         )
         for slot, cell in zip(slots.tolist(), cells, strict=True)
     )
-    new = _entries(plan, elites, forebears[slots])
+    new = _entries(plan, elites, ancestors[slots])
     creatures, operators = state.creatures.copy(), state.operators.copy()
-    device_of, nearest_ancestors = state.device_of.copy(), forebears.copy()
+    device_of, nearest_ancestors = state.device_of.copy(), ancestors.copy()
     operators[cells], device_of[cells] = new.operator, len(state.devices) - 1
     creatures[cells] = new.creature
     nearest_ancestors[slots] = 0
@@ -128,7 +128,7 @@ def measurement(
     }
 
 
-def _forebears(
+def _ancestors_of(
     names: np.ndarray, nearest_ancestors: np.ndarray, parents: np.ndarray
 ) -> np.ndarray:
     """Return recorded creatures (slot, 2, 32) that descendants of parents (slot, 2) come from.
@@ -139,7 +139,7 @@ def _forebears(
     nearest = np.concatenate([names, nearest_ancestors[:, 0], NO_NAME[None]])
     found = nearest[parents]  # −1, for no parent, finds the last row.
     alone = (parents[:, 1] == search.NO_PARENT) & (parents[:, 0] >= len(names))
-    # An only parent that was not recorded passes both of its own forebears on.
+    # An only parent that was not recorded passes both of its own ancestors on.
     found[alone] = nearest_ancestors[parents[alone, 0] - len(names)]
     same = (found[:, 0] == found[:, 1]).all(-1)
     found[same, 1] = 0

@@ -88,7 +88,7 @@ class Offspring:
     before: tuple[tuple[Any] | None, ...] = ()
     """The earlier state of each emitter some of whose children were replaced."""
 
-    def allowed(self, states: tuple[Any, ...]) -> tuple[Any, ...]:
+    def without_replaced(self, states: tuple[Any, ...]) -> tuple[Any, ...]:
         """Return the states; an emitter must not learn from children that replaced its own."""
         pairs = zip_longest(states, self.before)
         return tuple(old[0] if old else new for new, old in pairs)
@@ -101,10 +101,10 @@ def next_offspring(
     first, initial = state.generation * plan.batch, state.initial
     if initial is None or first >= len(initial.creature):
         return _emitted(plan, programs, state, state.elites, state.creatures, stop)
-    found, names = _gathered(plan, state, initial)
+    found, names = _initial_archive(plan, state, initial)
     offspring = _emitted(plan, programs, state, found, names, stop)
     places = np.arange(first, min(first + plan.batch, len(initial.creature)))
-    return _replaced(plan, state, offspring, initial, places)
+    return _with_initial(plan, state, offspring, initial, places)
 
 
 def _emitted(
@@ -126,7 +126,7 @@ def _emitted(
     return Offspring(children, emitters, counters, results, began, names)
 
 
-def _gathered(
+def _initial_archive(
     plan: Plan, state: State, initial: InitialCreatures
 ) -> tuple[search.Elites, np.ndarray]:
     count = min(plan.cell_count, len(initial.creature))
@@ -140,7 +140,7 @@ def _gathered(
     return replace(empty, occupied=occupied, genotypes=genotypes), names
 
 
-def _replaced(
+def _with_initial(
     plan: Plan,
     state: State,
     offspring: Offspring,

@@ -13,7 +13,7 @@ from .. import search
 from ..search.reevaluation import Disturbance, Repeats, disturbance
 from .state import Plan, Reevaluation, State
 
-SAMPLES = 2**30
+FIRST_SAMPLE = 2**30
 """First number of a sample for deriving keys; smaller ones are slots."""
 
 
@@ -36,7 +36,7 @@ def disturb(
     sample: int,
 ) -> Disturbance:
     """Return the conditions in every cell, derived from seed, generation, sample and cell."""
-    turn = jax.random.fold_in(jax.random.fold_in(key, generation), SAMPLES + sample)
+    turn = jax.random.fold_in(jax.random.fold_in(key, generation), FIRST_SAMPLE + sample)
     keys = jax.vmap(lambda cell: jax.random.fold_in(turn, cell))(jnp.arange(cells))
     spread, size = reevaluation.spread, reevaluation.size
     return jax.vmap(lambda key: disturbance(spread, size, key=key))(keys)

@@ -154,7 +154,7 @@ class Refinement:
     def _best(self, state: State, found: search.Evaluation) -> int | None:
         """Return the fittest feasible trial in the creature's cell, if fitter than before."""
         cells = np.asarray(self.cells.of(jnp.asarray(found.measures)))
-        home = self._home(state) if state.table.rows else cells[0]
+        home = self._home_cell(state) if state.table.rows else cells[0]
         fitness = np.where((found.status == 0) & (cells == home), found.fitness, -np.inf)
         best = int(np.argmax(fitness))
         return best if fitness[best] > state.fitness else None
@@ -163,7 +163,7 @@ class Refinement:
         one = jax.tree.map(jnp.asarray, take(self.genotype, 0))
         return jax.device_get(jax.vmap(lambda row: with_genes(one, row))(jnp.asarray(genes)))
 
-    def _home(self, state: State) -> int:
+    def _home_cell(self, state: State) -> int:
         measured = state.table.rows[0].measured
         assert measured is not None
         measures = np.array([[measured["measures"][name] for name in self.measures]])
@@ -226,14 +226,14 @@ def trials_along(genes: np.ndarray, rows: np.ndarray, length: float, count: int)
     `rows` are the slopes of fitness, then of descriptors.
     """
     fitness, descriptors = rows[0], rows[1:]
-    ways = np.stack([_unit(fitness), _unit(_without(fitness, descriptors))])
+    directions = np.stack([_unit(fitness), _unit(_orthogonal_to(fitness, descriptors))])
     lengths = length / TRIAL_RATIO ** np.arange((count + 1) // 2)
-    trials = genes[None, None] + lengths[:, None, None] * ways[None]
+    trials = genes[None, None] + lengths[:, None, None] * directions[None]
     trials = trials.reshape(-1, len(genes))[:count].astype(genes.dtype)
     return Trials(trials, np.repeat(lengths, 2)[:count], float(np.linalg.norm(fitness)))
 
 
-def _without(row: np.ndarray, others: np.ndarray) -> np.ndarray:
+def _orthogonal_to(row: np.ndarray, others: np.ndarray) -> np.ndarray:
     others = others[np.abs(others).sum(1) > 0]
     if not len(others):
         return row

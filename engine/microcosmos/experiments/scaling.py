@@ -85,7 +85,7 @@ Step = Callable[[Scene, world.State], world.State]
 
 
 @dataclass(frozen=True)
-class Plan:
+class Timing:
     """The length of the measurement."""
 
     steps: int
@@ -94,7 +94,7 @@ class Plan:
     stop: Callable[[], bool]
 
 
-def step_row(scene: Scene, start: world.State, plan: Plan) -> dict[str, Value]:
+def step_row(scene: Scene, start: world.State, plan: Timing) -> dict[str, Value]:
     """Measure one number of nodes; times are seconds for 1,000 steps."""
     whole = _compile(_step, scene, start, CHUNK, plan)
     calls = max(1, plan.steps // CHUNK)
@@ -113,7 +113,7 @@ def step_row(scene: Scene, start: world.State, plan: Plan) -> dict[str, Value]:
     }
 
 
-def pairs_row(positions: Float[Array, "node 2"], size: tuple[int, int], plan: Plan) -> dict:
+def pairs_row(positions: Float[Array, "node 2"], size: tuple[int, int], plan: Timing) -> dict:
     """Measure a repulsion between all pairs of nodes, without fluid or constraints."""
 
     def step(scene: None, x: Array) -> Array:
@@ -203,13 +203,13 @@ def _repel(scene: Scene, state: world.State) -> world.State:
     return replace(state, positions=state.positions + 1e-3 * (push + drift))
 
 
-def _median(part: Step, scene: Scene, start: world.State, plan: Plan) -> float:
+def _median(part: Step, scene: Scene, start: world.State, plan: Timing) -> float:
     program = _compile(part, scene, start, plan.part_steps, plan)
     found = [_time(program, scene, start, 1, plan)[0] for _ in range(REPEATS)]
     return float(np.median(found)) * REPORTED / plan.part_steps
 
 
-def _compile(step: Callable, scene: Any, start: Any, steps: int, plan: Plan) -> Any:
+def _compile(step: Callable, scene: Any, start: Any, steps: int, plan: Timing) -> Any:
     def run(scene, state):
         return jax.lax.scan(lambda s, _: (step(scene, s), None), state, None, length=steps)[0]
 
@@ -218,7 +218,7 @@ def _compile(step: Callable, scene: Any, start: Any, steps: int, plan: Plan) -> 
     return program
 
 
-def _time(program: Any, scene: Any, start: Any, calls: int, plan: Plan) -> tuple[float, Any]:
+def _time(program: Any, scene: Any, start: Any, calls: int, plan: Timing) -> tuple[float, Any]:
     state, seconds = start, 0.0
     for _ in range(calls):
         if plan.stop():

@@ -13,7 +13,7 @@ from jaxtyping import Array, Float, Int, PRNGKeyArray, PyTree, UInt8
 
 from .. import neat, search
 from ..genomes import Encoding, Genotype
-from ..search.emitters.population import Neat as PopulationEmitter
+from ..search.emitters.population import PopulationNeat
 
 CURVES = (
     "qd_score",
@@ -238,7 +238,7 @@ def start(plan: Plan) -> State:
 
 
 def _founded(plan: Plan, emitter: search.Emitter, kept: PyTree[Array]) -> PyTree[Array]:
-    if plan.initial is None or not isinstance(emitter, PopulationEmitter):
+    if plan.initial is None or not isinstance(emitter, PopulationNeat):
         return kept
     networks = jax.tree.map(jnp.asarray, plan.initial.genotypes)
     return emitter.founded(kept, networks)

@@ -2,14 +2,14 @@
 
 from .control import CPPNControl
 from .cppn import ACTIVATIONS, CPPN, evaluate, minimal
-from .development import Controls, develop, linear, reading, rest_shape, sine_cosine
+from .development import Controls, develop, linear, network_function, rest_shape, sine_cosine
 from .direct import Direct
 from .encoding import Drive, Encoding
-from .fold import Fold, added, scaled
+from .fold import FoldEncoding, added, scaled
 from .genotype import Genotype, Vector, empty, from_genes, read, take, to_genes, words, write
 from .grown import Grown
 from .plugin import Clock, PluginEncoding
 from .recurrent import advance
-from .shaping import Plan
+from .traits import Plan
 from .waves import fourier, phases, table, wave
 from .weights import Layers, Weights, forward

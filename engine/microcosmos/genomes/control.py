@@ -7,7 +7,14 @@ from jaxtyping import Array, PRNGKeyArray
 
 from ..world import State, World, sense
 from .cppn import CPPN, minimal
-from .development import OUTPUTS, Controls, Read, reading, rest_shape, rest_shapes
+from .development import (
+    OUTPUTS,
+    Controls,
+    NetworkFunction,
+    network_function,
+    rest_shape,
+    rest_shapes,
+)
 from .encoding import Drive, Scalar, shifted
 from .recurrent import drive_recurrent
 
@@ -29,7 +36,7 @@ class CPPNControl:
         controls = replace(self.controls, timer=shifted(self.controls.timer, phase))
         if self.recurrent:
             return drive_recurrent(genotype, controls, world, start)
-        return drive_read(reading(genotype), controls, world, start)
+        return drive_feed_forward(network_function(genotype), controls, world, start)
 
     def size(self, genotype: CPPN) -> tuple[Array, Array]:
         return network_size(genotype, self.controls.inputs + OUTPUTS)
@@ -44,7 +51,9 @@ def network_size(network: CPPN, fixed: int) -> tuple[Array, Array]:
     return jnp.sum(network.node_used) - fixed, jnp.sum(enabled)
 
 
-def drive_read(read: Read, controls: Controls, world: World, start: State) -> Drive:
+def drive_feed_forward(
+    read: NetworkFunction, controls: Controls, world: World, start: State
+) -> Drive:
     """Drive a world by a network without memory."""
     dtype = start.positions.dtype
     if not controls.senses:

@@ -15,7 +15,7 @@ OUTPUTS = 2
 """Rest angle and rest length; a network that grows the body has further outputs."""
 
 Outputs = Float[Array, "2 time node"]
-Read = Callable[[Points], Points]
+NetworkFunction = Callable[[Points], Points]
 """A network as a function of inputs (input, point) with outputs (output, point)."""
 
 
@@ -58,25 +58,25 @@ def linear(steps: int, period: float) -> np.ndarray:
 
 def develop(network: CPPN, controls: Controls) -> Rest:
     """Return the rest angles (time, joint) and rest lengths (time, edge) of a CPPN."""
-    return rest_shapes(reading(network), controls, network.bias.dtype)
+    return rest_shapes(network_function(network), controls, network.bias.dtype)
 
 
-def reading(network: CPPN) -> Read:
+def network_function(network: CPPN) -> NetworkFunction:
     """Return a feed-forward network as a function."""
     return lambda inputs: evaluate(network, inputs, OUTPUTS)
 
 
-def rest_shapes(read: Read, controls: Controls, dtype: Any) -> Rest:
+def rest_shapes(read: NetworkFunction, controls: Controls, dtype: Any) -> Rest:
     """Return the rest shapes at all times, in one batch."""
     steps, nodes = len(controls.ramp), len(controls.position)
     position = np.tile(controls.position, steps)[None]
     clock = jnp.repeat(jnp.asarray(controls.timer, dtype), nodes, 1)
     outputs = read(jnp.concatenate([jnp.asarray(position, dtype), clock]))
-    return applied(outputs.reshape(OUTPUTS, steps, nodes), controls.ramp, controls)
+    return shapes_of_outputs(outputs.reshape(OUTPUTS, steps, nodes), controls.ramp, controls)
 
 
 def rest_shape(
-    read: Read,
+    read: NetworkFunction,
     controls: Controls,
     timer: Float[Array, "input"],
     ramp: Float[Array, ""],
@@ -84,7 +84,7 @@ def rest_shape(
 ) -> Rest:
     """Return the rest shape at one time."""
     outputs = read(network_inputs(controls, timer, sensed))
-    return rest_of_outputs(outputs, ramp, controls)
+    return shape_of_outputs(outputs, ramp, controls)
 
 
 def network_inputs(
@@ -97,13 +97,13 @@ def network_inputs(
     return jnp.concatenate([position, clock, *([] if sensed is None else [sensed[None]])])
 
 
-def rest_of_outputs(outputs: Points, ramp: Float[Array, ""], controls: Controls) -> Rest:
+def shape_of_outputs(outputs: Points, ramp: Float[Array, ""], controls: Controls) -> Rest:
     """Return the rest shape of outputs (output, node) at one time."""
-    rest = applied(outputs[:, None], ramp[None], controls)
+    rest = shapes_of_outputs(outputs[:, None], ramp[None], controls)
     return Rest(rest.angle[0], rest.length[0])
 
 
-def applied(
+def shapes_of_outputs(
     outputs: Outputs, ramp: Float[Array, "time"] | np.ndarray, controls: Controls
 ) -> Rest:
     """Return the rest shapes of a network's outputs.

@@ -11,7 +11,7 @@ from ..world import State, World
 from .development import Controls, actuated
 from .encoding import Drive, Networkless, Scalar, shifted
 from .genotype import Vector, uniform_vector
-from .shaping import Plan, shaped, within
+from .traits import Plan, shaped, within
 from .waves import Basis, phases, wave
 
 CONTROL = ("angles", "lengths")

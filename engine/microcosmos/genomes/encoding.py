@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float, PRNGKeyArray, PyTree
 
 from ..filaments import Rest
-from ..world import State, World, follow, keep
+from ..world import State, World, follow, keep_memory
 
 Scalar = Float[Array, ""]
 
@@ -26,7 +26,7 @@ class Drive:
     start: State
     inputs: PyTree[Array]
     control: Callable[[World, State, Any], Rest] = follow
-    remember: Callable[[World, State, Any], PyTree[Array]] = keep
+    remember: Callable[[World, State, Any], PyTree[Array]] = keep_memory
     length: Scalar | None = None
     """Extent of the body in cells; None: that of the task's body."""
 

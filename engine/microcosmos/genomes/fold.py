@@ -27,7 +27,7 @@ def added(lengths: Array, genes: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Fold(Networkless):
+class FoldEncoding(Networkless):
     """Genes of any size: angles added to the body's, then lengths."""
 
     rest_angle: np.ndarray

@@ -7,11 +7,11 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, PRNGKeyArray
 
 from ..world import State, World
-from .control import drive_read, network_size
+from .control import drive_feed_forward, network_size
 from .cppn import CPPN, evaluate, minimal
 from .development import OUTPUTS, Controls, network_inputs
 from .encoding import Drive, Scalar, shifted
-from .shaping import Plan, Shaped, cut, shaped, within
+from .traits import Plan, Shaped, cut, shaped, within
 
 JOINT_TRAITS = ("rest_angle", "bend")
 """Traits of joints; the others are traits of edges."""
@@ -45,7 +45,7 @@ class Grown:
         def read(inputs):
             return evaluate(genotype, inputs, OUTPUTS)
 
-        driven = drive_read(read, controls, body.world, body.start)
+        driven = drive_feed_forward(read, controls, body.world, body.start)
         return replace(driven, length=body.length)
 
     def grow(self, world: World, start: State, genotype: CPPN) -> Shaped:

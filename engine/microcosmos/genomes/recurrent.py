@@ -12,7 +12,7 @@ from jaxtyping import Array, Float
 
 from ..world import State, World, sense
 from .cppn import ACTIVATIONS, BOUND, CPPN, Points, matrix
-from .development import OUTPUTS, Controls, applied, network_inputs, rest_of_outputs
+from .development import OUTPUTS, Controls, network_inputs, shape_of_outputs, shapes_of_outputs
 from .encoding import Drive
 
 
@@ -46,7 +46,9 @@ def drive_recurrent(network: CPPN, controls: Controls, world: World, start: Stat
             return values, values[rows]
 
         _, outputs = jax.lax.scan(step, nothing, timer)
-        return Drive(world, start, applied(jnp.moveaxis(outputs, 0, 1), ramp, controls))
+        return Drive(
+            world, start, shapes_of_outputs(jnp.moveaxis(outputs, 0, 1), ramp, controls)
+        )
 
     def remember(
         world: World, state: State, given: tuple[Array, Array]
@@ -56,7 +58,7 @@ def drive_recurrent(network: CPPN, controls: Controls, world: World, start: Stat
         )
 
     def control(world: World, state: State, given: tuple[Array, Array]):
-        return rest_of_outputs(state.memory[rows], given[1], controls)
+        return shape_of_outputs(state.memory[rows], given[1], controls)
 
     start = replace(start, memory=nothing)
     return Drive(world, start, (timer, ramp), control, remember)

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array, Float, PRNGKeyArray
 
 from ..world import State, World
-from .control import drive_read
+from .control import drive_feed_forward
 from .cppn import ACTIVATIONS, Points
 from .development import Controls
 from .encoding import Drive, Scalar, shifted
@@ -68,7 +68,7 @@ class Weights:
         def read(inputs):
             return forward(self.layers, genes, inputs)
 
-        return drive_read(read, controls, world, start)
+        return drive_feed_forward(read, controls, world, start)
 
     def size(self, genotype: Vector) -> tuple[Array, Array]:
         """Return hidden nodes and connections, the same for all genotypes."""

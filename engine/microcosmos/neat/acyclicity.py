@@ -4,7 +4,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Int, UInt32
 
-from .rows import over
+from .rows import loop_rows
 
 WORD = 32
 
@@ -27,7 +27,7 @@ def neighbours(
         owns = owner[row] == node
         return tuple(s | jnp.where(owns, b[row], 0) for s, b in zip(sets, bits, strict=True))
 
-    return over(owner.shape[0], join, tuple(jnp.zeros(nodes, jnp.uint32) for _ in bits))
+    return loop_rows(owner.shape[0], join, tuple(jnp.zeros(nodes, jnp.uint32) for _ in bits))
 
 
 def closure(sets: Sets) -> Sets:
@@ -53,7 +53,7 @@ def singletons(nodes: int) -> Sets:
     return tuple(jnp.where(node // WORD == word, bit, 0) for word in range(_words(nodes)))
 
 
-def members(among: Bool[Array, "node"]) -> Sets:
+def constant(among: Bool[Array, "node"]) -> Sets:
     """Return the same set for every node."""
     nodes = among.shape[0]
     bit = jnp.where(among, jnp.uint32(1) << (jnp.arange(nodes) % WORD).astype(jnp.uint32), 0)
@@ -63,7 +63,7 @@ def members(among: Bool[Array, "node"]) -> Sets:
     return tuple(jnp.broadcast_to(word, (nodes,)) for word in words)
 
 
-def without(one: Sets, other: Sets) -> Sets:
+def difference(one: Sets, other: Sets) -> Sets:
     return tuple(a & ~b for a, b in zip(one, other, strict=True))
 
 
@@ -73,7 +73,7 @@ def sizes(sets: Sets) -> Int[Array, "node"]:
     return jnp.sum(counts, 0, dtype=jnp.int32)
 
 
-def held(sets: Sets, node: Int[Array, ""]) -> Bool[Array, "node"]:
+def flags(sets: Sets, node: Int[Array, ""]) -> Bool[Array, "node"]:
     """Return the set of one node as flags."""
     nodes = sets[0].shape[0]
     place = jnp.arange(nodes)

@@ -14,7 +14,7 @@ from .mutation import Novelty, mutate
 from .numbering import Counters, number
 from .offspring import Ranking, allot, allowed, ranking, recorded, shares
 from .rng import below, draws
-from .rows import NONE, apart
+from .rows import NONE, barrier
 from .settings import Settings
 from .species import Species, divide, no_species
 
@@ -70,9 +70,9 @@ def next_generation(
     children, novelty = reproduce(
         population, parentage, settings, inputs, outputs, key=children_key
     )
-    children, novelty = apart((children, novelty))
-    children, counters = apart(number(children, novelty, counters))
-    species = _represented(population, species, sizes > 0, now, settings, key=species_key)
+    children, novelty = barrier((children, novelty))
+    children, counters = barrier(number(children, novelty, counters))
+    species = _renew_species(population, species, sizes > 0, now, settings, key=species_key)
     species = divide(children, species, settings, generation + 1)
     code = parentage.mutated + 2 * (parentage.other >= 0)
     return children, species, counters, jnp.stack([parentage.parent, parentage.other], 1), code
@@ -101,22 +101,22 @@ def choose_parents(
     def draw(of, uniform):
         return now.order[now.start[of] + below(survivors[of], uniform)]
 
-    abroad = uniform[:, 3] < settings.interspecies
+    interspecies = uniform[:, 3] < settings.interspecies
     breeding = jnp.argsort(sizes == 0, stable=True)
     any_ = breeding[below(jnp.sum(sizes > 0), uniform[:, 4])]
     first = draw(species_of, uniform[:, 0])
-    second = draw(jnp.where(abroad, any_, species_of), uniform[:, 1])
+    second = draw(jnp.where(interspecies, any_, species_of), uniform[:, 1])
     crossed = ~copied & (uniform[:, 2] < settings.crossover)
     fitter = jnp.where(fitness[first] >= fitness[second], first, second)
     lesser = jnp.where(fitness[first] >= fitness[second], second, first)
     elite = now.order[jnp.minimum(now.start[species_of] + rank, len(slot) - 1)]
     parent = jnp.where(copied, elite, jnp.where(crossed, fitter, first))
     mutated = ~copied & (~crossed | (uniform[:, 5] >= settings.crossover_only))
-    hopeless = jnp.sum(sizes) == 0
+    extinct = jnp.sum(sizes) == 0
     return Parentage(
-        jnp.where(hopeless, slot, parent),
-        jnp.where(crossed & ~hopeless, lesser, NONE),
-        mutated & ~hopeless,
+        jnp.where(extinct, slot, parent),
+        jnp.where(crossed & ~extinct, lesser, NONE),
+        mutated & ~extinct,
     )
 
 
@@ -133,7 +133,7 @@ def reproduce(
 
     def child(one, other, crosses, mutated, keys):
         crossed = crossover(one, other, settings.average, settings.disabled, key=keys[0])
-        one = apart(_either(crosses, crossed, one))
+        one = barrier(_either(crosses, crossed, one))
         varied, novelty = mutate(one, settings.rates, inputs, outputs, key=keys[1])
         novelty = jax.tree.map(lambda row: jnp.where(mutated, row, NONE), novelty)
         return _either(mutated, varied, one), novelty
@@ -144,7 +144,7 @@ def reproduce(
     return jax.vmap(child)(parents, others, parentage.other >= 0, parentage.mutated, keys)
 
 
-def _represented(
+def _renew_species(
     population: CPPN,
     species: Species,
     breeding: Bool[Array, "species"],
@@ -155,7 +155,7 @@ def _represented(
 ) -> Species:
     """Keep the species with offspring; choose members of this population as representatives."""
     breeding = jnp.where(jnp.any(breeding), breeding, species.alive)
-    species = replace(species, alive=breeding, threshold=_moved(species, settings))
+    species = replace(species, alive=breeding, threshold=_adjusted_threshold(species, settings))
     if settings.representative == "nearest":
         return species
     (uniform,) = draws(breeding.shape, key=key)
@@ -164,7 +164,7 @@ def _represented(
     return replace(species, representatives=jax.tree.map(lambda x: x[drawn], population))
 
 
-def _moved(species: Species, settings: Settings) -> Float[Array, ""]:
+def _adjusted_threshold(species: Species, settings: Settings) -> Float[Array, ""]:
     """Adjust the threshold towards the target number of species, at least one step."""
     if not settings.target_species:
         return species.threshold

@@ -13,7 +13,7 @@ from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 from ..genomes import CPPN
 from .rates import Rates, bounded, one_of
 from .rng import Uniform, draws, rescaled
-from .rows import apart
+from .rows import barrier
 from .structure import add_connection, add_node, delete_connection, delete_node
 
 DECISIONS = 10
@@ -43,26 +43,28 @@ def mutate(
     if rates.delete_node and outputs is None:
         raise ValueError("`outputs` must be given where `delete_node` is above 0, got None")
     nodes, genes = network.bias.shape, network.weight.shape
-    values, activations, toggles, some = draws(
+    values, activations, toggles, decisions = draws(
         (nodes[0] + genes[0],), nodes, genes, (DECISIONS,), key=key
     )
     if rates.delete_node:
-        network = delete_node(network, rates.delete_node, inputs + (outputs or 0), some[0])
+        network = delete_node(network, rates.delete_node, inputs + (outputs or 0), decisions[0])
     if rates.delete_connection:
-        network = delete_connection(network, rates.delete_connection, some[1])
-    network = apart(network)
+        network = delete_connection(network, rates.delete_connection, decisions[1])
+    network = barrier(network)
     splittable = network.connection_used & network.enabled
-    vary, link = some[2] < rates.values, some[3] < rates.add_connection
-    node = some[4] < rates.add_node
+    vary, link = decisions[2] < rates.values, decisions[3] < rates.add_connection
+    node = decisions[4] < rates.add_node
     if rates.separate:
         vary = vary & ~link & ~node
     network = mutate_values(network, vary, rates, inputs, values)
     network = mutate_activations(network, rates, inputs, activations)
     network = toggle_connections(network, rates.toggle, toggles)
-    network = apart(network)
-    network, connection_row = apart(add_connection(network, link, rates, inputs, some[5:8]))
+    network = barrier(network)
+    network, connection_row = barrier(
+        add_connection(network, link, rates, inputs, decisions[5:8])
+    )
     network, split_row, node_row, split = add_node(
-        network, splittable & network.enabled, node, rates, some[8:10]
+        network, splittable & network.enabled, node, rates, decisions[8:10]
     )
     if rates.drop_split:  # The split connection stood above the added one.
         connection_row = connection_row - ((connection_row >= 0) & (split_row >= 0))

@@ -55,15 +55,15 @@ def allowed(
     able = species.alive & (now.valid > 0)
     place = ranks(now.best)
     fresh = generation - species.improved < settings.stagnation
-    lively = able & (fresh | (place < max(1, settings.species_elitism)))
+    active = able & (fresh | (place < max(1, settings.species_elitism)))
     if not settings.population_stagnation:
-        return lively, species
-    stuck = generation - species.peak_generation > settings.population_stagnation
-    able = jnp.where(stuck, able & (place < 2), lively)
+        return active, species
+    stagnant = generation - species.peak_generation > settings.population_stagnation
+    able = jnp.where(stagnant, able & (place < 2), active)
     restarted = replace(
         species,
-        improved=jnp.where(stuck & able, generation, species.improved),
-        peak_generation=jnp.where(stuck, generation, species.peak_generation),
+        improved=jnp.where(stagnant & able, generation, species.improved),
+        peak_generation=jnp.where(stagnant, generation, species.peak_generation),
     )
     return able, restarted
 

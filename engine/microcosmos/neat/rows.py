@@ -62,16 +62,16 @@ def match(
     def compare(place, row):
         return jnp.where(table[place] == numbers, place, row)
 
-    row = over(others.shape[0], compare, jnp.full(numbers.shape, NONE))
+    row = loop_rows(others.shape[0], compare, jnp.full(numbers.shape, NONE))
     return jnp.where(used, row, NONE)
 
 
-def apart(values):
+def barrier(values):
     """Return the same values; XLA compiles their producers and consumers separately, faster."""
     return jax.lax.optimization_barrier(values)
 
 
-def over(count: int, body: Callable, initial):
+def loop_rows(count: int, body: Callable, initial):
     """Loop over rows, unrolled: XLA makes one fast pass over a batch per iteration."""
     return jax.lax.fori_loop(0, count, body, initial, unroll=min(UNROLLED, count))
 
@@ -86,7 +86,7 @@ def drop_node(network: CPPN, node: Int[Array, ""]) -> CPPN:
     kept = network.connection_used & (network.source != node) & (network.target != node)
     rows, upto = jnp.arange(kept.shape[0]), jnp.cumsum(kept)
     start = jnp.zeros(rows.shape, rows.dtype)
-    order = over(kept.shape[0], lambda place, order: order + (upto[place] <= rows), start)
+    order = loop_rows(kept.shape[0], lambda place, order: order + (upto[place] <= rows), start)
     columns = {
         n: jnp.take(getattr(network, n), order, mode="fill", fill_value=0) for n in CONNECTIONS
     }

@@ -9,7 +9,7 @@ from ..genomes import CPPN
 from . import acyclicity
 from .rates import Rates, bounded, one_of
 from .rng import Uniform, below, rescaled
-from .rows import NONE, apart, choose, connect, drop_connection, drop_node, put, ranked
+from .rows import NONE, barrier, choose, connect, drop_connection, drop_node, put, ranked
 
 
 def add_connection(
@@ -18,7 +18,7 @@ def add_connection(
     """Join two unconnected nodes, using three draws; also return the new row, or −1."""
     if not rates.add_connection:
         return network, jnp.asarray(NONE)
-    source, target, exists = apart(_free_pair(network, rates, inputs, uniform))
+    source, target, exists = barrier(_free_pair(network, rates, inputs, uniform))
     row = jnp.sum(network.connection_used)
     row = jnp.where(happens & exists & (row < network.connection_used.shape[0]), row, NONE)
     weight = bounded(rates.draw(uniform[2]), rates).astype(network.weight.dtype)
@@ -38,7 +38,7 @@ def add_node(
     with identity activation changes nothing. Also return the rows of the incoming connection
     and the node, and the number of the split connection, or −1 each.
     """
-    old, exists = apart(choose(splittable, uniform[0]))
+    old, exists = barrier(choose(splittable, uniform[0]))
     node, row = jnp.sum(network.node_used), jnp.sum(network.connection_used)
     row = row - rates.drop_split
     happens = happens & exists & (node < network.node_used.shape[0])
@@ -78,25 +78,25 @@ def _free_pair(
     network: CPPN, rates: Rates, inputs: int, uniform: Uniform
 ) -> tuple[Int[Array, ""], Int[Array, ""], Bool[Array, ""]]:
     """Draw source and target of a new connection; also return whether one is possible."""
-    free = apart(_free_sources(network, rates.recurrent))
+    free = barrier(_free_sources(network, rates.recurrent))
     is_target = network.node_used & (jnp.arange(network.node_used.shape[0]) >= inputs)
     if rates.blind:
         source, _ = choose(network.node_used, uniform[0])
         target, exists = choose(is_target, uniform[1])
-        return source, target, exists & acyclicity.held(free, target)[source]
+        return source, target, exists & acyclicity.flags(free, target)[source]
     many = jnp.where(is_target, acyclicity.sizes(free), 0)
     rank = below(jnp.sum(many), uniform[0])
     target = ranked(many, rank)
     before = jnp.sum(jnp.where(jnp.arange(len(many)) < target, many, 0))
-    return ranked(acyclicity.held(free, target), rank - before), target, jnp.any(many > 0)
+    return ranked(acyclicity.flags(free, target), rank - before), target, jnp.any(many > 0)
 
 
 def _free_sources(network: CPPN, recurrent: bool) -> acyclicity.Sets:
     """Return, for each node, the possible sources of a new connection."""
     used, nodes = network.connection_used, network.node_used.shape[0]
     joined = acyclicity.neighbours(network.target, network.source, used, nodes)
-    free = acyclicity.without(acyclicity.members(network.node_used), joined)
+    free = acyclicity.difference(acyclicity.constant(network.node_used), joined)
     if recurrent:
         return free
     onward = acyclicity.neighbours(network.source, network.target, used, nodes)
-    return acyclicity.without(free, acyclicity.closure(onward))
+    return acyclicity.difference(free, acyclicity.closure(onward))

@@ -12,12 +12,12 @@ from .evaluation import (
     Task,
     block_program,
     drive,
-    elsewhere,
     evaluate,
     evaluate_blocks,
     mapped,
     motion_of,
     never,
+    shift_energy,
     simulate,
 )
 from .gradient_report import GradientReport, report_gradient

@@ -11,7 +11,7 @@ from scipy.spatial import KDTree
 Measures = Float[Array, "row measure"]
 Places = Float[Array, "row axis"]
 
-LISTED = 2**22
+MAX_LISTED = 2**22
 """Largest number of listed candidates; beyond it every centroid is compared."""
 
 
@@ -85,14 +85,14 @@ class Voronoi(eqx.Module):
         """Return the number of each row's cell."""
         place = places(measures, self.axes)
         if self.near is None:
-            return _first_least(place, lambda axis: self.centroids[None, :, axis])
+            return _nearest(place, lambda axis: self.centroids[None, :, axis])
         side = boxes(self.count, len(self.axes))
         box = jnp.zeros(measures.shape[0], jnp.int32)
         for axis in range(len(self.axes)):
             step = jnp.clip(jnp.floor(place[:, axis] * side), 0, side - 1)
             box = box * side + step.astype(jnp.int32)
         listed = self.near[box]
-        chosen = _first_least(place, lambda axis: self.centroids[:, axis][listed])
+        chosen = _nearest(place, lambda axis: self.centroids[:, axis][listed])
         return jnp.take_along_axis(listed, chosen[:, None], 1)[:, 0]
 
 
@@ -135,7 +135,7 @@ def candidates(centroids: np.ndarray) -> np.ndarray | None:
     tree = KDTree(centroids.astype(np.float64))
     reach = tree.query(middles)[0] + 2 * half + 1e-4  # A margin above the rounding of float32.
     counts = tree.query_ball_point(middles, reach, return_length=True)
-    if len(middles) * counts.max() > LISTED:
+    if len(middles) * counts.max() > MAX_LISTED:
         return None
     lists = tree.query_ball_point(middles, reach, return_sorted=True)
     flat = np.concatenate([np.asarray(one, np.int32) for one in lists])
@@ -144,7 +144,7 @@ def candidates(centroids: np.ndarray) -> np.ndarray | None:
     return flat[np.minimum((last - counts + 1)[:, None] + column, last[:, None])]
 
 
-def _first_least(place: Places, of_axis: Callable[[int], Array]) -> Int[Array, "row"]:
+def _nearest(place: Places, of_axis: Callable[[int], Array]) -> Int[Array, "row"]:
     """Return the index of the nearest candidate to each place, the first of equal ones."""
     squares = [(place[:, i, None] - of_axis(i)) ** 2 for i in range(place.shape[1])]
     return jnp.argmin(sum(squares[1:], squares[0]), 1).astype(jnp.int32)

@@ -75,28 +75,28 @@ class Task(eqx.Module):
 
 def evaluate(task: Task, genotype: Genotype) -> Evaluation:
     """Simulate one creature and measure it."""
-    return measured(task, genotype, drive(task, genotype))
+    return evaluate_drive(task, genotype, drive(task, genotype))
 
 
-def measured(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
+def evaluate_drive(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
     """Simulate and measure a developed genotype: means over all placements."""
     if task.placements is None:
-        return _measured(task, genotype, driven)
+        return _evaluate(task, genotype, driven)
     found = jax.lax.map(
-        lambda shift: _measured(task, genotype, elsewhere(driven, shift)), task.placements
+        lambda shift: _evaluate(task, genotype, shift_energy(driven, shift)), task.placements
     )
     means = jnp.mean(found.fitness), jnp.mean(found.measures, 0)
     return Evaluation(*means, jnp.max(found.status))
 
 
-def elsewhere(driven: Drive, shift: Int[Array, "2"]) -> Drive:
+def shift_energy(driven: Drive, shift: Int[Array, "2"]) -> Drive:
     """Return the simulation with the energy moved by `shift` cells."""
     assert driven.start.energy is not None
     energy = jnp.roll(driven.start.energy, shift, (0, 1))
     return replace(driven, start=replace(driven.start, energy=energy))
 
 
-def _measured(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
+def _evaluate(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
     if task.encoding is None:
         raise ValueError("`task.encoding` must say what the genotype means; got None.")
     end, observed = simulate(driven)
@@ -117,12 +117,12 @@ def drive(task: Task, actuator: Actuator) -> Drive:
 
 def simulate(
     driven: Drive,
-    see: Callable[[State, Measures], Any] = observe,
+    observer: Callable[[State, Measures], Any] = observe,
     segment: int | None = None,
 ) -> tuple[State, Any]:
     """Return the state at the end, and the observations after each step."""
     go_on = partial(rollout, control=driven.control, remember=driven.remember, segment=segment)
-    return go_on(driven.world, driven.start, driven.inputs, see)
+    return go_on(driven.world, driven.start, driven.inputs, observer)
 
 
 def motion_of(task: Task, driven: Drive, end: State, observed: Measures) -> dict[str, Any]:
@@ -201,17 +201,17 @@ def evaluate_blocks(
     `Stopped` if `stop` is true before a block.
     """
     devices = jax.local_devices()
-    flying: deque[Found] = deque()
-    landed: list[Found] = []
+    in_flight: deque[Found] = deque()
+    finished: list[Found] = []
     count = len(jax.tree.leaves(items)[0])
     for number, start in enumerate(range(0, count, block)):
         if stop():
             raise Stopped
-        if len(flying) == len(devices):
-            landed.append(jax.device_get(flying.popleft()))
+        if len(in_flight) == len(devices):
+            finished.append(jax.device_get(in_flight.popleft()))
         rows = np.arange(start, start + block)
         rows = np.where(rows < count, rows, start)
         part = jax.tree.map(lambda x, rows=rows: x[rows], items)
-        flying.append(program(jax.device_put(part, devices[number % len(devices)])))
-    landed += [jax.device_get(one) for one in flying]
-    return jax.tree.map(lambda *parts: np.concatenate(parts)[:count], *landed)
+        in_flight.append(program(jax.device_put(part, devices[number % len(devices)])))
+    finished += [jax.device_get(one) for one in in_flight]
+    return jax.tree.map(lambda *parts: np.concatenate(parts)[:count], *finished)

@@ -22,15 +22,15 @@ Plane = Float[Array, "x y"]
 
 BETA_1, BETA_2, EPSILON = 0.9, 0.999, 1e-8
 
-Slopes = Float[Array, "*block gene"]
+Moments = Float[Array, "*block gene"]
 
 
 class Adam(eqx.Module):
     """Moments of the slopes so far."""
 
     count: Int[Array, "*block"]
-    mean: Slopes
-    square: Slopes
+    mean: Moments
+    square: Moments
 
 
 def begin(genes: Float[Array, "gene"]) -> Adam:
@@ -84,7 +84,7 @@ def loss(descent: Descent, genes: Float[Array, "gene"], picture: Plane) -> Float
     return jnp.mean((descent.density(found) - picture) ** 2)
 
 
-def unfolded(descent: Descent, picture: Plane) -> Fold:
+def initial_fold(descent: Descent, picture: Plane) -> Fold:
     """Return a filament before the first update."""
     assert descent.task.encoding is not None
     genes = descent.task.encoding.newcomer(key=jax.random.key(0)).values
@@ -116,5 +116,5 @@ def update(descent: Descent, fold: Fold) -> tuple[Fold, Float[Array, ""]]:
 
 def start(descent: Descent, pictures: Float[np.ndarray, "fold x y"]) -> Fold:
     """Return all folds before the first update, as NumPy arrays."""
-    block = jax.vmap(lambda picture: unfolded(descent, picture))(jnp.asarray(pictures))
+    block = jax.vmap(lambda picture: initial_fold(descent, picture))(jnp.asarray(pictures))
     return jax.device_get(block)

@@ -20,10 +20,10 @@ from .evaluation import (
     Actuator,
     Task,
     drive,
-    elsewhere,
     fitness_of,
     mapped,
     motion_of,
+    shift_energy,
     simulate,
 )
 
@@ -111,7 +111,7 @@ def measures(
         found = measure(driven)
     else:
         # Checkpointed: what reverse mode keeps is one world's, not all of them.
-        anew = jax.checkpoint(lambda x: measure(elsewhere(driven, x)))
+        anew = jax.checkpoint(lambda x: measure(shift_energy(driven, x)))
         worlds = jax.lax.map(anew, task.placements)
         found = jax.tree.map(lambda x: jnp.mean(x, 0), worlds)
     known = [name for name in found if name not in CONSTANT]

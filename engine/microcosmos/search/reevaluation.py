@@ -14,7 +14,7 @@ from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 from ..genomes import Genotype
 from ..world import State
 from .cells import Cells
-from .evaluation import Evaluation, Task, drive, measured
+from .evaluation import Evaluation, Task, drive, evaluate_drive
 from .insertion import Elites
 
 Scalar = Float[Array, "*block"]
@@ -89,7 +89,7 @@ def evaluate_disturbed(task: Task, genotype: Genotype, changed: Disturbance) -> 
     world = replace(task.world, viscosity=task.world.viscosity * changed.viscosity)
     task = replace(task, world=world, phase=changed.phase)
     driven = drive(task, genotype)
-    return measured(task, genotype, replace(driven, start=moved(driven.start, changed)))
+    return evaluate_drive(task, genotype, replace(driven, start=moved(driven.start, changed)))
 
 
 def moved(start: State, changed: Disturbance) -> State:

@@ -16,7 +16,7 @@ from jaxtyping import Array, Bool, Float
 
 from ..genomes import ACTIVATIONS, CPPN
 from ..neat import Settings
-from .populations import cppns
+from .tensorneat_genomes import cppns
 
 State = Any
 """TensorNEAT's: a pytree of arrays by name, one of them (`species`) such a state itself."""

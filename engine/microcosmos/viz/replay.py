@@ -53,7 +53,7 @@ def record(file: Mapping[str, Any]) -> bytes:
     invalid file.
     """
     file = creature.parse(file)
-    scene = watchable(creature.scene_of(file))
+    scene = without_missing_plugins(creature.scene_of(file))
     nodes, _ = creature.room(file) or (0, 0)
     every = interval(scene, nodes)
     program = _program(scene.model_dump_json(), every)
@@ -114,7 +114,7 @@ def _comparison(
     }
 
 
-def watchable(scene: Scene) -> Scene:
+def without_missing_plugins(scene: Scene) -> Scene:
     """Return the scene, without plug-in measures if these are missing: motion needs none."""
     try:
         build_measures(scene)
@@ -153,9 +153,9 @@ def interval(scene: Scene, network_nodes: int) -> int:
     """
     cells = scene.world.width * scene.world.height
     several = placements(scene.world)
-    lives = 1 + several if several > 1 else 1  # The shown one, and those of the mean.
+    simulations = 1 + several if several > 1 else 1  # The shown one, and those of the mean.
     for field, limit, found, unit in (
-        ("task.steps", CELL_STEPS, cells * scene.task.steps * lives, "cell steps"),
+        ("task.steps", CELL_STEPS, cells * scene.task.steps * simulations, "cell steps"),
         ("body.nodes", 2**32, simulation(scene, network_nodes), "bytes of memory"),
     ):
         if found > limit:
@@ -181,7 +181,7 @@ def actuator_of(file: Mapping[str, Any], scene: Scene) -> search.Actuator:
     return genomes.read(file["identity"]["genome"], encoding.room)
 
 
-class Film(eqx.Module):
+class Recording(eqx.Module):
     """The start and the state after each `every` steps, one entry a frame."""
 
     positions: Array
@@ -221,7 +221,7 @@ def _program(scene_json: str, every: int) -> Callable[[search.Actuator], tuple]:
 
 def _filmed(
     task: search.Task, driven: Drive, frames: int, every: int, changes: bool
-) -> tuple[Film, world.State, world.Measures]:
+) -> tuple[Recording, world.State, world.Measures]:
     def frame(state):
         u = world.flow(task.world, state)
         return state.positions, vorticity(u), u, state.energy if changes else None
@@ -250,14 +250,14 @@ def _filmed(
     present = driven.world.present
     if present is None:
         present = jnp.ones(positions.shape[1], bool)
-    return Film(positions, curl, velocity, energy, rest, present), end, seen
+    return Recording(positions, curl, velocity, energy, rest, present), end, seen
 
 
 def _mean_motion(task: search.Task, driven: Drive) -> dict[str, Any]:
     """Average measures over all placements of energy; the film shows the first one."""
 
     def motion(shift: Array) -> dict[str, Any]:
-        moved = search.elsewhere(driven, shift)
+        moved = search.shift_energy(driven, shift)
         return search.motion_of(task, moved, *search.simulate(moved))
 
     found = jax.lax.map(motion, task.placements)

@@ -47,7 +47,7 @@ def repel(world: World, positions: Vectors) -> tuple[Vectors, Vectors]:
     """
     if world.steric is None:
         return jnp.zeros_like(positions), jnp.zeros_like(positions)
-    at = coupling.only(coupling.windows(positions, world.size, coupling.HAT), world.present)
+    at = coupling.masked(coupling.windows(positions, world.size, coupling.HAT), world.present)
     density = coupling.spread(jnp.ones_like(positions[:, :1]), at, world.size)[0]
     push = -world.steric.strength * coupling.interpolate(world.steric.gradient(density), at)
     drift = _body_mean(world, push)

@@ -19,7 +19,7 @@ def follow(world: World, state: State, rest: filaments.Rest) -> filaments.Rest:
     return rest
 
 
-def keep(world: World, state: State, given: Any) -> PyTree[Array]:
+def keep_memory(world: World, state: State, given: Any) -> PyTree[Array]:
     return state.memory
 
 
@@ -29,7 +29,7 @@ def rollout(
     inputs: PyTree[Array],
     observe: Callable[[State, Measures], Any] = lambda state, measures: None,
     control: Callable[[World, State, Any], filaments.Rest] = follow,
-    remember: Callable[[World, State, Any], PyTree[Array]] = keep,
+    remember: Callable[[World, State, Any], PyTree[Array]] = keep_memory,
     segment: int | None = None,
 ) -> tuple[State, Any]:
     """Return the state after all steps of `inputs` (time first), and observations of each.

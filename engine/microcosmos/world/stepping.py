@@ -106,7 +106,7 @@ def _points(world: World, state: State) -> Float[Array, "point 2"]:
 
 def _windows(world: World, state: State) -> coupling.Windows:
     at = coupling.windows(_points(world, state), world.size, world.form.kernel)
-    return coupling.only(at, there(world, world.form.layers))
+    return coupling.masked(at, there(world, world.form.layers))
 
 
 def _held(motion: Motion, forced: coupling.Forced, groups: Groups) -> Float[Array, "node"]:

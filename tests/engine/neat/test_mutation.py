@@ -110,6 +110,6 @@ def test_reach_is_what_powers_of_the_adjacency_matrix_say():
         closed = jax.jit(acyclicity.closure)(near)
         steps = (joined | np.eye(nodes, dtype=bool)).astype(float)
         ways = np.linalg.matrix_power(steps, nodes) > 0
-        rows = jax.vmap(acyclicity.held, (None, 0))(closed, jnp.arange(nodes))
+        rows = jax.vmap(acyclicity.flags, (None, 0))(closed, jnp.arange(nodes))
         np.testing.assert_array_equal(rows, ways)
         np.testing.assert_array_equal(acyclicity.sizes(closed), ways.sum(1))

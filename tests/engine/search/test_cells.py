@@ -83,7 +83,7 @@ def test_distances_are_measured_on_the_axes_own_scales():
 
 
 def test_too_many_candidates_are_not_listed(monkeypatch):
-    monkeypatch.setattr(cells, "LISTED", 10)
+    monkeypatch.setattr(cells, "MAX_LISTED", 10)
     assert cells.candidates(np.random.default_rng(0).random((50, 2))) is None
 
 

@@ -228,7 +228,7 @@ def test_a_spent_distribution_begins_anew_at_an_elite(emitter, state_after):
     chosen = emitter()
     state = chosen.init(key=jax.random.key(0))
     spent = replace(state.distribution, sigma=jnp.float32(1e-30), mean=jnp.full(2, 0.5))
-    assert es.spent(spent)
+    assert es.must_restart(spent)
     after = state_after(chosen, np.arange(6.0), [0] * 6, z=state.z, distribution=spent)
     assert after.restart
     archive = search.no_elites(4, 1, Vector(jnp.zeros(2)))

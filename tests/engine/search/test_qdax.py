@@ -58,7 +58,7 @@ def test_a_repertoire_there_and_back_loses_nothing(cells):
 
 @pytest.mark.parametrize("cells", GRIDS, ids=["1-d", "2-d", "3-d"])
 def test_our_grids_are_in_the_order_of_theirs(cells):
-    repertoires = qdax.needed("core.containers.mapelites_repertoire")
+    repertoires = qdax.require_qdax("core.containers.mapelites_repertoire")
     shape = tuple(axis.bins for axis in cells.axes)
     theirs = repertoires.compute_euclidean_centroids(shape, 0.0, 1.0)
     repertoire = qdax.to_repertoire(filled(cells), cells)
@@ -89,7 +89,7 @@ def evaluated(genotypes):
 
 def test_their_map_elites_runs_on_our_scores_and_what_diverged_never_enters():
     names = ("core.map_elites", "core.emitters.standard_emitters")
-    loop, emitters = map(qdax.needed, names)
+    loop, emitters = map(qdax.require_qdax, names)
     score = qdax.scoring_function(evaluated, AROUND)
     mutate = lambda x, key: x + 0.3 * jax.random.normal(key, x.shape)  # noqa: E731
     mix = emitters.MixingEmitter(mutate, None, 0.0, 32)
@@ -149,7 +149,10 @@ def network_scores(networks, key=None):
 
 
 def test_our_neat_grows_networks_in_their_map_elites_and_numbers_them_alike():
-    loop, multi = qdax.needed("core.map_elites"), qdax.needed("core.emitters.multi_emitter")
+    loop, multi = (
+        qdax.require_qdax("core.map_elites"),
+        qdax.require_qdax("core.emitters.multi_emitter"),
+    )
     rates = neat.Rates(0.8, 0.5, 0.1, 0.1, toggle=0.1, add_node=0.5, add_connection=0.3)
 
     def minimal(*, key):
@@ -181,7 +184,7 @@ def test_without_qdax_the_error_names_the_command(monkeypatch):
 
     monkeypatch.setattr(importlib, "import_module", missing)
     with pytest.raises(ValueError, match=r'pip install "microcosmos\[qdax\]"'):
-        qdax.needed("core.map_elites")
+        qdax.require_qdax("core.map_elites")
 
 
 @pytest.mark.parametrize("name", ["arm", "rastrigin"])

@@ -12,7 +12,7 @@ import pytest
 
 from microcosmos import genomes, neat
 from microcosmos.search import tensorneat
-from microcosmos.search.populations import cppns
+from microcosmos.search.tensorneat_genomes import cppns
 from microcosmos.viz import networks
 
 needs_package = pytest.mark.skipif(

@@ -1,6 +1,5 @@
 """Emitters: sources of children."""
 
-from . import population
 from .cma_mae import CmaMae
 from .cma_mega import CmaMega
 from .elites import Random, newcomers
@@ -17,4 +16,5 @@ from .emitter import (
 )
 from .lamarckian import Lamarckian
 from .neat import Neat
+from .population import PopulationNeat
 from .vectors import IsoLine

@@ -16,11 +16,11 @@ from ...genomes import Vector
 from ...neat import Counters
 from ..insertion import Elites
 from . import matrix_adaptation as es
-from .elites import Newcomer, draw, orphans
+from .elites import Newcomer, draw, parentless
 from .emitter import Children, Keys, Outcome
 
 
-class Climb(eqx.Module):
+class CmaMaeState(eqx.Module):
     """The state of the emitter."""
 
     distribution: es.Distribution
@@ -42,9 +42,9 @@ class CmaMae:
     learning_rate: float
     threshold: float
 
-    def init(self, *, key: PRNGKeyArray) -> Climb:
+    def init(self, *, key: PRNGKeyArray) -> CmaMaeState:
         mean = jnp.zeros_like(self.newcomer(key=key).values)
-        return Climb(
+        return CmaMaeState(
             distribution=es.start(mean, self.step),
             z=jnp.zeros((self.slots, mean.shape[0]), mean.dtype),
             thresholds=jnp.full(self.cells, self.threshold, mean.dtype),
@@ -52,8 +52,8 @@ class CmaMae:
         )
 
     def emit(
-        self, state: Climb, archive: Elites, counters: Counters, *, keys: Keys
-    ) -> tuple[Children, Climb, Counters]:
+        self, state: CmaMaeState, archive: Elites, counters: Counters, *, keys: Keys
+    ) -> tuple[Children, CmaMaeState, Counters]:
         chosen = draw(archive, key=jax.random.fold_in(keys[0], 1))
         genotypes = archive.genotypes
         assert isinstance(genotypes, Vector)
@@ -61,11 +61,11 @@ class CmaMae:
         anew = es.start(genotypes.values[chosen], self.step)
         distribution = es.restarted(state.restart, anew, state.distribution)
         values, z = es.draw(distribution, keys=keys)
-        children = orphans(Vector(jnp.clip(values, -1.0, 1.0)), self.slots, "cma-mae")
+        children = parentless(Vector(jnp.clip(values, -1.0, 1.0)), self.slots, "cma-mae")
         state = replace(state, distribution=distribution, z=z, restart=jnp.zeros((), bool))
         return children, state, counters
 
-    def tell(self, state: Climb, outcome: Outcome) -> Climb:
+    def tell(self, state: CmaMaeState, outcome: Outcome) -> CmaMaeState:
         here = state.thresholds[jnp.minimum(outcome.cell, self.cells - 1)]
         height = jnp.where(outcome.feasible, outcome.fitness - here, -jnp.inf)
         order = jnp.argsort(-height, stable=True)
@@ -75,11 +75,11 @@ class CmaMae:
         return replace(
             state,
             distribution=distribution,
-            thresholds=self._followed(state.thresholds, outcome, height > 0),
-            restart=es.spent(distribution) | flat,
+            thresholds=self._updated_thresholds(state.thresholds, outcome, height > 0),
+            restart=es.must_restart(distribution) | flat,
         )
 
-    def _followed(
+    def _updated_thresholds(
         self, thresholds: Float[Array, "cell"], outcome: Outcome, above: Bool[Array, "slot"]
     ) -> Float[Array, "cell"]:
         """Return t + (1 − (1 − α)ᵏ) (f − t) after k children of mean fitness f in a cell."""

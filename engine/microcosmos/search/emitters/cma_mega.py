@@ -17,11 +17,11 @@ from ...neat import Counters
 from ..gradients import Slopes, unit
 from ..insertion import Elites
 from . import matrix_adaptation as es
-from .elites import Newcomer, draw, either, newcomers, orphans
+from .elites import Newcomer, draw, newcomers, or_newcomers, parentless
 from .emitter import Children, Keys, Outcome
 
 
-class Ascent(eqx.Module):
+class CmaMegaState(eqx.Module):
     """The state of the emitter."""
 
     theta: Float[Array, "gene"]
@@ -52,10 +52,10 @@ class CmaMega:
     """Step of θ towards its best children."""
     lessons: int = 1
 
-    def init(self, *, key: PRNGKeyArray) -> Ascent:
+    def init(self, *, key: PRNGKeyArray) -> CmaMegaState:
         theta = jnp.zeros_like(self.newcomer(key=key).values)
         none = jnp.zeros((self.slots, self.outputs), theta.dtype)
-        return Ascent(
+        return CmaMegaState(
             theta=theta,
             slopes=jnp.zeros((self.outputs, theta.shape[0]), theta.dtype),
             distribution=self._anew(theta),
@@ -66,8 +66,8 @@ class CmaMega:
         )
 
     def emit(
-        self, state: Ascent, archive: Elites, counters: Counters, *, keys: Keys
-    ) -> tuple[Children, Ascent, Counters]:
+        self, state: CmaMegaState, archive: Elites, counters: Counters, *, keys: Keys
+    ) -> tuple[Children, CmaMegaState, Counters]:
         """Return θ in each slot until slopes are known; newcomers into an empty archive."""
         chosen = draw(archive, key=jax.random.fold_in(keys[0], 1))
         genotypes = archive.genotypes
@@ -76,8 +76,8 @@ class CmaMega:
         distribution = es.restarted(state.restart, self._anew(theta), state.distribution)
         weights, z = es.draw(distribution, keys=keys)
         moved = Vector(jnp.broadcast_to(theta, (self.slots, *theta.shape)))
-        children = either(
-            archive, orphans(moved, self.slots, "cma-mega"), newcomers(self.newcomer, keys)
+        children = or_newcomers(
+            archive, parentless(moved, self.slots, "cma-mega"), newcomers(self.newcomer, keys)
         )
         state = replace(
             state,
@@ -89,19 +89,19 @@ class CmaMega:
         )
         return children, state, counters
 
-    def asks(self, state: Ascent, children: Children) -> Genotype:
+    def asks(self, state: CmaMegaState, children: Children) -> Genotype:
         return Vector(state.theta[None])
 
     def learn(
-        self, state: Ascent, children: Children, slopes: Slopes
-    ) -> tuple[Children, Ascent]:
+        self, state: CmaMegaState, children: Children, slopes: Slopes
+    ) -> tuple[Children, CmaMegaState]:
         assert isinstance(children.genotypes, Vector)
         rows = jnp.where(slopes.finite[0], unit(slopes.rows[0]), 0.0)
         values = jnp.clip(state.theta[None] + state.weights @ rows, -1.0, 1.0)
         values = jnp.where(state.due, values, children.genotypes.values)
         return replace(children, genotypes=Vector(values)), replace(state, slopes=rows)
 
-    def tell(self, state: Ascent, outcome: Outcome) -> Ascent:
+    def tell(self, state: CmaMegaState, outcome: Outcome) -> CmaMegaState:
         """Rank by what entered, those in empty cells first; move θ and adapt."""
         gain = jnp.where(outcome.fresh, outcome.fitness, outcome.improvement)
         gain = jnp.where(outcome.feasible, gain, -jnp.inf)
@@ -110,7 +110,7 @@ class CmaMega:
         best = state.weights[order[: len(strategy.weights)]]
         ahead = jnp.asarray(strategy.weights, best.dtype) @ best @ state.slopes
         distribution = es.update(state.distribution, state.z, order, strategy)
-        stuck = ~jnp.any(outcome.entered) | es.spent(distribution)
+        stuck = ~jnp.any(outcome.entered) | es.must_restart(distribution)
         return replace(
             state,
             theta=jnp.clip(state.theta + self.rate * ahead, -1.0, 1.0),

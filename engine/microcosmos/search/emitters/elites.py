@@ -27,10 +27,10 @@ def draw(archive: Elites, *, key: PRNGKeyArray) -> Int[Array, ""]:
 def newcomers(newcomer: Newcomer, keys: Keys) -> Children:
     """Draw random genotypes, one for each key."""
     genotypes = jax.vmap(lambda key: newcomer(key=key))(keys)
-    return orphans(genotypes, keys.shape[0], "random")
+    return parentless(genotypes, keys.shape[0], "random")
 
 
-def orphans(genotypes: Genotype, slots: int, name: str) -> Children:
+def parentless(genotypes: Genotype, slots: int, name: str) -> Children:
     """Return children of an operator without known parents."""
     parents = jnp.full((slots, 2), NO_PARENT, jnp.int32)
     return Children(genotypes, parents, jnp.full(slots, OPERATORS.index(name), jnp.int32))
@@ -43,7 +43,7 @@ def children(genotypes: Genotype, parents: list[Int[Array, "slot"]], name: str) 
     return Children(genotypes, pairs, jnp.full(len(first), OPERATORS.index(name), jnp.int32))
 
 
-def either(archive: Elites, varied: Children, fresh: Children) -> Children:
+def or_newcomers(archive: Elites, varied: Children, fresh: Children) -> Children:
     """Return the varied children, or newcomers if the archive is empty."""
     any_elite = jnp.any(archive.occupied)
     return jax.tree.map(lambda one, other: jnp.where(any_elite, one, other), varied, fresh)

@@ -113,7 +113,7 @@ def update(
     )
 
 
-def spent(distribution: Distribution) -> Bool[Array, ""]:
+def must_restart(distribution: Distribution) -> Bool[Array, ""]:
     """Return whether the distribution has converged, run away, or is not finite."""
     deviations = distribution.sigma * jnp.sqrt(jnp.sum(distribution.m**2, 1))
     finite = jnp.all(jnp.isfinite(distribution.m)) & jnp.all(jnp.isfinite(distribution.mean))

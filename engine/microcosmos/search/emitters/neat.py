@@ -9,7 +9,7 @@ from jaxtyping import Array, Int, PRNGKeyArray
 from ... import neat
 from ...genomes import CPPN
 from ..insertion import Elites
-from .elites import Newcomer, children, draw, either, newcomers
+from .elites import Newcomer, children, draw, newcomers, or_newcomers
 from .emitter import NO_PARENT, OPERATORS, Children, Keys, Stateless
 
 
@@ -44,7 +44,7 @@ class Neat(Stateless):
         varied = Children(varied.genotypes, varied.parents, operator)
         any_elite = jnp.any(archive.occupied)
         counters = jax.tree.map(lambda a, b: jnp.where(any_elite, a, b), numbered, counters)
-        return either(archive, varied, newcomers(self.newcomer, keys)), None, counters
+        return or_newcomers(archive, varied, newcomers(self.newcomer, keys)), None, counters
 
     def _crossed(self, archive: Elites, cell: Int[Array, ""], *, key: PRNGKeyArray):
         whether, which, cross_key = jax.random.split(jax.random.fold_in(key, 1), 3)

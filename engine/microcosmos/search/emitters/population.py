@@ -11,7 +11,7 @@ from jaxtyping import Array, Float, Int, PRNGKeyArray
 from ... import neat
 from ...genomes import CPPN
 from ..insertion import Elites
-from .elites import Newcomer, orphans
+from .elites import Newcomer, parentless
 from .emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
 
 CODES = np.array(
@@ -37,7 +37,7 @@ class Population(eqx.Module):
 
 
 @dataclass(frozen=True)
-class Neat:
+class PopulationNeat:
     """NEAT whole (Stanley and Miikkulainen 2002): species, sharing, crossover."""
 
     slots: int
@@ -68,7 +68,7 @@ class Neat:
     ) -> tuple[Children, Population, neat.Counters]:
         """Return the newcomers first, then the children of the generation before."""
         cells = archive.occupied.shape[0]
-        first = orphans(state.networks, self.slots, "random"), state.species, counters
+        first = parentless(state.networks, self.slots, "random"), state.species, counters
 
         def breed():
             networks, species, numbered, parents, code = neat.next_generation(

@@ -9,7 +9,7 @@ from jaxtyping import Array, Float, Int, PRNGKeyArray
 from ...neat import Counters
 from ..insertion import Elites
 from ..tensorneat import Backend, State
-from .elites import orphans
+from .elites import parentless
 from .emitter import Children, Keys, Outcome
 
 
@@ -50,7 +50,7 @@ class TensorNeat:
         if state.age > 0:
             theirs = self.backend.tell(theirs, np.asarray(state.fitness))
         networks, _ = self.backend.population(theirs)
-        children = orphans(networks, self.slots, "tensorneat")
+        children = parentless(networks, self.slots, "tensorneat")
         return children, self._unmeasured(theirs, int(state.age) + 1), counters
 
     def tell(self, state: TensorNeatState, outcome: Outcome) -> TensorNeatState:

@@ -9,7 +9,7 @@ from jaxtyping import Array, Float, Int, PRNGKeyArray
 from ...genomes import Vector
 from ...neat import Counters
 from ..insertion import Elites
-from .elites import Newcomer, children, draw, either, newcomers
+from .elites import Newcomer, children, draw, newcomers, or_newcomers
 from .emitter import Children, Keys, Stateless
 
 
@@ -32,7 +32,7 @@ class IsoLine(Stateless):
         values, *cells = jax.vmap(lambda key: self._child(archive, key=key))(keys)
         parents, name = (cells, "iso+line") if self.line else (cells[:1], "gaussian")
         varied = children(Vector(values), parents, name)
-        return either(archive, varied, newcomers(self.newcomer, keys)), None, counters
+        return or_newcomers(archive, varied, newcomers(self.newcomer, keys)), None, counters
 
     def _child(
         self, archive: Elites, *, key: PRNGKeyArray

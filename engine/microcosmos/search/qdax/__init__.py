@@ -4,4 +4,4 @@ QDax is imported where it is needed.
 """
 
 from .emitters import NeatEmitter, QdaxEmitter, cma_me
-from .repertoires import from_repertoire, needed, order, scoring_function, to_repertoire
+from .repertoires import from_repertoire, order, require_qdax, scoring_function, to_repertoire

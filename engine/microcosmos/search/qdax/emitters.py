@@ -11,11 +11,11 @@ from jaxtyping import Array, Bool, Float, PRNGKeyArray, PyTree
 from ...genomes import CPPN, Vector
 from ...neat import Counters
 from ..cells import Cells, places
-from ..emitters.elites import Newcomer, either, newcomers, orphans
+from ..emitters.elites import Newcomer, newcomers, or_newcomers, parentless
 from ..emitters.emitter import Children, Keys, Outcome
 from ..emitters.neat import Neat
 from ..insertion import Elites
-from .repertoires import needed, order, to_repertoire
+from .repertoires import order, require_qdax, to_repertoire
 
 
 class Pending(eqx.Module):
@@ -51,7 +51,7 @@ class QdaxEmitter:
         place = jnp.zeros((self.slots, len(self.cells.axes)))
         fitness = jnp.full(self.slots, -jnp.inf, genes.dtype)
         with jax.numpy_rank_promotion("allow"):
-            empty = needed("core.containers.mapelites_repertoire").MapElitesRepertoire
+            empty = require_qdax("core.containers.mapelites_repertoire").MapElitesRepertoire
             empty = empty.init_default(genes[0], jnp.asarray(self.cells.centres))
             state = self.emitter.init(
                 jax.random.key_data(key), empty, genes, fitness, place, {}
@@ -69,8 +69,8 @@ class QdaxEmitter:
                 state.due, lambda: self._learnt(state, repertoire), lambda: state.emitter
             )
             genes, _ = self.emitter.emit(repertoire, learnt, jax.random.key_data(keys[0]))
-        bred = orphans(Vector(jnp.clip(genes, -1.0, 1.0)), self.slots, self.operator)
-        children = either(archive, bred, newcomers(self.newcomer, keys))
+        bred = parentless(Vector(jnp.clip(genes, -1.0, 1.0)), self.slots, self.operator)
+        children = or_newcomers(archive, bred, newcomers(self.newcomer, keys))
         due = jnp.any(archive.occupied)
         return children, replace(state, emitter=learnt, due=due), counters
 
@@ -103,13 +103,13 @@ def cma_me(
 ) -> QdaxEmitter:
     """Build CMA-ME's improvement emitters (Fontaine et al., GECCO 2020), which take turns."""
     genes = jax.eval_shape(lambda: newcomer(key=jax.random.key(0))).values.shape[-1]
-    one = needed("core.emitters.cma_improvement_emitter").CMAImprovementEmitter(
+    one = require_qdax("core.emitters.cma_improvement_emitter").CMAImprovementEmitter(
         batch_size=slots,
         genotype_dim=genes,
         centroids=jnp.asarray(cells.centres[order(cells)]),
         sigma_g=step,
     )
-    pool = needed("core.emitters.cma_pool_emitter").CMAPoolEmitter(emitters, one)
+    pool = require_qdax("core.emitters.cma_pool_emitter").CMAPoolEmitter(emitters, one)
     return QdaxEmitter(slots, newcomer, cells, pool, "cma-me")
 
 

@@ -24,7 +24,7 @@ EXTRA_SCORES = ("measures", "generation", "slot")
 """Columns of elites that a repertoire holds as extra scores."""
 
 
-def needed(module: str) -> Any:
+def require_qdax(module: str) -> Any:
     """Import a module of QDax. Raises `ValueError` with the command to install it."""
     try:
         return importlib.import_module(f"qdax.{module}")
@@ -78,7 +78,7 @@ def to_repertoire(elites: Elites, cells: Cells) -> Any:
     there, genotypes = elites.occupied[rows], elites.genotypes
     genes = genotypes.values if isinstance(genotypes, Vector) else genotypes
     place = places(elites.measures, cells.axes)[rows]
-    return needed("core.containers.mapelites_repertoire").MapElitesRepertoire(
+    return require_qdax("core.containers.mapelites_repertoire").MapElitesRepertoire(
         genotypes=jax.tree.map(lambda x: x[rows], genes),
         fitnesses=jnp.where(there, elites.fitness[rows], -jnp.inf)[:, None],
         descriptors=jnp.where(there[:, None], place, 0.0),

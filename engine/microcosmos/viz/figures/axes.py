@@ -93,7 +93,7 @@ def _axis(archive: Archive, name: str, own: Descriptor | None) -> Axis:
     return Axis(name, title, float(low), float(high), False, BINS)
 
 
-def dress(panel: Any, axes: list[Axis]) -> None:
+def label_axes(panel: Any, axes: list[Axis]) -> None:
     """Set ends, scale and label of each axis of a panel."""
     from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 

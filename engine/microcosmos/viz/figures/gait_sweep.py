@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from math import isfinite
 from typing import Any
 
-from .style import GREY, INCH, Row, blank, legend_below, look, refuse_lacking, tidy
+from .style import GREY, INCH, Row, blank, legend_below, look, require_columns, tidy
 
 NEEDED = ("form", "swimmer", "viscosity", "displacement", "status")
 
@@ -26,7 +26,7 @@ def sweep(rows: Sequence[Row]) -> Any:
     Hollow marks had a limit active; crosses at the top did not finish. A form that is not
     force-free has a shaded panel. The upper axis has the worm's Reynolds number.
     """
-    refuse_lacking(rows, NEEDED)
+    require_columns(rows, NEEDED)
     found = {row["form"] for row in rows}
     forms = [form for form in FORMS if form in found] + sorted(found - FORMS.keys())
     swimmers = list(dict.fromkeys(row["swimmer"] for row in rows))

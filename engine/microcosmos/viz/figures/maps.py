@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from ...spec.measures import MEASURES
-from .axes import Axis, chosen, dress, fitness_label, label
+from .axes import Axis, chosen, fitness_label, label, label_axes
 from .reading import Archive
 from .style import EMPTY, GREY, INK, blank, colour_bar, linear_scale, palette
 
@@ -31,9 +31,9 @@ def archive(
     figure = blank(width, width * (0.78 if len(along) == 2 else 0.6))
     panel = figure.add_subplot()
     look = {"cmap": palette(colours), "norm": _scale(found, colour, shown)}
-    draw = _bars if len(along) == 1 else _cells if _whole(found, along) else _bins
+    draw = _bars if len(along) == 1 else _cells if _over_all_axes(found, along) else _bins
     drawn = draw(panel, found, along, shown, look)
-    dress(panel, along)
+    label_axes(panel, along)
     if len(along) == 2:
         x, y = (found.measures[axis.name][found.best] for axis in along)
         x, y = (np.clip(v, a.low, a.high) for v, a in zip((x, y), along, strict=True))
@@ -54,7 +54,7 @@ def _scale(found: Archive, name: str, shown: np.ndarray) -> Any:
     return linear_scale(shown)
 
 
-def _whole(found: Archive, along: list[Axis]) -> bool:
+def _over_all_axes(found: Archive, along: list[Axis]) -> bool:
     """Return whether the map is over all axes of Voronoi cells, so that it can show them."""
     names = [axis.name for axis in found.axes]
     return found.centroids is not None and sorted(a.name for a in along) == sorted(names)
@@ -120,7 +120,7 @@ def _bars(panel: Any, found: Archive, along: list[Axis], shown: np.ndarray, shad
     from matplotlib.cm import ScalarMappable
 
     (axis,) = along
-    if _whole(found, along):
+    if _over_all_axes(found, along):
         assert found.centroids is not None
         ends = axis.values(borders(found.centroids[:, 0]))
         rows, low, high = np.arange(len(shown)), ends[found.cells, 0], ends[found.cells, 1]

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ...sizes import size
-from .style import COLOURS, GREY, INCH, Row, blank, legend_below, look, refuse_lacking, tidy
+from .style import COLOURS, GREY, INCH, Row, blank, legend_below, look, require_columns, tidy
 
 NEEDED = ("method", "nodes", "seconds")
 
@@ -24,7 +24,7 @@ def scaling(rows: Sequence[Row], summary: Row | None = None) -> Any:
 
     `summary` has the fitted powers; the dotted line is proportional to the nodes.
     """
-    refuse_lacking(rows, NEEDED)
+    require_columns(rows, NEEDED)
     rows = sorted(rows, key=lambda row: row["nodes"])
     ours = [row for row in rows if row["method"] == "microcosmos"]
     pairs = [row for row in rows if row["method"] == "all-pairs"]

@@ -137,7 +137,7 @@ def legend_below(figure: Any, entries: tuple[list, list], columns: int) -> None:
     figure.legend(*entries, **place, frameon=False, fontsize=9)
 
 
-def refuse_lacking(rows: Sequence[Row], names: Sequence[str]) -> None:
+def require_columns(rows: Sequence[Row], names: Sequence[str]) -> None:
     if not rows:
         raise ValueError("`rows` must have at least one row, got none.")
     for number, row in enumerate(rows):

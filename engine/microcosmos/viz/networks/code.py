@@ -16,7 +16,7 @@ from .graph import order, reached
 from .network import Network
 
 TOLERANCE = 1e-12
-PROVED_STEPS = 4
+CHECKED_STEPS = 4
 """Steps of a recurrent network in the check; more steps would prove nothing further."""
 
 
@@ -34,7 +34,7 @@ def numpy_code(network: Network) -> str:
 
     Raises `ValueError` if it differs from the network on random inputs over a few steps.
     """
-    few = replace(network, steps=network.steps and min(network.steps, PROVED_STEPS))
+    few = replace(network, steps=network.steps and min(network.steps, CHECKED_STEPS))
     require_same(few, _module(few))
     return _module(network)
 
