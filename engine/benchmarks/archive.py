@@ -69,7 +69,7 @@ def insertion(side: int, stage: str) -> None:
 
 
 def tessellation(count: int) -> None:
-    """Print the time for centroids of a plane, and how compact their cells are."""
+    """Print the time for centroids of a plane, and the compactness of their cells."""
     methods: dict[str, Callable] = {"ours": lambda: search.cvt.lloyd(count, 2, seed=0)}
     if timing.installed("qdax"):
         peer: Any = importlib.import_module("qdax.core.containers.mapelites_repertoire")

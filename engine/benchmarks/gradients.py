@@ -90,7 +90,7 @@ def mebibytes(program: Any) -> str:
 
 
 def compiled(function: Callable, values: Any, collision: Any = surroundings.collision) -> Any:
-    """Compile a function with this collision."""
+    """Compile a function with `collision` in place of the engine's."""
     own, surroundings.collision = surroundings.collision, collision
     try:
         program = jax.jit(function, compiler_options=device.compiler_options())

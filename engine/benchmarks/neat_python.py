@@ -1,4 +1,4 @@
-"""neat-python's population, grown and timed as `populations.py` does with ours."""
+"""A population of neat-python, grown and timed like ours in `populations.py`."""
 
 import random
 import statistics
@@ -47,7 +47,7 @@ elitism = 2
 survival_threshold = 0.1
 min_species_size = 1
 """
-"""TensorNEAT's defaults as far as neat-python has them, which ours use too."""
+"""TensorNEAT's defaults, which ours use too, as far as neat-python has them."""
 
 LIMITS = {"max_value": 5.0, "min_value": -5.0}
 VARIED = {"init_mean": 0.0, "init_stdev": 1.0, "replace_rate": 0.015, "mutate_rate": 0.2}

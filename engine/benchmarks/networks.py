@@ -20,7 +20,7 @@ from microcosmos import device, genomes, search
 POINTS = 64
 HIDDEN = (10, 30)
 SIZES = ((1_000, 11, 3), (10_000, 5, 1))
-"""Networks, and repeats of ours and of neat-python, which is slow."""
+"""Networks, repeats of ours, and fewer repeats of neat-python, which is slow."""
 FORWARD = 1_000
 
 

@@ -1,9 +1,9 @@
 """Time of a step of physics, relative to the machine's bandwidth, and of its parts.
 
 Prints tables and asserts nothing. All programs run interleaved in one process, as
-`search.block_program` runs them: on a CPU each world by itself and one device a core, elsewhere
-all worlds as one batch. The cost of a part is the difference between programs with and without
-it.
+`search.block_program` runs them: on a CPU each world by itself and one device per core,
+elsewhere all worlds as one batch. The cost of a part is the difference between programs with
+and without it.
 """
 
 import statistics
@@ -127,7 +127,7 @@ def copier() -> Callable[[], Any]:
         copy().block_until_ready()
         return copy
     cores = len(jax.local_devices())
-    # Written to once, so that no page is new while the clock runs.
+    # Write once, so that no page fault is timed.
     arrays = [(np.ones(LARGE, np.float32), np.ones(LARGE, np.float32)) for _ in range(cores)]
     pool = ThreadPoolExecutor(cores)
     return lambda: list(pool.map(lambda pair: np.copyto(*pair), arrays))

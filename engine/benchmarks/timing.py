@@ -39,5 +39,5 @@ def installed(package: str) -> bool:
     """Check that a library is installed; print how to install it if not."""
     if importlib.util.find_spec(package):
         return True
-    print(f"({package} is not installed: make peers)")
+    print(f"({package} is not installed; `make peers` installs it)")
     return False

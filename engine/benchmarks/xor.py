@@ -24,7 +24,7 @@ STEEPNESS = 4.9
 GENERATIONS = 90
 """The generations of the paper's slowest run."""
 FIRST_SEED = 1000
-"""Smaller seeds served to choose the settings."""
+"""Smaller seeds were used to choose the settings."""
 
 
 def main() -> None:

@@ -88,7 +88,7 @@ def check_repulsion(steps: int = 300, dtype: Any = "float32") -> Result:
 
 @jax.jit
 def _survive(box, start, rests):
-    """Tell for each rest shape if all stays finite and slower than sound."""
+    """Return for each rest shape if all numbers stay finite and all speeds subsonic."""
 
     def survives(rest):
         end, _ = world.rollout(box, start, rest)

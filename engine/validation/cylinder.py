@@ -75,12 +75,12 @@ def _held(f, nodes, rates, surroundings, steps: int):
 
 
 def _centre(case: Case) -> tuple[float, float]:
-    """A third of the box behind the sponge; beside the middle, so that a wake can swing."""
+    """A third of the box behind the sponge, off the axis so that the wake can oscillate."""
     return 0.36 * case.size[0] + 0.3, case.size[1] / 2 + 0.2
 
 
 def _sponge(case: Case, dtype) -> fluid.Sponge:
-    """Across the seam, two diameters to either side, strongest at the seam."""
+    """A sponge at the box's seam, two diameters to either side, strongest at the seam."""
     x, reach = np.arange(case.size[0]), 2.0 * case.diameter
     distance = np.minimum(x, case.size[0] - x) / reach
     profile = 0.05 * np.where(distance < 1, np.cos(0.5 * np.pi * distance) ** 2, 0.0)
@@ -136,13 +136,13 @@ def check(cases: tuple[Case, ...] = CASES, share: float = 0.08) -> Result:
 
 
 def series(share: float) -> float:
-    """Drag over viscosity and mean velocity, for a solid share of up to about 0.2."""
+    """Drag over viscosity and mean velocity by theory, for solid shares up to about 0.2."""
     c = share
     return 4 * np.pi / (-0.5 * np.log(c) - 0.738 + c - 0.887 * c**2 + 2.038 * c**3)
 
 
 def array_drag(radius: float, cell: int) -> float:
-    """Measure the same with held nodes around one cylinder in a periodic box of `cell` cells.
+    """Measure drag over viscosity and mean velocity of held nodes in a box of `cell` cells.
 
     A uniform force drives the flow; in the steady state it equals the cylinder's drag.
     """
@@ -157,7 +157,7 @@ def array_drag(radius: float, cell: int) -> float:
 
 
 def check_array() -> Result:
-    """The error has to fall with the radius; the bar is lower for the largest."""
+    """Check that the error falls with the radius; the largest has the lowest bar."""
     radii, cell = (3, 5, 8), 64
     shares = [np.pi * radius**2 / cell**2 for radius in radii]
     drags = [array_drag(radius, cell) for radius in radii]

@@ -13,7 +13,7 @@ from . import scenes
 from .rows import Result, Row, at_least, at_most, holds
 
 H = 1e-5
-"""Step of the differences: a larger one has a larger error, a smaller one more rounding."""
+"""Step of the differences: larger ones are less accurate, smaller ones round more."""
 
 SOURCE = "central differences"
 PLAIN, FIELDS = "plain", "with steric and energy"
@@ -54,7 +54,7 @@ def scene(setting: str, steps: int, dtype: Any):
 
 
 def compare(setting: str, steps: int) -> list[Row]:
-    """Slopes along a direction, for each kind of input, and gradients where limits act."""
+    """Check slopes along a direction for each kind of input, and gradients at limits."""
     dtype = jnp.dtype("float64")
     outcome, inputs = scene(setting, steps, dtype)
     inactive, active = (

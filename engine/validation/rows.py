@@ -25,24 +25,24 @@ class Row:
 
 
 def at_most(quantity: str, value: float, bar: float, source: str) -> Row:
-    """An error, whose reference is zero."""
+    """Row of an error, whose reference is zero."""
     return Row(quantity, float(value), 0.0, bar, f"≤ {bar:g}", 0.0, source)
 
 
 def at_least(quantity: str, value: float, bar: float, reference: float, source: str) -> Row:
-    """A number with a lower bound."""
+    """Row of a number with a lower bound."""
     return Row(quantity, float(value), bar, math.inf, f"≥ {bar:g}", reference, source)
 
 
 def close(quantity: str, value: float, reference: float, share: float, source: str) -> Row:
-    """A number within a share of a published or exact one."""
+    """Row of a number within a share of a published or exact one."""
     reach, bar = abs(reference) * share, f"± {100 * share:g} %"
     low, high = reference - reach, reference + reach
     return Row(quantity, float(value), low, high, bar, float(reference), source)
 
 
 def holds(quantity: str, fact: bool, source: str) -> Row:
-    """A statement: 1 if it is true, else 0."""
+    """Row of a statement: 1 if it is true, else 0."""
     return Row(quantity, float(fact), 1.0, 1.0, "yes", 1.0, source)
 
 

@@ -60,7 +60,7 @@ def rest(
 
 
 def held(body: bodies.Body, steps: int, dtype: Any) -> filaments.Rest:
-    """The body keeps its rest shape."""
+    """Rest shapes of a body that keeps its shape."""
     return rest(body, np.zeros((steps, len(body.joints))), dtype)
 
 

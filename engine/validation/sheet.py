@@ -85,7 +85,7 @@ BARS = {32: 0.65, 64: 0.83, 128: 0.92}
 
 
 def check(sheets: tuple[Sheet, ...] = SHEETS, periods: int = 2) -> Result:
-    """The delta thickens the sheet, an error that falls with the wavelength in cells."""
+    """Check that the error, caused by the delta's thickness, falls with the wavelength."""
     ratios = [speed(sheet, periods) / theory(sheet) for sheet in sheets]
     lengths = [sheet.wavelength for sheet in sheets]
     what = "swimming sheet, wavelength {}: speed over theory"

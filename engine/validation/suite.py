@@ -100,8 +100,8 @@ SECTIONS = (
     Section(
         "The five known swimmers",
         "The Microcosmos paper's sweep, 1,200 steps a stroke, the third stroke of each: with "
-        "actuators of one strength for all (ours), with actuators that never tire (strong), "
-        "and in the paper's literal form, which is not force-free. Tireless actuators do not "
+        "actuators of one strength for all (ours), of unlimited strength (strong), "
+        "and in the paper's literal form, which is not force-free. Strong actuators do not "
         "slow towards ν = 2: in Stokes flow a prescribed stroke leads as far at any "
         "viscosity. In the literal form bodies push themselves, by up to 170 in lattice "
         "units, so nothing is asked of it; docs/reproduction.md says what it shows.",
@@ -110,7 +110,7 @@ SECTIONS = (
     Section(
         "Random controllers",
         "32 nodes asked for angles of ± 1 rad and lengths of ± 30 %, drawn anew every 20 "
-        "steps, with the limits that creatures live with. Counted are seeds after which "
+        "steps, with the limits of evaluations. The count is of seeds after which "
         "every number is finite and no fluid faster than sound.",
         (bodies.check_stability,),
     ),

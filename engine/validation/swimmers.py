@@ -79,7 +79,7 @@ def check_impulse(
     dtype: Any = "float32",
     limits: bool = True,
 ) -> Result:
-    """Over two cycles, with or without the limits that creatures live with."""
+    """Check the impulse over two cycles, with or without the limits of evaluations."""
     rows = []
     for swimmer in (swimmers.SWIMMERS[one]() for one in names):
         for viscosity in viscosities:

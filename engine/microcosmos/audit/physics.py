@@ -1,4 +1,4 @@
-"""A physics audit: does a creature swim by physics or by an artefact of the method?
+"""The physics audit: tell swimming by physics from artefacts of the method.
 
 The same rest shapes at the same times are simulated again: in ways that should make no
 difference (at twice the resolution and half the step, with another delta), and in one that
@@ -162,9 +162,9 @@ def _row(name: str, quantity: str, value: float, unit: str, bar: str, passed, no
 
 
 def _simulation_rows(scene: spec.Scene, found: Simulation) -> list[dict[str, Any]]:
-    pushed = "" if scene.coupling.force_free else ": this form of the coupling lets it"
+    pushed = "" if scene.coupling.force_free else ": this form of the coupling allows it"
     fast = "the flow is so fast that it is compressible"
-    limits = "limits act: they decide in part how it swims"
+    limits = "limits are active and in part determine how it swims"
     bounded = (
         ("mach", "largest Mach number", found.mach, "", units.MAX_MACH, fast),
         ("limited", "node steps at a limit", found.limited, "share", units.MAX_LIMITED, limits),
@@ -209,5 +209,5 @@ def _reciprocal_row(back: Simulation) -> dict[str, Any]:
         "of the path",
         f"at most {MAX_RECIPROCAL:g} below Reynolds number {CREEPING_REYNOLDS:g}",
         share <= MAX_RECIPROCAL if creeping else None,
-        "made reciprocal, it still swims where inertia hardly counts",
+        "made reciprocal, it still swims although inertia is negligible",
     )

@@ -30,7 +30,7 @@ class Check:
 
 
 def check(file: Mapping[str, Any]) -> Check:
-    """Run the creature through the very program that measured it.
+    """Evaluate the creature by the program that measured it.
 
     Raises `creature.CreatureError` for a file that is invalid or has no measurement.
     """

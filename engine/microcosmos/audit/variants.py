@@ -94,7 +94,7 @@ def with_other_delta(scene: spec.Scene, body: bodies.Body | None = None) -> sear
 def at_full_strength(scene: spec.Scene, body: bodies.Body | None = None) -> search.Task:
     """Return the scene with actuators of full strength.
 
-    A soft body lags behind its rest shape: its shapes are not reciprocal although the gait is.
+    A soft body lags behind its rest shape: its motion is not reciprocal although the gait is.
     """
     return _with(scene, body, nu_c=None)
 

@@ -1,8 +1,8 @@
 """Regularised deltas and the transfer between points and cells.
 
-Interpolation J and spreading S use the same weights, so S is the transpose of J: what one
-body exerts, the fluid receives. Points are worked on in chunks, so that what a transfer
-needs besides its arguments does not grow with their number and stays in cache.
+Interpolation J and spreading S use the same weights, so S is the transpose of J: the
+fluid receives what bodies exert. Transfers work on chunks of points, so that temporaries stay
+in cache and do not grow with the number of points.
 """
 
 from collections.abc import Callable
@@ -18,12 +18,12 @@ Vectors = Float[Array, "node 2"]
 Plane = Float[Array, "x y"]
 
 CHUNK = 2**13
-"""Points in a chunk: measured, beyond it temporaries leave the cache."""
+"""Points in a chunk. Measured: temporaries of larger chunks leave the cache."""
 
 
 @dataclass(frozen=True)
 class Kernel:
-    """A delta in one dimension, zero beyond half as many cells as it has points."""
+    """A delta in one dimension over `points` cells; it is zero beyond half of them."""
 
     weight: Callable[[Distances], Distances]
     points: int
@@ -127,7 +127,7 @@ def spread(
 
 
 def divided(at: Windows, plane: Plane) -> Windows:
-    """Return windows that read J (p/ρ): weights, or planes of many points, are divided."""
+    """Return windows that interpolate planes divided by `plane`, J (p/ρ)."""
     density = plane.reshape(-1)
     if len(at.cells) == 1:
         return Windows(at.cells, at.weights / density[at.cells], at.points)

@@ -2,9 +2,8 @@
 
 Multi-direct forcing: Wang, Fan and Luo, Int. J. Multiphase Flow 34, 283 (2008). Each
 increment is scaled by β = 1 / (row sum of J S), which converges for any packing of nodes.
-Freeing each increment of its mean (and its rigid rotation), body by body, keeps a body from
-pushing itself: the displacements that constraints make sum to zero, but (J S)⁻¹ of them do
-not.
+A projection removes the mean (and the rigid rotation) of each increment, body by body, so that
+no body pushes itself: displacements by constraints sum to zero, but (J S)⁻¹ of them do not.
 """
 
 from collections.abc import Callable
@@ -28,11 +27,11 @@ class Forced(eqx.Module):
     forcing: Vectors
     target: Vectors
     scale: Float[Array, "group"]
-    """Factor of each body's forcing to stay within the limit."""
+    """Factor that reduces each body's forcing to the limit."""
 
 
 def unprojected(error: Vectors, beta: Scalars, positions: Vectors, groups: Groups) -> Vectors:
-    """Remove no rigid motion, as in the paper's literal form."""
+    """Return zeros: remove no rigid motion, as in the paper's literal form."""
     return jnp.zeros_like(error)
 
 
@@ -68,11 +67,11 @@ def multi_direct_forcing(
     limit: Float[Array, ""] | float | None,
     present: Bool[Array, "node"] | None = None,
 ) -> Forced:
-    """Return the forcing at nodes for a fluid at `velocity` there to move with `target`.
+    """Return the forcing at nodes that makes a fluid at `velocity` move with `target`.
 
-    Forcing and velocities are in cells a step; the force on the fluid is a multiple of the
-    forcing, spread. With `limit`, the largest forcing of a body is at most that, by one
-    factor for all of its nodes, so that sums stay zero. Nodes that are not `present`, whose
+    Forcing and velocities are in cells per step; the force on the fluid is the spread forcing
+    times `Form.force_factor`. With `limit`, the largest forcing of a body is at most that,
+    by one factor for all its nodes, so that sums stay zero. Nodes that are not `present`, whose
     windows are empty, have none.
     """
     by_density = divided(at, rho)

@@ -23,10 +23,10 @@ def points(positions: Vectors, normals: Vectors, layers: int) -> Float[Array, "p
 
 
 def at_points(values: Vectors, layers: int) -> Float[Array, "point 2"]:
-    """Return the value of its node at every point."""
+    """Repeat the value of each node at its points."""
     return values if layers == 1 else jnp.repeat(values, layers, 0)
 
 
 def at_nodes(values: Float[Array, "point 2"], layers: int) -> Vectors:
-    """Return the mean over the points of every node."""
+    """Return the mean over the points of each node."""
     return values if layers == 1 else jnp.mean(values.reshape(-1, layers, 2), 1)

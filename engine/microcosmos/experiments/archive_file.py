@@ -52,7 +52,7 @@ def save(plan: Plan, state: State) -> bytes:
         "nearest_ancestors": state.nearest_ancestors,
         "emitters": leaves(state.emitters),
     }
-    if np.isfinite(plan.limits.device_hours):  # Elsewhere a time would change the bytes.
+    if np.isfinite(plan.limits.device_hours):  # Without the limit it only changes bytes.
         loop["device_seconds"] = np.float64(state.device_seconds)
     if state.unrepeated is not None:
         loop["unrepeated"] = vars(jax.tree.map(lambda x: x[cells], state.unrepeated))

@@ -1,7 +1,7 @@
 """Search with an archive: emit, evaluate, insert, tell.
 
 With emitters that draw parents from the archive it is MAP-Elites (Mouret and Clune,
-arXiv:1504.04909, 2015); with a population of its own the archive only records.
+arXiv:1504.04909, 2015); an emitter with its own population only records in it.
 """
 
 import json

@@ -131,7 +131,7 @@ def measurement(
 def _ancestors_of(
     names: np.ndarray, nearest_ancestors: np.ndarray, parents: np.ndarray
 ) -> np.ndarray:
-    """Return recorded creatures (slot, 2, 32) that descendants of parents (slot, 2) come from.
+    """Return the nearest recorded ancestors (slot, 2, 32) of children of parents (slot, 2).
 
     A parent from the archive is recorded. A parent from the last generation may not be: then
     its own nearest recorded ancestors take its place.
@@ -139,7 +139,7 @@ def _ancestors_of(
     nearest = np.concatenate([names, nearest_ancestors[:, 0], NO_NAME[None]])
     found = nearest[parents]  # −1, for no parent, finds the last row.
     alone = (parents[:, 1] == search.NO_PARENT) & (parents[:, 0] >= len(names))
-    # An only parent that was not recorded passes both of its own ancestors on.
+    # A single parent that was not recorded passes on both of its ancestors.
     found[alone] = nearest_ancestors[parents[alone, 0] - len(names)]
     same = (found[:, 0] == found[:, 1]).all(-1)
     found[same, 1] = 0

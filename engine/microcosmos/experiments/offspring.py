@@ -44,7 +44,7 @@ class LessonResults:
     """Lengths of the finite slopes of fitness."""
 
     def summary(self) -> dict[str, float]:
-        """Return figures for the report; none without lessons."""
+        """Return figures for the report; empty without lessons."""
         if not self.simulated:
             return {}
         found = {"slopes: finite": self.finite / self.simulated}
@@ -82,14 +82,14 @@ class Offspring:
     counters: neat.Counters
     results: LessonResults
     began: float
-    """Start of lessons and evaluation, of the monotonic clock."""
+    """Time at the start of lessons and evaluation, by the monotonic clock."""
     names: np.ndarray
     """Names of the creatures that parents were drawn from, by cell."""
     before: tuple[tuple[Any] | None, ...] = ()
     """The earlier state of each emitter some of whose children were replaced."""
 
     def without_replaced(self, states: tuple[Any, ...]) -> tuple[Any, ...]:
-        """Return the states; an emitter must not learn from children that replaced its own."""
+        """Return the states; emitters whose children were replaced keep the earlier one."""
         pairs = zip_longest(states, self.before)
         return tuple(old[0] if old else new for new, old in pairs)
 
@@ -161,7 +161,7 @@ def _with_initial(
     children = jax.tree.map(put, offspring.children, new)
     begins = np.cumsum([0, *(emitter.slots for emitter in plan.emitters[:-1])]).tolist()
     pairs = zip(state.emitters, begins, strict=True)
-    # A population's networks are these very creatures.
+    # A population was founded with these creatures.
     before = tuple(
         (kept,) if first < count and not isinstance(kept, Population) else None
         for kept, first in pairs

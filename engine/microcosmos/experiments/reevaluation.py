@@ -14,7 +14,7 @@ from ..search.reevaluation import Disturbance, Repeats, disturbance
 from .state import Plan, Reevaluation, State
 
 FIRST_SAMPLE = 2**30
-"""First number of a sample for deriving keys; smaller ones are slots."""
+"""Number of the first sample when keys are derived; smaller numbers are slots."""
 
 
 @dataclass(frozen=True)

@@ -221,7 +221,7 @@ def _unchanged(state: State) -> Row:
 
 
 def trials_along(genes: np.ndarray, rows: np.ndarray, length: float, count: int) -> Trials:
-    """Return trials by turns along the slope of fitness, and its part that keeps descriptors.
+    """Return trials alternately along the slope of fitness and its part that keeps descriptors.
 
     `rows` are the slopes of fitness, then of descriptors.
     """

@@ -17,7 +17,7 @@ from ..search import Stopped
 from .table_file import Table
 
 LINEAR_FROM = 16_000
-"""Nodes from which the exponent is fitted: below, fixed costs of a call count."""
+"""Least number of nodes in the fit of the exponent; below it fixed costs of a call count."""
 
 MIN_POINTS = 3
 """Minimum number of points of a fit; smaller counts of nodes are added if needed."""

@@ -75,7 +75,7 @@ class InitialCreatures(eqx.Module):
 
 @dataclass(frozen=True)
 class Plan:
-    """The numbers and names of a run from its spec, and its device."""
+    """Everything about a run that follows from its spec and its device."""
 
     spec: str
     """The whole spec as JSON."""
@@ -189,7 +189,7 @@ class State(eqx.Module):
 
 
 def prolonged(state: State) -> State:
-    """Return the last state of a run as in a run with more generations."""
+    """Return the last state of a run as it would be if more generations followed."""
     if state.unrepeated is None:
         return state
     curves = state.curves.copy()

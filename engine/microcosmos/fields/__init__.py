@@ -1,4 +1,4 @@
-"""Scalar fields on the grid: steric repulsion, energy, and how densely nodes lie."""
+"""Scalar fields on the grid: steric repulsion, energy, and the density of nodes."""
 
 from .density import saturated, splat, unsaturated
 from .energy import Energy, Packets, collect, diffuse, packets, placements

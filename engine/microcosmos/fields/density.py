@@ -9,7 +9,7 @@ Plane = Float[Array, "x y"]
 def splat(positions: Float[Array, "node 2"], size: tuple[int, int], width: float) -> Plane:
     """Return the sum over nodes of exp(−r²/2σ²), σ = `width` cells, in a periodic box.
 
-    Of each node the nearest image alone counts, so that the box must be many widths wide.
+    Only the nearest image of each node counts, so the box must be many widths wide.
     """
     planes = []
     for axis, cells in enumerate(size):

@@ -1,7 +1,7 @@
 """Energy: packets that creatures sense and collect.
 
-The field is the one of the Microcosmos paper: Gaussian packets at random places. It lasts,
-or is consumed; it may diffuse.
+The field is the one of the Microcosmos paper: Gaussian packets at random places. Nodes
+may consume it; it may diffuse.
 """
 
 from dataclasses import dataclass
@@ -35,16 +35,16 @@ class Packets:
     seed: int
 
 
-def packets(size: tuple[int, int], what: Packets) -> np.ndarray:
+def packets(size: tuple[int, int], chosen: Packets) -> np.ndarray:
     """Sum all packets in a periodic box, each with all images that reach into it."""
-    places = np.random.default_rng(what.seed).uniform(0, size, (what.count, 2))
+    places = np.random.default_rng(chosen.seed).uniform(0, size, (chosen.count, 2))
     planes = []
     for axis in range(2):
         away = np.arange(size[axis])[None] - places[:, axis, None]
-        boxes = 1 + int(np.ceil(8 * what.width / size[axis]))
+        boxes = 1 + int(np.ceil(8 * chosen.width / size[axis]))
         images = away[:, :, None] + size[axis] * np.arange(-boxes, boxes + 1)
-        planes.append(np.exp(-0.5 * (images / what.width) ** 2).sum(-1))
-    return what.amplitude * np.einsum("px,py->xy", *planes)
+        planes.append(np.exp(-0.5 * (images / chosen.width) ** 2).sum(-1))
+    return chosen.amplitude * np.einsum("px,py->xy", *planes)
 
 
 def placements(size: tuple[int, int], count: int, seed: int) -> np.ndarray:
@@ -60,10 +60,10 @@ def diffuse(field: Plane, diffusion: Float[Array, ""]) -> Plane:
 
 
 def collect(field: Plane, coverage: Plane, rate: Float[Array, ""]) -> tuple[Plane, Plane]:
-    """Return the field after consumption, and the part for each unit of coverage.
+    """Return the field after consumption, and the energy taken per unit of coverage.
 
-    `coverage` is the number of nodes over each cell; together they take at most all. A node's
-    part is the second plane interpolated at it; the parts sum to the consumed energy.
+    `coverage` is the number of nodes over each cell; together they take at most all its energy.
+    Interpolated at a node, the second plane is what that node takes.
     """
     taken = rate / jnp.maximum(1.0, rate * coverage)
     return field * (1 - taken * coverage), field * taken

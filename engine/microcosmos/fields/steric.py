@@ -1,4 +1,4 @@
-"""Steric repulsion: nodes climb down the gradient of their own smoothed density.
+"""Steric repulsion: nodes move down the gradient of their own smoothed density.
 
 The method is the Microcosmos paper's: node positions are deposited on the grid, smoothed by
 a Gaussian, and the gradient pushes nodes apart, without any search for neighbours. With the
@@ -40,16 +40,16 @@ def gaussian(density: Plane) -> Gradient:
     kx = 2 * jnp.pi * jnp.fft.fftfreq(size[0], dtype=density.dtype)[:, None]
     ky = 2 * jnp.pi * jnp.fft.rfftfreq(size[1], dtype=density.dtype)[None]
     smooth = jnp.fft.rfft2(density) * jnp.exp(-0.5 * (kx * kx + ky * ky))
-    # The highest wave has no sign: its derivative is zero.
+    # The Nyquist wave has no sign: its derivative is zero.
     waves = [jnp.where(jnp.abs(k) > 3.14159, 0.0, k) for k in (kx, ky)]
     return jnp.stack([jnp.fft.irfft2(1j * k * smooth, size) for k in waves])
 
 
 def binomial(density: Plane) -> Gradient:
-    """Do the same with binomial weights, whose variance is one cell too: no transform.
+    """Smooth by binomial weights of the same variance and differentiate, without a transform.
 
-    Side by side a cell apart, where the difference of neighbours is coarse, lines repel by
-    5/32 where the Gaussian's slope is 0.24; from two cells on, by more than with it.
+    Between lines one cell apart the gradient is 5/32 (the Gaussian's: 0.24); from two cells on
+    it is larger than the Gaussian's.
     """
     wide = jnp.pad(density, 3, mode="wrap")
     return jnp.stack(
@@ -61,7 +61,7 @@ def binomial(density: Plane) -> Gradient:
 
 
 def capped(displacement: Vectors, limit: Float[Array, ""]) -> Vectors:
-    """Limit the length of displacements; sums over those at the limit change."""
+    """Limit the length of each displacement; this changes their sum."""
     length = jnp.sqrt(jnp.sum(displacement * displacement, 1, keepdims=True) + 1e-24)
     return displacement * jnp.minimum(1.0, limit / length)
 

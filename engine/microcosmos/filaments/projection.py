@@ -18,7 +18,7 @@ Angles = Float[Array, "edge"]
 
 
 class Pairing(eqx.Module):
-    """For one colour and each member (node or edge): its partner and their constraint.
+    """The partner and the constraint of each member (node or edge) in one colour.
 
     `sign` is 1 for the first of a pair, −1 for the second and 0 for a member that no
     constraint of the colour touches.
@@ -33,7 +33,7 @@ class Rods(eqx.Module):
     """The graph of a body and its stiffnesses."""
 
     edges: Int[Array, "edge 2"]
-    """Edges of all bodies; colours may be of a first chunk of equal bodies."""
+    """Edges of all bodies; colours may cover only the first chunk of equal bodies."""
     edge_colours: tuple[Pairing, ...]
     joint_colours: tuple[Pairing, ...]
     stretch: Float[Array, "edge"]
@@ -44,7 +44,7 @@ class Rods(eqx.Module):
 
 
 class Rest(eqx.Module):
-    """The target of the constraints, now or at all times."""
+    """The rest shape that constraints aim at: of one step, or of all steps (time first)."""
 
     angle: Float[Array, "*time joint"]
     length: Float[Array, "*time edge"]
@@ -78,7 +78,7 @@ def follow_geometry(angles: Angles, positions: Positions, rods: Rods) -> Angles:
 
 
 def bend(angles: Angles, rods: Rods, rest: Rest) -> Angles:
-    """Sweep the joints once: C = θ₂ − θ₁ − θ_rest is halved on both sides."""
+    """Sweep the joints once: each edge corrects half of the error θ₂ − θ₁ − θ_rest."""
     for colour in rods.joint_colours:
         difference = colour.sign * (angles[colour.partner] - angles)
         error = wrap(difference - rest.angle[colour.constraint])
@@ -87,7 +87,7 @@ def bend(angles: Angles, rods: Rods, rest: Rest) -> Angles:
 
 
 def stretch(positions: Positions, angles: Angles, rods: Rods, rest: Rest) -> Positions:
-    """Sweep the edges once: length along the tangent, and the director by shear."""
+    """Sweep the edges once: correct lengths along the tangent, and shear to the director."""
     directors = jnp.stack([jnp.cos(angles), jnp.sin(angles)], 1) * rest.length[:, None]
     for colour in rods.edge_colours:
         sign = colour.sign[:, None]

@@ -1,8 +1,8 @@
-"""The adjoint of a collision, written out.
+"""The adjoint of a collision, written by hand.
 
-Automatic differentiation keeps every intermediate plane of every step and goes over each of
-them again; here the inputs alone are kept. Letters with a bar are cotangents, in the order of
-`dynamics.collide` reversed.
+Automatic differentiation stores and reads every intermediate plane of every step; this adjoint
+stores only the inputs. Names in `_bar` are cotangents, in the reverse order of
+`dynamics.collide`; `h` holds those of its result.
 """
 
 import jax
@@ -18,7 +18,7 @@ Inputs = tuple[Populations, Plane, tuple[Plane, Plane], Vectors, Rates]
 def collision(
     f: Populations, rho: Plane, momentum: tuple[Plane, Plane], force: Vectors, rates: Rates
 ) -> Populations:
-    """Collide with the reverse derivative below; there is no forward mode."""
+    """Collide; reverse mode uses `adjoint`, forward mode is not supported."""
     return collide(f, rho, momentum, force, rates)
 
 

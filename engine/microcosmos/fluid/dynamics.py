@@ -13,7 +13,7 @@ from .lattice import DIRECTIONS, PAIRS, WEIGHTS, Plane, Populations, Vectors, al
 Scalar = Float[Array, ""]
 
 MAGIC = 3 / 16
-"""Λ that puts a straight bounce-back wall halfway and makes steady errors free of τ."""
+"""Λ that puts a straight bounce-back wall halfway and makes steady errors independent of τ."""
 
 
 class Rates(eqx.Module):

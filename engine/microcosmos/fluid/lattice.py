@@ -17,17 +17,17 @@ PAIRS = ((1, 2), (3, 4), (5, 6), (7, 8))
 
 
 def density(f: Populations) -> Plane:
-    """Return the mass a cell, 1 at rest."""
+    """Return the mass in each cell, 1 at rest."""
     return 1.0 + deviation(f)
 
 
 def deviation(f: Populations) -> Plane:
-    """Return the density less 1; small numbers are added first."""
+    """Return the density minus 1; small numbers are added first."""
     return f[0] + ((f[1] + f[2]) + (f[3] + f[4])) + ((f[5] + f[6]) + (f[7] + f[8]))
 
 
 def momentum(f: Populations) -> tuple[Plane, Plane]:
-    """Return the momentum a cell, without the half step of force that Guo's scheme adds."""
+    """Return the momentum in each cell, without the half step of force of Guo's scheme."""
     diagonal, antidiagonal = f[5] - f[6], f[7] - f[8]
     return (
         (f[1] - f[2]) + (diagonal + antidiagonal),

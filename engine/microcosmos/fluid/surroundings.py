@@ -14,10 +14,10 @@ from .lattice import DIRECTIONS, PAIRS, Plane, Populations, Vectors, equilibrium
 
 
 class Sponge(eqx.Module):
-    """Cells in which the fluid is drawn to a free stream at rest density."""
+    """Cells that relax the fluid towards a free stream at rest density."""
 
     strength: Float[Array, "x y"]
-    """Share of the difference that a step removes."""
+    """Share of the difference from the free stream that a step removes."""
     velocity: Float[Array, "2"]
 
 
@@ -41,7 +41,7 @@ def advance(
 ) -> Populations:
     """Collide, stream, bounce back at walls, and relax the sponge.
 
-    `rho` and `momentum` are the moments of `f`, without force; `force` is what bodies add.
+    `rho` and `momentum` are the moments of `f`, without force; `force` is that of bodies.
     """
     if surroundings.force is not None:
         force = force + surroundings.force[:, None, None]

@@ -1,4 +1,4 @@
-"""A CPPN that sets rest angles and rest lengths of a given body."""
+"""A CPPN as the controller of a given body; `development` maps its outputs to rest shapes."""
 
 from dataclasses import dataclass, replace
 

@@ -25,7 +25,7 @@ class Controls:
 
     `position` is (node,), `timer` (input, time), `ramp` (time,); rest angles and lengths are
     the body's, in rad and cells. A network that `senses` has one more input, known only during
-    the simulation; the outputs of any other network for all times are one batch.
+    the simulation; any other network is evaluated for all times in one batch.
     """
 
     position: np.ndarray
@@ -98,7 +98,7 @@ def network_inputs(
 
 
 def shape_of_outputs(outputs: Points, ramp: Float[Array, ""], controls: Controls) -> Rest:
-    """Return the rest shape of outputs (output, node) at one time."""
+    """Return the rest shape at one time from outputs (output, node)."""
     rest = shapes_of_outputs(outputs[:, None], ramp[None], controls)
     return Rest(rest.angle[0], rest.length[0])
 
@@ -106,7 +106,7 @@ def shape_of_outputs(outputs: Points, ramp: Float[Array, ""], controls: Controls
 def shapes_of_outputs(
     outputs: Outputs, ramp: Float[Array, "time"] | np.ndarray, controls: Controls
 ) -> Rest:
-    """Return the rest shapes of a network's outputs.
+    """Return the rest shapes at all times from a network's outputs.
 
     A joint takes the output at its node; an edge the mean of its two ends, so that a
     mirrored network makes a mirrored body.
@@ -122,7 +122,7 @@ def actuated(
     ramp: Float[Array, "time"] | np.ndarray,
     controls: Controls,
 ) -> Rest:
-    """Return rest shapes from controls of every joint and edge, −1 to 1."""
+    """Return rest shapes from the control of every joint and edge, −1 to 1."""
     dtype = angle.dtype
     ramp = jnp.asarray(ramp, dtype)[:, None]
     return Rest(

@@ -33,7 +33,7 @@ class Drive:
 
 @runtime_checkable
 class Encoding(Protocol):
-    """The meaning of a kind of genotype for a body in a world."""
+    """The development of one kind of genotype into a body driven in a world."""
 
     @property
     def room(self) -> tuple[int, int] | None:

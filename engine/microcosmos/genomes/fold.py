@@ -13,7 +13,7 @@ from .encoding import Drive, Networkless, Scalar
 from .genotype import Vector
 
 Lengths = Callable[[Array, Array], Array]
-"""From the body's rest lengths and genes to rest lengths."""
+"""A function from the body's rest lengths and genes to new rest lengths."""
 
 
 def scaled(lengths: Array, genes: Array) -> Array:
@@ -28,7 +28,7 @@ def added(lengths: Array, genes: Array) -> Array:
 
 @dataclass(frozen=True)
 class FoldEncoding(Networkless):
-    """Genes of any size: angles added to the body's, then lengths."""
+    """Genes of any size: changes of the body's rest angles, then of its rest lengths."""
 
     rest_angle: np.ndarray
     """(joint,) of the body, in rad."""

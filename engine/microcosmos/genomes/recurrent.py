@@ -34,7 +34,7 @@ def advance(network: CPPN, values: Points, inputs: Points) -> Points:
 
 
 def drive_recurrent(network: CPPN, controls: Controls, world: World, start: State) -> Drive:
-    """Open loop, computed before the simulation, or closed loop where the network senses."""
+    """Drive a world: in open loop, computed before it, or in closed loop if it senses."""
     dtype = start.positions.dtype
     rows = slice(controls.inputs, controls.inputs + OUTPUTS)
     nothing = jnp.zeros((len(network.bias), len(controls.position)), dtype)

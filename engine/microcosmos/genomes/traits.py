@@ -18,7 +18,7 @@ STIFFNESSES = ("stretch", "shear", "bend")
 
 @dataclass(frozen=True)
 class Plan:
-    """The dependence of a body's shape on angles and lengths, as NumPy arrays."""
+    """The forward kinematics of a body: its positions by angles and lengths (NumPy arrays)."""
 
     angle: np.ndarray
     """(edge,) direction of each edge of the unchanged body, in rad."""
@@ -78,7 +78,7 @@ def shaped(
 
 
 def cut(body: Shaped, present: Bool[Array, "node"]) -> Shaped:
-    """Keep only some nodes of a chain, and its centre in place."""
+    """Remove the absent nodes of a chain and keep its centre in place."""
     rods = grown_rods(body.world.rods, present)
     world = replace(body.world, rods=rods, present=present)
     middle = jnp.mean(body.start.positions, 0)

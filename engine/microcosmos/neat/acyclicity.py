@@ -1,4 +1,4 @@
-"""Reachability of nodes, as sets in 32-bit words."""
+"""Acyclic additions: reachability of nodes, as sets in 32-bit words."""
 
 import jax
 import jax.numpy as jnp

@@ -17,7 +17,7 @@ class Coefficients:
     disjoint: float
     weight: float
     small: int = 0
-    """Largest number of connections for which the distance is not divided by it."""
+    """Networks with at most this many connections have N = 1 in the distance."""
     totals: bool = False
     """TensorNEAT's form: nodes count as well as connections, and differences of matching
     genes are summed and divided by the number of genes, not averaged."""

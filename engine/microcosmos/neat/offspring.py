@@ -75,7 +75,7 @@ def shares(
     now: Ranking,
     settings: Settings,
 ) -> Float[Array, "species"]:
-    """Return the share of offspring of each species; shares sum to 1 where any is able."""
+    """Return the share of offspring of each species; shares sum to 1 if any may breed."""
     members = jnp.maximum(1, species.members)
     if settings.allotment == "rank":
         share = jnp.sum(able) - ranks(jnp.where(able, now.best, -jnp.inf))
@@ -95,7 +95,7 @@ def allot(
     """Return numbers of offspring that sum to `total` exactly, each within 1 of its share.
 
     Ends of consecutive shares are rounded. Each able species first gets `minimum` offspring,
-    if `total` allows.
+    if `total` suffices.
     """
     count = jnp.maximum(1, jnp.sum(able))
     least = jnp.where(able, jnp.minimum(minimum, total // count), 0)

@@ -1,4 +1,4 @@
-"""Rows of genes: writing, choosing, removing and matching."""
+"""Rows of genes: add, choose, match and remove them."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -67,7 +67,7 @@ def match(
 
 
 def barrier(values):
-    """Return the same values; XLA compiles their producers and consumers separately, faster."""
+    """Return the same values; XLA compiles their producers and consumers apart, faster."""
     return jax.lax.optimization_barrier(values)
 
 

@@ -97,7 +97,7 @@ PAPER = Settings(
 """The XOR experiment of Stanley and Miikkulainen (2002), section 4.1.
 
 From the authors' program, not the paper: the steps of weights, unchanged weights where
-structure is added, and the shares of survivors and of crossover without mutation. Ours: a
+structure is added, and the shares of survivors and of crossover without mutation. Changed: a
 stagnant population keeps all species (the paper keeps two after 20 generations, which solved
 XOR less often), weights stay within 8, the best species never stagnates, at most 50 species.
 """

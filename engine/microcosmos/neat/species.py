@@ -60,7 +60,7 @@ def assign(
 ) -> Assignment:
     """Assign each network to the first compatible species, or let it found one.
 
-    That is the paper's rule. Once all rows are taken, a network compatible with none joins the
+    This is the paper's rule. Once all rows are taken, a network compatible with none joins the
     species with the nearest representative.
     """
     individuals, dtype = population.weight.shape[0], population.weight.dtype

@@ -25,7 +25,7 @@ class Axis(eqx.Module):
     logarithmic: bool = eqx.field(static=True)
 
     def place(self, value: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
-        """Map values to 0 to 1 on the axis' own scale, cut at the ends."""
+        """Map values to 0 to 1 on the axis' own scale, clipped at the ends."""
         low, high = self.low, self.high
         value = jnp.clip(value, low, high)
         if self.logarithmic:
@@ -123,7 +123,7 @@ def boxes(cells: int, axes: int) -> int:
 
 
 def candidates(centroids: np.ndarray) -> np.ndarray | None:
-    """Return the centroids that can be nearest to a place in each box, the last repeated.
+    """Return the centroids that can be nearest to a place in each box, padded with the last.
 
     None if the lists would be too long. From the middle m of a box with half diagonal h, no
     nearest centroid of a place in it is farther than |m − c| + 2 h, c being nearest to m.

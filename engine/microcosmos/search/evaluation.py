@@ -1,8 +1,8 @@
 """Evaluation: from genomes to fitness, descriptors and measures.
 
 One compiled program evaluates a block of a fixed number of creatures. Rollouts are chaotic, and
-a program of another shape rounds differently; so every creature goes through this same
-program, whatever its batch, slot, neighbours or device.
+a program of another shape rounds differently; so this one program evaluates every
+creature, whatever its batch, slot, neighbours or device.
 """
 
 from collections import deque
@@ -79,7 +79,7 @@ def evaluate(task: Task, genotype: Genotype) -> Evaluation:
 
 
 def evaluate_drive(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
-    """Simulate and measure a developed genotype: means over all placements."""
+    """Simulate and measure a developed genotype; return means over all placements."""
     if task.placements is None:
         return _evaluate(task, genotype, driven)
     found = jax.lax.map(

@@ -61,9 +61,9 @@ class GradientReport:
             f"{about}: {self.value:.6g}",
             f"error of the slope against finite differences: {', '.join(agrees)}",
             f"length of the gradient: {', '.join(grows)}",
-            f"from {self.starts} other starts: the same sign for {self.sign_agreement:.0%} of "
-            f"it, cosine {self.cosine:.2f}",
-            f"node steps at a limit, where it is cut: {self.limited:.1%}",
+            f"from {self.starts} other starts: {self.sign_agreement:.0%} of the gradient has "
+            f"the same sign, cosine {self.cosine:.2f}",
+            f"node steps at a limit, which cuts the gradient: {self.limited:.1%}",
         ]
 
 
@@ -129,7 +129,7 @@ def _gradient(
 
 
 def _error(program: Callable, values: gradients.Values, sizes: tuple[float, ...]) -> float:
-    """Return the slope along the gradient against central differences of the best size."""
+    """Return the relative error of the slope along the gradient, by the best differences."""
     _, own = program(values)
     length = jnp.linalg.norm(own)
     flat, whole = ravel_pytree(values)

@@ -1,7 +1,7 @@
 """Derivatives of a creature's measures, by reverse mode through the whole simulation.
 
-They are by its genes, rest shape and stiffnesses, and by the fluid's viscosity. Some parts are
-constant for them: the length of a displacement at its limit, the cells that a point acts on,
+Variables are its genes, rest shape and stiffnesses, and the fluid's viscosity. Differentiation
+treats as constant: the length of a displacement at its limit, the cells that a point acts on,
 the share of time at a limit, counts of nodes and connections. See `docs/gradients.md`.
 """
 

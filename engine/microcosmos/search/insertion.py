@@ -130,7 +130,7 @@ def _winners(
     there: Int[Array, "row"],
     able: Bool[Array, "row"],
 ) -> Bool[Array, "row"]:
-    """Return the candidates that come first in their cell, before its elite and each other.
+    """Return the candidates that rank above their cell's elite and its other candidates.
 
     Genes decide only at equal fitness.
     """

@@ -24,7 +24,7 @@ Scalar = Float[Array, ""]
 
 
 def observe(state: State, measures: Measures) -> Measures:
-    """Return the measures of a step without the force, a row for each body."""
+    """Return the measures of a step without the forces of bodies."""
     return replace(measures, force=None)
 
 

@@ -1,4 +1,4 @@
-"""Reevaluation of elites under disturbed conditions: how robust is a result?
+"""Reevaluation of elites under disturbed conditions, a test of their robustness.
 
 Elites are the best of many noisy or fragile evaluations; Flageat and Cully, Artificial Life
 32 (2020) and arXiv:2308.00463 correct an archive by evaluating its elites again.

@@ -51,7 +51,7 @@ def watch(world: World, state: State, measures: Measures) -> Watched:
 
 
 def impulse(watched: Watched) -> Float[Array, ""]:
-    """Return the largest net momentum that a body has given away, over all times."""
+    """Return the largest net momentum that a body has given to the fluid at any time."""
     return jnp.max(jnp.sqrt(jnp.sum(jnp.cumsum(watched.force, 0) ** 2, -1)))
 
 

@@ -34,7 +34,7 @@ class Backend:
     algorithm: Any
     next_state: Callable[[State, Array], State]
     meta: Mapping[str, Any]
-    """Names for its genomes, for `networks.read_tensorneat`."""
+    """Names for its genomes, for `viz.networks.read_tensorneat`."""
 
     def setup(self, seed: int) -> State:
         """Return the first population."""
@@ -53,7 +53,7 @@ class Backend:
         return self.next_state(state, jnp.asarray(np.where(np.isnan(values), -np.inf, values)))
 
     def to_arrays(self, state: State) -> dict[str, np.ndarray]:
-        """Return everything in a state by name, that of species behind `species.`."""
+        """Return all arrays of a state by name; those of its species as `species.*`."""
         return _flat(state, "")
 
     def from_arrays(self, arrays: Mapping[str, np.ndarray | Array]) -> State:
@@ -74,7 +74,7 @@ class Backend:
 def build(
     settings: Settings, inputs: int, outputs: int, max_nodes: int, max_connections: int
 ) -> Backend:
-    """Build TensorNEAT with those of our settings that it has; it allots by rank.
+    """Build TensorNEAT with those of our settings that it has; it allots offspring by rank.
 
     Raises `ValueError` if it is not installed, or cannot follow the settings.
     """

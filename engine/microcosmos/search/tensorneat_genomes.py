@@ -1,6 +1,6 @@
 """Conversion of a population of TensorNEAT's genomes to our networks, without a loop.
 
-Each row equals the result of `networks.to_genes`; a test compares them.
+Each row equals the result of `viz.networks.to_genes`; a test compares them.
 """
 
 from collections.abc import Sequence

@@ -26,7 +26,7 @@ class View:
 
     @property
     def scale(self) -> np.ndarray:
-        """Pixels a cell along x and y."""
+        """Pixels per cell along x and y."""
         return np.array(self.shape[::-1]) / self.size
 
     def pixels(self, points: np.ndarray) -> np.ndarray:
@@ -122,7 +122,7 @@ def frame(
     number, colours = frame_number(replay, number), theme_of(theme)
     middle = replay.positions[number].mean(0, dtype=float)
     seen = view(replay.size, width, middle if follow else np.array(replay.size) / 2)
-    # The strongest vorticity has the colours at the ends.
+    # The strongest vorticity has the first or last colour.
     share = seen.sampled(replay.levels[number]) * np.float32(replay.quantum / replay.strongest)
     picture = _table(theme)[np.rint(255 * np.clip(share, -1, 1)).astype(np.int16) + 255]
     dots = seen.pixels(_grid(seen))

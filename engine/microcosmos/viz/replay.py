@@ -153,7 +153,7 @@ def interval(scene: Scene, network_nodes: int) -> int:
     """
     cells = scene.world.width * scene.world.height
     several = placements(scene.world)
-    simulations = 1 + several if several > 1 else 1  # The shown one, and those of the mean.
+    simulations = 1 + several if several > 1 else 1  # The recorded one, and those averaged.
     for field, limit, found, unit in (
         ("task.steps", CELL_STEPS, cells * scene.task.steps * simulations, "cell steps"),
         ("body.nodes", 2**32, simulation(scene, network_nodes), "bytes of memory"),
@@ -200,7 +200,7 @@ class Recording(eqx.Module):
 def _program(scene_json: str, every: int) -> Callable[[search.Actuator], tuple]:
     """Return the program from an actuator to the film and the measures.
 
-    Compiled programs are kept, so that the second creature of a run is shown at once.
+    The cache of programs spares the second creature of a run the compilation.
     """
     scene = Scene.model_validate_json(scene_json)
     task = build_task(scene)

@@ -90,7 +90,7 @@ class Replay:
 
     @cached_property
     def strongest(self) -> float:
-        """The vorticity that one value in a hundred exceeds, of those that are not zero."""
+        """The vorticity that 1 % of the nonzero values exceed."""
         counts = np.bincount(self.levels.ravel().view(np.uint8), minlength=256)
         values = np.arange(256, dtype=np.uint8).view(np.int8).astype(int)
         tally = np.bincount(np.abs(values), counts)

@@ -1,4 +1,4 @@
-"""Measures of a step."""
+"""Computation of the measures of a step."""
 
 import equinox as eqx
 import jax.numpy as jnp

@@ -54,7 +54,7 @@ class World(eqx.Module):
     form: Form = eqx.field(static=True, default_factory=Form)
     limits: Limits = Limits()
     nu_c: Float[Array, ""] | None = None
-    """Viscosity at which actuators have half of their strength; None: they never tire."""
+    """Viscosity at which actuators have half of their strength; None: full strength."""
     steric: fields.Steric | None = None
     energy: fields.Energy | None = None
     surroundings: fluid.Surroundings = fluid.Surroundings()
@@ -109,6 +109,6 @@ def at_rest(world: World, positions: Vectors) -> State:
 
 
 def flow(world: World, state: State) -> fluid.Vectors:
-    """Return the fluid's velocity in cells a step, without the half step of force."""
+    """Return the fluid's velocity in cells per step, without the half step of force."""
     momentum = fluid.momentum(state.populations)
     return jnp.stack(momentum) / fluid.density(state.populations)[None]

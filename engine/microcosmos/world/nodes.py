@@ -40,10 +40,9 @@ def collect(world: World, state: State, at: coupling.Windows) -> State:
 def repel(world: World, positions: Vectors) -> tuple[Vectors, Vectors]:
     """Return steric displacements within bodies, and of each body as a whole.
 
-    Forces on the fluid sum to zero over a body, which would remove its mean displacement; so
-    the mean moves the body after the fluid's response. It is taken before displacements are
-    limited: displacements between nodes of one body then sum to zero in it, so that no body
-    moves itself.
+    The forcing on a body sums to zero, which would remove its mean displacement; so the mean
+    is returned apart and moves the body after the fluid's response. It is taken before
+    displacements are limited, so that repulsion within a body cannot move the body.
     """
     if world.steric is None:
         return jnp.zeros_like(positions), jnp.zeros_like(positions)

@@ -1,4 +1,4 @@
-"""Many steps of a world under control."""
+"""Rollouts: many steps of a world under control."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -35,9 +35,9 @@ def rollout(
     """Return the state after all steps of `inputs` (time first), and observations of each.
 
     In each step `remember` sets the state's memory, then `control` makes the rest shape from
-    the world, the state and the inputs. With `segment`, reverse mode keeps the state only after
-    every so many steps and repeats the steps (Griewank and Walther, ACM Trans. Math. Softw. 26,
-    19, 2000, with two levels).
+    the world, the state and the inputs. With `segment`, reverse mode keeps the state only
+    after every `segment` steps and repeats the steps (Griewank and Walther, ACM Trans. Math.
+    Softw. 26, 19, 2000, with two levels).
     """
 
     def advance(state, given):
@@ -56,7 +56,7 @@ def rollout(
     def joined(many, few):
         return jnp.concatenate([many.reshape(-1, *many.shape[2:]), few])
 
-    # Within a loop no other code could share the repeated results.
+    # XLA does not merge repeated steps across a loop.
     segments = jax.checkpoint(partial(jax.lax.scan, advance), prevent_cse=False)
     state, seen = jax.lax.scan(segments, state, jax.tree.map(cut, inputs))
     state, last = jax.lax.scan(advance, state, jax.tree.map(lambda x: x[whole:], inputs))

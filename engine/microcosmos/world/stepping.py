@@ -22,7 +22,7 @@ class Motion(eqx.Module):
     target: Vectors
     angles: Float[Array, "edge"]
     shortened: Float[Array, "node"]
-    """Factor of each displacement to stay within the limit."""
+    """Factor that shortens each displacement to the limit."""
 
 
 def step(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measures]:

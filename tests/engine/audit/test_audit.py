@@ -36,7 +36,7 @@ def test_a_ray_that_pushes_itself_does_not():
     verdict, rows = audited("paper", "ray", 2.0)
     assert not verdict["survives"]
     assert rows["impulse"]["passed"] is False
-    assert "it pushes itself: this form of the coupling lets it" in verdict["reasons"]
+    assert "it pushes itself: this form of the coupling allows it" in verdict["reasons"]
 
 
 @pytest.mark.parametrize("senses", [pytest.param(False, marks=pytest.mark.long), True])

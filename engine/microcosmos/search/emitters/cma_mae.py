@@ -1,8 +1,8 @@
-"""CMA-MAE (Fontaine and Nikolaidis, GECCO 2023): climbing above thresholds that follow.
+"""CMA-MAE (Fontaine and Nikolaidis, GECCO 2023): evolution strategy with cell thresholds.
 
 An evolution strategy ranks its children by how far they are above their cells' thresholds,
-which then move towards the fitness found there. The batch form of that is the one of
-Tjanaka et al., GECCO 2023 (pyribs), section on archives with learning rates.
+which then move towards the fitness found there. The batch update is that of Tjanaka
+et al., GECCO 2023 (pyribs), section on archives with learning rates.
 """
 
 from dataclasses import dataclass, replace
@@ -57,7 +57,7 @@ class CmaMae:
         chosen = draw(archive, key=jax.random.fold_in(keys[0], 1))
         genotypes = archive.genotypes
         assert isinstance(genotypes, Vector)
-        # Where the archive is empty, its first row of zeros is the middle again.
+        # In an empty archive the first row is zeros, the middle of the range.
         anew = es.start(genotypes.values[chosen], self.step)
         distribution = es.restarted(state.restart, anew, state.distribution)
         values, z = es.draw(distribution, keys=keys)

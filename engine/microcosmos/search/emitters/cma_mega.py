@@ -33,7 +33,7 @@ class CmaMegaState(eqx.Module):
     """The normal numbers behind the present weights."""
     weights: Float[Array, "slot output"]
     due: Bool[Array, ""]
-    """True if the present children are its own; the first ones are newcomers."""
+    """True if the emitter made the present children; the first ones are newcomers."""
     restart: Bool[Array, ""]
     """True if the search restarts at an elite."""
 
@@ -102,7 +102,7 @@ class CmaMega:
         return replace(children, genotypes=Vector(values)), replace(state, slopes=rows)
 
     def tell(self, state: CmaMegaState, outcome: Outcome) -> CmaMegaState:
-        """Rank by what entered, those in empty cells first; move θ and adapt."""
+        """Rank children by their gain, those in empty cells first; move θ and adapt."""
         gain = jnp.where(outcome.fresh, outcome.fitness, outcome.improvement)
         gain = jnp.where(outcome.feasible, gain, -jnp.inf)
         order = jnp.lexsort((-gain, ~(outcome.fresh & outcome.entered)))

@@ -44,7 +44,7 @@ def children(genotypes: Genotype, parents: list[Int[Array, "slot"]], name: str) 
 
 
 def or_newcomers(archive: Elites, varied: Children, fresh: Children) -> Children:
-    """Return the varied children, or newcomers if the archive is empty."""
+    """Return the varied children, or the fresh ones if the archive is empty."""
     any_elite = jnp.any(archive.occupied)
     return jax.tree.map(lambda one, other: jnp.where(any_elite, one, other), varied, fresh)
 

@@ -110,15 +110,15 @@ class Stateless:
 
 @runtime_checkable
 class Learner(Emitter, Protocol):
-    """An emitter that changes its children, `lessons` times, by derivatives it asks for."""
+    """An emitter that improves its children by derivatives, `lessons` times a generation."""
 
     @property
     def lessons(self) -> int:
-        """Lessons in a generation."""
+        """Number of updates by derivatives in a generation."""
         ...
 
     def asks(self, state: State, children: Children) -> Genotype:
-        """Return the genotypes whose derivatives are wanted, their number first."""
+        """Return the genotypes whose derivatives the next lesson needs, as a batch."""
         ...
 
     def learn(self, state: State, children: Children, slopes: Slopes) -> tuple[Children, State]:

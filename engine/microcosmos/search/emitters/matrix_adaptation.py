@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int, Key
 
 SMALLEST, LARGEST = 1e-10, 1e4
-"""Standard deviations beyond which a distribution has converged or run away."""
+"""Standard deviations beyond which a distribution has converged or diverged."""
 
 
 class Distribution(eqx.Module):
@@ -114,7 +114,7 @@ def update(
 
 
 def must_restart(distribution: Distribution) -> Bool[Array, ""]:
-    """Return whether the distribution has converged, run away, or is not finite."""
+    """Return whether the distribution has converged, diverged, or is not finite."""
     deviations = distribution.sigma * jnp.sqrt(jnp.sum(distribution.m**2, 1))
     finite = jnp.all(jnp.isfinite(distribution.m)) & jnp.all(jnp.isfinite(distribution.mean))
     useful = (jnp.max(deviations) > SMALLEST) & (jnp.max(deviations) < LARGEST)

@@ -1,4 +1,4 @@
-"""NEAT with its own population: parents are its networks, the archive only records."""
+"""NEAT with its own population: parents are its networks; the archive only records."""
 
 from dataclasses import dataclass, replace
 
@@ -38,7 +38,7 @@ class Population(eqx.Module):
 
 @dataclass(frozen=True)
 class PopulationNeat:
-    """NEAT whole (Stanley and Miikkulainen 2002): species, sharing, crossover."""
+    """NEAT with species, fitness sharing and crossover (Stanley and Miikkulainen 2002)."""
 
     slots: int
     newcomer: Newcomer

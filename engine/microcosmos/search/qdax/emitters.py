@@ -27,7 +27,7 @@ class Pending(eqx.Module):
     place: Float[Array, "slot axis"]
     sound: Bool[Array, "slot"]
     due: Bool[Array, ""]
-    """True if the last children were its own; the first ones are newcomers."""
+    """True if the emitter made the last children; the first ones are newcomers."""
 
 
 @dataclass(frozen=True)
@@ -117,8 +117,8 @@ def cma_me(
 class NeatEmitter:
     """NEAT's mutations and crossover for QDax's `MAPElites`, whose genotypes are then networks.
 
-    Its state is the next numbers that no gene has yet: the same mutation in a batch has the
-    same number. Among several emitters of a `MultiEmitter` each sees all children.
+    Its state counts the next unused gene numbers: equal mutations in a batch get equal
+    numbers. Among several emitters of a `MultiEmitter` each sees all children.
     """
 
     emitter: Neat

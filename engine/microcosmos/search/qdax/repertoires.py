@@ -73,7 +73,7 @@ def order(cells: Cells) -> Int[np.ndarray, "cell"]:
 
 
 def to_repertoire(elites: Elites, cells: Cells) -> Any:
-    """Return a `MapElitesRepertoire` of the same elites; `from_repertoire` is the way back."""
+    """Return a `MapElitesRepertoire` of the same elites; `from_repertoire` is the inverse."""
     rows = order(cells)
     there, genotypes = elites.occupied[rows], elites.genotypes
     genes = genotypes.values if isinstance(genotypes, Vector) else genotypes

@@ -27,7 +27,7 @@ def of_archive(found: Archive, names: list[str] | None) -> str:
         f"{_over(along)}; {fittest} {best}."
     )
     if len(along) < len(found.axes) or {a.name for a in along} != {a.name for a in found.axes}:
-        first += " Of elites that share a place the fittest is shown."
+        first += " Where elites share a place, the fittest is shown."
     return " ".join([first, run(found)])
 
 
@@ -39,13 +39,13 @@ def of_curves(groups: Sequence[Group], shown: Sequence[str]) -> str:
     if several:
         first += ": median over seeds (thick), band between the quartiles, single runs (thin)"
     if any(len({len(run.curves["best"]) for run in group.runs}) > 1 for group in groups):
-        first += "; medians and bands as far as all seeds went"
+        first += "; medians and bands end with the shortest run"
     named = "; ".join(
         f"{group.label}: {_seeds(group.seeds)}" for group in groups if group.label
     )
     compared = [f"Runs differ in {named}."] if named else []
     common = run(groups[0].runs[0], seeds=() if named else groups[0].seeds)
-    common = f"Otherwise as in the first: {common}" if named else common
+    common = f"All else as in the first run: {common}" if named else common
     return " ".join([first + ".", *compared, common])
 
 

@@ -23,8 +23,9 @@ MOST_TICKS = 5
 def sweep(rows: Sequence[Row]) -> Any:
     """Draw displacement in a cycle against viscosity: a panel a form, a line a swimmer.
 
-    Hollow marks had a limit active; crosses at the top did not finish. A form that is not
-    force-free has a shaded panel. The upper axis has the worm's Reynolds number.
+    A hollow mark means an active limit, a cross at the top an unfinished simulation.
+    Panels of forms that are not force-free are shaded. The upper axis has the worm's Reynolds
+    number.
     """
     require_columns(rows, NEEDED)
     found = {row["form"] for row in rows}

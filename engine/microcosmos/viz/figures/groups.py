@@ -86,7 +86,7 @@ def _value(value: Any) -> str:
 
 
 def spread(runs: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return lower quartile, median and upper quartile, as far as all runs go."""
+    """Return lower quartile, median and upper quartile, up to the end of the shortest run."""
     length = min(map(len, runs))
     values = np.stack([run[:length] for run in runs])
     return tuple(np.quantile(values, (0.25, 0.5, 0.75), axis=0))

@@ -50,7 +50,7 @@ def family(found: Archive) -> Family:
     lost = [int(cell) for cell in found.cells if int(cell) not in latest]
     if lost:
         raise ValueError(
-            f"`lineage` must hold every elite; that of cell {lost[0]} is not there"
+            f"`lineage` must hold every elite; the elite of cell {lost[0]} is missing"
         )
     return Family(
         parents=np.array(parents, int).reshape(-1, 2),
@@ -95,7 +95,7 @@ def lineage(
     colours: str = "viridis",
     width: float = 178.0,
 ) -> Any:
-    """Draw generations from left to right: in grey all elites and their first parents.
+    """Draw generations from left to right; all elites and their first parents are grey.
 
     Ancestors of the elite of `cell` (none: the fittest) have the colours of their fitness;
     dashed lines lead from second parents.

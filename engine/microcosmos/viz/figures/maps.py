@@ -1,4 +1,4 @@
-"""Maps of an archive: a cell for each kind of creature, in the colour of its fitness."""
+"""Maps of an archive: every cell in the colour of its elite's fitness or another measure."""
 
 from typing import Any
 
@@ -18,7 +18,7 @@ def archive(
     colours: str = "viridis",
     width: float = 85.0,
 ) -> Any:
-    """Return the map over one or two axes; of elites at one place it shows the fittest.
+    """Return the map over one or two axes; where elites share a place, the fittest is shown.
 
     `colour` is fitness or any other measure; a ring marks the fittest elite.
     """
@@ -90,7 +90,7 @@ def _bins(panel: Any, found: Archive, along: list[Axis], shown: np.ndarray, shad
     values[there[1, rows], there[0, rows]] = shown[rows]
     panel.set_facecolor(EMPTY)
     mesh = panel.pcolormesh(x.edges, y.edges, np.ma.masked_invalid(values), **shades)
-    # Otherwise viewers of PDF files show gaps between cells.
+    # Without edges, viewers of PDF files show gaps between cells.
     mesh.set(edgecolor="face", linewidth=0.1)
     return mesh
 

@@ -106,7 +106,7 @@ def sheet(
 ) -> Any:
     """Draw each region's swimmer at some moments, and the path of its middle.
 
-    All have one scale; they are pale at the start and at the end in the colour of fitness.
+    All have one scale; colours run from pale at the start to that of fitness at the end.
     """
     if not 1 <= moments <= 50:
         raise ValueError(f"`moments` must be from 1 to 50, got {moments}.")

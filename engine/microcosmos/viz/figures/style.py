@@ -10,7 +10,7 @@ import numpy as np
 from ...optional import require
 
 INCH = 25.4
-"""Millimetres an inch."""
+"""Millimetres per inch."""
 
 COLUMNS = {"single": 85.0, "double": 178.0}
 """Widths of a column and of a page in most journals, in mm."""
@@ -142,4 +142,4 @@ def require_columns(rows: Sequence[Row], names: Sequence[str]) -> None:
         raise ValueError("`rows` must have at least one row, got none.")
     for number, row in enumerate(rows):
         if lacking := [name for name in names if name not in row]:
-            raise ValueError(f"`rows` must have {', '.join(lacking)}; row {number} has not.")
+            raise ValueError(f"`rows` must have {', '.join(lacking)}; row {number} does not.")

@@ -31,7 +31,7 @@ def fill(network: Network, key: int) -> str:
 
 
 def activation(network: Network, key: int) -> str:
-    """Return the activation of a node; an output also has the transform."""
+    """Return the activation of a node; a linear output has the output transform."""
     name = network.node[key].activation
     transform = network.output_transform
     return transform if key in network.outputs and transform and name == "identity" else name

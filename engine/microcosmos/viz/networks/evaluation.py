@@ -1,4 +1,4 @@
-"""The values of a network in double precision, and whether two networks agree."""
+"""Evaluation of networks in double precision, and comparison of two of them."""
 
 import numpy as np
 

@@ -29,7 +29,7 @@ def dump_tensorneat(genome: Genome, fitness: float = float("nan")) -> bytes:
 def load_tensorneat(
     data: bytes, meta: Mapping[str, Any] | None = None
 ) -> tuple[Network, float]:
-    """Return the network in a file, and its fitness or NaN. Raises `ValueError` for others.
+    """Return the network in a file, and its fitness or NaN. Raises `ValueError` if invalid.
 
     A file that TensorNEAT itself wrote holds no names: give them as `meta`.
     """

@@ -1,4 +1,4 @@
-"""Networks from the genes of a creature, and genes of those networks that ours can express."""
+"""Conversion of a creature's genes to networks, and of networks to genes where possible."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -17,7 +17,7 @@ BOUND = 1e6
 
 
 def of_creature(identity: Mapping[str, Any]) -> Network:
-    """Return the network in a creature's identity. Raises `ValueError` if its genes are none.
+    """Return the network in a creature's identity. Raises `ValueError` if it has none.
 
     A recurrent one runs for the steps of the simulation with constant inputs.
     """
@@ -37,7 +37,7 @@ def from_genes(
 ) -> Network:
     """Return the network of a creature's genes without disabled connections.
 
-    Feed-forward, or recurrent over so many `steps` from values of 0.
+    With `steps` it is recurrent, and starts from values of 0.
     """
     nodes, connections = genes["nodes"], genes["connections"]
     biases, weights = decode(nodes["bias"]).tolist(), decode(connections["weight"]).tolist()

@@ -43,7 +43,7 @@ class Network:
     only if its source has a value, and a node without messages has none: NaN. Under `always`
     (ours), a node without links computes activation(bias).
 
-    Feed-forward, or `steps` times computed all at once from the values before (recurrent).
+    `steps` is None for feed-forward; else all nodes are updated together, so many times.
     """
 
     inputs: int
@@ -112,7 +112,7 @@ class Network:
 
 
 def renumbered(network: Network, key: Callable[[int], int]) -> Network:
-    """Return the network with every key exchanged, nodes in the order of the new ones."""
+    """Return the network with every key mapped by `key`, nodes in the order of new keys."""
     nodes = [replace(node, key=key(node.key)) for node in network.nodes]
     return replace(
         network,

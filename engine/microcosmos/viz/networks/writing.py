@@ -14,7 +14,7 @@ from .reading import CONNECTIONS, NODES, read_tensorneat
 FORMAT = "microcosmos-tensorneat/1"
 
 SMALLEST = 16
-"""Rows are this many, or twice as many until they suffice: few shapes, few compilations."""
+"""Least number of rows, doubled until they suffice: few shapes need few compilations."""
 
 
 @dataclass(frozen=True)

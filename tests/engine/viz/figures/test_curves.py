@@ -58,7 +58,7 @@ def test_specs_are_told_apart_by_the_fields_in_which_they_differ(runs):
     np.testing.assert_allclose(thick.get_ydata(), [2, 3])
     text = caption.of_curves(grouped(runs), ["best", "hit_rate", "qd_score"])
     assert text.startswith("Best fitness, hit rate and QD score: median over seeds (thick)")
-    assert "; medians and bands as far as all seeds went. " in text
+    assert "; medians and bands end with the shortest run. " in text
     assert "world viscosity 0.5: seeds 7, 8" in text
 
 
