@@ -2,7 +2,7 @@
 
 from .control import CPPNControl
 from .cppn import ACTIVATIONS, CPPN, evaluate, minimal
-from .development import Controls, develop, linear, network_function, rest_shape, sine_cosine
+from .development import Controls, develop, function_of, linear, rest_shape, sine_cosine
 from .direct import Direct
 from .encoding import Drive, Encoding
 from .fold import FoldEncoding, added, scaled

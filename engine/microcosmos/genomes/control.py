@@ -7,14 +7,7 @@ from jaxtyping import Array, PRNGKeyArray
 
 from ..world import State, World, sense
 from .cppn import CPPN, minimal
-from .development import (
-    OUTPUTS,
-    Controls,
-    NetworkFunction,
-    network_function,
-    rest_shape,
-    rest_shapes,
-)
+from .development import OUTPUTS, Controls, Function, function_of, rest_shape, rest_shapes
 from .encoding import Drive, Scalar, shifted
 from .recurrent import drive_recurrent
 
@@ -36,7 +29,7 @@ class CPPNControl:
         controls = replace(self.controls, timer=shifted(self.controls.timer, phase))
         if self.recurrent:
             return drive_recurrent(genotype, controls, world, start)
-        return drive_feed_forward(network_function(genotype), controls, world, start)
+        return drive_feed_forward(function_of(genotype), controls, world, start)
 
     def size(self, genotype: CPPN) -> tuple[Array, Array]:
         return network_size(genotype, self.controls.inputs + OUTPUTS)
@@ -51,9 +44,7 @@ def network_size(network: CPPN, fixed: int) -> tuple[Array, Array]:
     return jnp.sum(network.node_used) - fixed, jnp.sum(enabled)
 
 
-def drive_feed_forward(
-    read: NetworkFunction, controls: Controls, world: World, start: State
-) -> Drive:
+def drive_feed_forward(read: Function, controls: Controls, world: World, start: State) -> Drive:
     """Drive a world by a network without memory."""
     dtype = start.positions.dtype
     if not controls.senses:

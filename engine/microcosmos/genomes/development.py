@@ -15,7 +15,7 @@ OUTPUTS = 2
 """Rest angle and rest length; a network that grows the body has further outputs."""
 
 Outputs = Float[Array, "2 time node"]
-NetworkFunction = Callable[[Points], Points]
+Function = Callable[[Points], Points]
 """A network as a function of inputs (input, point) with outputs (output, point)."""
 
 
@@ -58,15 +58,15 @@ def linear(steps: int, period: float) -> np.ndarray:
 
 def develop(network: CPPN, controls: Controls) -> Rest:
     """Return the rest angles (time, joint) and rest lengths (time, edge) of a CPPN."""
-    return rest_shapes(network_function(network), controls, network.bias.dtype)
+    return rest_shapes(function_of(network), controls, network.bias.dtype)
 
 
-def network_function(network: CPPN) -> NetworkFunction:
+def function_of(network: CPPN) -> Function:
     """Return a feed-forward network as a function."""
     return lambda inputs: evaluate(network, inputs, OUTPUTS)
 
 
-def rest_shapes(read: NetworkFunction, controls: Controls, dtype: Any) -> Rest:
+def rest_shapes(read: Function, controls: Controls, dtype: Any) -> Rest:
     """Return the rest shapes at all times, in one batch."""
     steps, nodes = len(controls.ramp), len(controls.position)
     position = np.tile(controls.position, steps)[None]
@@ -76,7 +76,7 @@ def rest_shapes(read: NetworkFunction, controls: Controls, dtype: Any) -> Rest:
 
 
 def rest_shape(
-    read: NetworkFunction,
+    read: Function,
     controls: Controls,
     timer: Float[Array, "input"],
     ramp: Float[Array, ""],

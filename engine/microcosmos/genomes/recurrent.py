@@ -45,10 +45,8 @@ def drive_recurrent(network: CPPN, controls: Controls, world: World, start: Stat
             values = advance(network, values, network_inputs(controls, timer, None))
             return values, values[rows]
 
-        _, outputs = jax.lax.scan(step, nothing, timer)
-        return Drive(
-            world, start, shapes_of_outputs(jnp.moveaxis(outputs, 0, 1), ramp, controls)
-        )
+        outputs = jnp.moveaxis(jax.lax.scan(step, nothing, timer)[1], 0, 1)
+        return Drive(world, start, shapes_of_outputs(outputs, ramp, controls))
 
     def remember(
         world: World, state: State, given: tuple[Array, Array]

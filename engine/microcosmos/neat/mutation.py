@@ -43,28 +43,26 @@ def mutate(
     if rates.delete_node and outputs is None:
         raise ValueError("`outputs` must be given where `delete_node` is above 0, got None")
     nodes, genes = network.bias.shape, network.weight.shape
-    values, activations, toggles, decisions = draws(
+    values, activations, toggles, choice = draws(
         (nodes[0] + genes[0],), nodes, genes, (DECISIONS,), key=key
     )
     if rates.delete_node:
-        network = delete_node(network, rates.delete_node, inputs + (outputs or 0), decisions[0])
+        network = delete_node(network, rates.delete_node, inputs + (outputs or 0), choice[0])
     if rates.delete_connection:
-        network = delete_connection(network, rates.delete_connection, decisions[1])
+        network = delete_connection(network, rates.delete_connection, choice[1])
     network = barrier(network)
     splittable = network.connection_used & network.enabled
-    vary, link = decisions[2] < rates.values, decisions[3] < rates.add_connection
-    node = decisions[4] < rates.add_node
+    vary, link = choice[2] < rates.values, choice[3] < rates.add_connection
+    node = choice[4] < rates.add_node
     if rates.separate:
         vary = vary & ~link & ~node
     network = mutate_values(network, vary, rates, inputs, values)
     network = mutate_activations(network, rates, inputs, activations)
     network = toggle_connections(network, rates.toggle, toggles)
     network = barrier(network)
-    network, connection_row = barrier(
-        add_connection(network, link, rates, inputs, decisions[5:8])
-    )
+    network, connection_row = barrier(add_connection(network, link, rates, inputs, choice[5:8]))
     network, split_row, node_row, split = add_node(
-        network, splittable & network.enabled, node, rates, decisions[8:10]
+        network, splittable & network.enabled, node, rates, choice[8:10]
     )
     if rates.drop_split:  # The split connection stood above the added one.
         connection_row = connection_row - ((connection_row >= 0) & (split_row >= 0))

@@ -181,7 +181,7 @@ def test_a_response_is_what_a_batch_develops(network, float64):
     controls = build_controls(Control(period=30, ramp=0.2), body, STEPS)
     developed = genomes.develop(network(3), controls)
     sensing, cppn = replace(controls, senses=True), network(4, 0.0)
-    read = genomes.network_function(cppn)
+    read = genomes.function_of(cppn)
     respond = jax.jit(lambda *given: genomes.rest_shape(read, sensing, *given))
     for t in (0, 7, 59):
         sensed = jnp.asarray(np.random.default_rng(t).uniform(0, 2, 9))

@@ -149,10 +149,7 @@ def network_scores(networks, key=None):
 
 
 def test_our_neat_grows_networks_in_their_map_elites_and_numbers_them_alike():
-    loop, multi = (
-        qdax.require_qdax("core.map_elites"),
-        qdax.require_qdax("core.emitters.multi_emitter"),
-    )
+    loop, multi = map(qdax.require_qdax, ("core.map_elites", "core.emitters.multi_emitter"))
     rates = neat.Rates(0.8, 0.5, 0.1, 0.1, toggle=0.1, add_node=0.5, add_connection=0.3)
 
     def minimal(*, key):

@@ -24,8 +24,7 @@ def sweep(rows: Sequence[Row]) -> Any:
     """Draw displacement in a cycle against viscosity: a panel a form, a line a swimmer.
 
     A hollow mark means an active limit, a cross at the top an unfinished simulation.
-    Panels of forms that are not force-free are shaded. The upper axis has the worm's Reynolds
-    number.
+    Forms that are not force-free are shaded; the upper axis has the worm's Reynolds number.
     """
     require_columns(rows, NEEDED)
     found = {row["form"] for row in rows}
