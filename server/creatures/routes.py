@@ -8,9 +8,10 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse, Response
 
 from microcosmos.archive import creature, creature_h5
+from microcosmos.viz.networks import NetworkPositions
 
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE, ShareAccessDep
-from ..core.api import sends
+from ..core.api import Answers, sends
 from ..core.json_body import limited
 from ..core.schemas import Wire
 from ..core.static_files import IMMUTABLE
@@ -144,8 +145,9 @@ def _network_reader(form: str, media_type: str, description: str) -> Callable[..
 
 
 for form, (media_type, description, _) in networks.FORMS.items():
+    json_model: Answers = {200: {"model": NetworkPositions}} if form == "json" else {}
     router.get(
         f"/{{sha}}/network.{form}",
-        **sends(media_type, {404: {}}),
+        **sends(media_type, {404: {}, **json_model}),
         dependencies=[MAY_READ_SHARED],
     )(_network_reader(form, media_type, description))
