@@ -2,10 +2,10 @@
 
 import os
 import re
+import signal
 import subprocess
 import sys
 
-import psutil
 import pytest
 from drive import ROOT, free_port, wait_until
 
@@ -79,8 +79,6 @@ def test_a_server_without_an_admin_token_does_not_listen(tmp_path, refused):
 
 
 def test_a_killed_server_is_started_again(place, undisturbed):
-    children = psutil.Process(place.process.pid).children()
-    server = next(child for child in children if child.cmdline()[1:] == ["-m", "server.main"])
-    server.kill()
+    place.signal("server.main", signal.SIGKILL)
     wait_until(lambda: "server     died (signal SIGKILL)" in place.output.read_text(), 10, "")
     wait_until(place.answers, 30, "the server answers again")

@@ -42,7 +42,8 @@ def test_a_renderer_is_alive_from_birth_to_death(services, part):
     assert not alive(services, part, HOST)
 
 
-def test_a_missing_part_gives_an_exit_status(services, settings, monkeypatch):
+def test_a_missing_part_gives_an_exit_status(services, monkeypatch):
+    settings = services.settings
     monkeypatch.setenv("MICROCOSMOS_DATA", str(settings.data))
     monkeypatch.setenv("MICROCOSMOS_DATABASE_URL", settings.database_url)
     monkeypatch.setenv("MICROCOSMOS_REDIS_URL", settings.redis_url)
@@ -93,7 +94,8 @@ def test_nothing_is_ended_outside_a_container(container, monkeypatch, tmp_path):
     assert not (tmp_path / "fails").exists()
 
 
-def test_a_part_without_its_database_or_redis_is_not_unhealthy(settings, monkeypatch):
+def test_a_part_without_its_database_or_redis_is_not_unhealthy(services, monkeypatch):
+    settings = services.settings
     monkeypatch.setattr(healthcheck, "answers", lambda port, path: False)
     assert healthcheck.fault(settings, "server") == "The server does not answer."
     monkeypatch.setattr(healthcheck, "answers", lambda port, path: path == "/healthz")
