@@ -131,11 +131,9 @@ class Installation:
 
         def there() -> dict[str, Any] | None:
             found = self.read(run)
-            if condition(found):
-                return found
-            if found["status"] in TERMINAL:
+            if not (holds := condition(found)) and found["status"] in TERMINAL:
                 raise RuntimeError(f"the run {found['status']} too soon: {found['error']}")
-            return None
+            return found if holds else None
 
         return wait_until(there, *limits)
 

@@ -88,8 +88,8 @@ def compare(place: Installation, runs: dict[str, list[dict]]) -> bool:
         good &= own / other > bar
         rich.print(f"{method}, {figure}: {own / other:.2f} × random search (bar {bar})")
     draw(runs)
-    for method, found in runs.items():
-        purities = [purity(file) for run in found for file in fittest(place, run["id"], 10)]
+    for method, some in runs.items():
+        purities = [purity(file) for run in some for file in fittest(place, run["id"], 10)]
         rich.print(
             f"{method}: {np.mean(np.array(purities) >= PURE):.0%} of the ten fittest of each "
             f"seed are sinusoidal (median {statistics.median(purities):.0%} of the power in "
