@@ -14,15 +14,8 @@ from .artifacts import (
     GarbageFile,
 )
 from .base import Base, Expiring, Owned, Sha256
-from .results import (
-    Creature,
-    Elite,
-    GarbageCreature,
-    Generation,
-    InitialCreature,
-    Parent,
-    Result,
-)
+from .creatures import Creature, GarbageCreature, InitialCreature, Parent
+from .results import Elite, Generation, Result
 from .runs import (
     CANCELLED,
     FAILED,
@@ -40,5 +33,6 @@ from .runs import (
     Status,
     Sweep,
 )
-from .tokens import Share, Token
+from .shares import Share
+from .tokens import Token
 from .workers import Plugin, Worker

@@ -1,11 +1,20 @@
-"""Base classes of the tables, and the column type of hashes."""
+"""Base classes of the tables, and types of columns that several of them have."""
 
 from datetime import datetime
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 from uuid import UUID
 
-from sqlalchemy import JSON, ColumnElement, Double, LargeBinary, MetaData, and_, or_
-from sqlalchemy.orm import DeclarativeBase, Mapped, Session
+from sqlalchemy import (
+    JSON,
+    ColumnElement,
+    Double,
+    ForeignKey,
+    LargeBinary,
+    MetaData,
+    and_,
+    or_,
+)
+from sqlalchemy.orm import DeclarativeBase, Mapped, Session, mapped_column
 from sqlalchemy.types import TypeDecorator
 
 from ..core.database import Moment, clock, now
@@ -44,6 +53,13 @@ class Base(DeclarativeBase):
         list[float]: JSON(),
         list[int]: JSON(),
     }
+
+
+RunKey = Annotated[
+    UUID, mapped_column(ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True)
+]
+Place = Annotated[int, mapped_column(primary_key=True, autoincrement=False)]
+"""The number of a row within its run."""
 
 
 class Owned:

@@ -8,7 +8,7 @@ from sqlalchemy import ForeignKey, Index, Text
 from sqlalchemy.orm import Mapped, mapped_column
 
 from ..core.database import clock
-from .base import Base, Sha256
+from .base import Base, Place, RunKey, Sha256
 
 
 class Creature(Base):
@@ -39,7 +39,7 @@ class Parent(Base):
     __table_args__ = (Index(None, "parent"),)
 
     child: Mapped[str] = mapped_column(Sha256, ForeignKey("creatures.sha256"), primary_key=True)
-    position: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    position: Mapped[Place]
     parent: Mapped[str] = mapped_column(Sha256)
     """Only elites are kept as creatures, so the parent may have no row."""
 
@@ -49,9 +49,7 @@ class InitialCreature(Base):
 
     __tablename__ = "initial_creatures"
 
-    run_id: Mapped[UUID] = mapped_column(
-        ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True
-    )
+    run_id: Mapped[RunKey]
     creature: Mapped[str] = mapped_column(
         Sha256, ForeignKey("creatures.sha256"), primary_key=True, index=True
     )

@@ -1,13 +1,13 @@
-"""Tables of tokens and shares, which open the server to others until they expire."""
+"""The table of tokens."""
 
 from datetime import datetime
 from uuid import UUID, uuid4
 
-from sqlalchemy import CheckConstraint, ForeignKey, Index, String, Text, text
+from sqlalchemy import CheckConstraint, Index, String, text
 from sqlalchemy.orm import Mapped, mapped_column
 
 from ..core.database import clock
-from .base import Base, Expiring, Owned, Sha256
+from .base import Base, Expiring, Sha256
 
 SCOPES = ("read", "write", "admin")
 """Each scope includes those before it."""
@@ -36,27 +36,3 @@ class Token(Expiring, Base):
     scope: Mapped[str] = mapped_column(String(16))
     created_at: Mapped[datetime] = mapped_column(default=clock())
     last_used_at: Mapped[datetime | None]
-
-
-class Share(Owned, Expiring, Base):
-    """A creature or an archive that everybody with the address may see."""
-
-    __tablename__ = "shares"
-    __table_args__ = (
-        CheckConstraint("(creature IS NULL) <> (run_id IS NULL)", name="one_thing"),
-        Index(None, "created_at", "slug"),
-    )
-
-    slug: Mapped[str] = mapped_column(String(43), primary_key=True)
-    """Random, so that nobody finds it by trying."""
-    creature: Mapped[str | None] = mapped_column(Sha256, ForeignKey("creatures.sha256"))
-    run_id: Mapped[UUID | None] = mapped_column(ForeignKey("runs.id", ondelete="CASCADE"))
-    generation: Mapped[int | None]
-    """The last generation of the run that the share shows."""
-    cover: Mapped[str] = mapped_column(Sha256, ForeignKey("creatures.sha256"))
-    """The creature on its picture: the shared one, or the best of the archive."""
-    title: Mapped[str] = mapped_column(Text)
-    credit: Mapped[list[str]]
-    licence: Mapped[str] = mapped_column(Text)
-    listed: Mapped[bool]
-    created_at: Mapped[datetime] = mapped_column(default=clock())
