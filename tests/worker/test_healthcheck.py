@@ -55,7 +55,7 @@ def test_a_missing_part_gives_an_exit_status(services, settings, monkeypatch):
 
 @pytest.fixture
 def container(monkeypatch):
-    """A first process with one program in it, which ignores that it is asked to end."""
+    """A first process whose one child ignores SIGTERM."""
     script = "(trap '' TERM; while :; do sleep 0.1; done) & wait"
     init = subprocess.Popen(["sh", "-c", script], stdout=subprocess.DEVNULL)
     monkeypatch.setattr(healthcheck, "INITS", ("sh",))
@@ -72,12 +72,12 @@ def test_a_part_that_fails_for_minutes_is_terminated_then_killed(container, tmp_
     mark = tmp_path / "fails"
     (program,) = psutil.Process(container.pid).children()
     time.sleep(0.2)  # It has set its trap.
-    healthcheck.remedy(mark, container.pid)
+    healthcheck.end_failing(mark, container.pid)
     assert mark.exists(), "the first failure is remembered"
 
     def failing_for(seconds):
         os.utime(mark, (time.time() - seconds,) * 2)
-        healthcheck.remedy(mark, container.pid)
+        healthcheck.end_failing(mark, container.pid)
 
     failing_for(healthcheck.TERMINATE_AFTER - 5)
     failing_for(healthcheck.TERMINATE_AFTER + 5)
@@ -89,7 +89,7 @@ def test_a_part_that_fails_for_minutes_is_terminated_then_killed(container, tmp_
 
 def test_nothing_is_ended_outside_a_container(container, monkeypatch, tmp_path):
     monkeypatch.setattr(healthcheck, "INITS", ("docker-init",))
-    healthcheck.remedy(tmp_path / "fails", container.pid)
+    healthcheck.end_failing(tmp_path / "fails", container.pid)
     assert not (tmp_path / "fails").exists()
 
 
