@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from uuid import uuid4
 
@@ -22,9 +22,6 @@ class Missing(RuntimeError):
 @contextmanager
 def own_postgresql() -> Iterator[str]:
     """A new database of this machine's PostgreSQL; raises `Missing` without one."""
-    if given := os.environ.get("MICROCOSMOS_TEST_DATABASE_URL"):
-        yield given
-        return
     name = f"microcosmos_test_{uuid4().hex[:12]}"
     try:
         connection = psycopg.connect(f"{POSTGRES}/postgres", autocommit=True, connect_timeout=2)
@@ -71,9 +68,9 @@ def unused_redis() -> Iterator[str]:
 @contextmanager
 def services() -> Iterator[dict[str, str]]:
     """The settings of an installation on this machine's PostgreSQL and Redis."""
-    with ExitStack() as stack:
+    with own_postgresql() as database, unused_redis() as messages:
         yield {
-            "MICROCOSMOS_DATABASE_URL": stack.enter_context(own_postgresql()),
-            "MICROCOSMOS_REDIS_URL": stack.enter_context(unused_redis()),
+            "MICROCOSMOS_DATABASE_URL": database,
+            "MICROCOSMOS_REDIS_URL": messages,
             "MICROCOSMOS_REDIS_PREFIX": f"microcosmos_faults_{os.getpid()}:",
         }

@@ -8,10 +8,8 @@ from types import SimpleNamespace
 import pynvml
 import pytest
 
-from server.workers import registry
 from worker import device, usage
 from worker.device import Device, memory
-from worker.heartbeats import Heartbeats
 from worker.usage import Usage
 
 TWO = {
@@ -208,17 +206,6 @@ GPU = {"GPU-3": ("a GPU", 80 << 30)}
 def test_a_gpu_reports_its_own_usage_and_none_for_the_rest(nvml, cards, used, load, expected):
     nvml(cards, used=used, load=load)
     assert usage.usage(Device("gpu", 80 << 30, {}, "GPU-3")) == expected
-
-
-def test_a_heartbeat_reports_the_latest_usage(services):
-    heartbeat = Heartbeats(
-        services.sessions, "worker", Device("gpu", 8 << 30, {}, "0"), lease=20
-    )
-    heartbeat.gauge.last = Usage(5, 0.25)
-    heartbeat.beat()
-    with services.sessions.read() as session:
-        (found,) = registry.live(session, 20)
-    assert (found.kind, found.memory_used_bytes, found.load) == ("gpu", 5, 0.25)
 
 
 @pytest.mark.parametrize("error", [OSError("gone"), ValueError("no number")])

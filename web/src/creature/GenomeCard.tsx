@@ -8,7 +8,7 @@ import { type Network as Graph, networkOf } from "../decode/network";
 import { GeneStrip } from "./GeneStrip";
 import { NetworkGraph } from "./NetworkGraph";
 import { NetworkOutputs } from "./NetworkOutputs";
-import type { Moment } from "../replay/moment";
+import type { Playhead } from "../replay/playhead";
 import { Card } from "../ui/Page";
 import { FileLink } from "../ui/links";
 import { text } from "./text";
@@ -22,12 +22,12 @@ const FORMATS: [NetworkFormat, string][] = [
 
 interface Props {
   creature: Creature;
-  moment: Moment;
-  /** Steps between frames of a moment; null without a replay. */
+  playhead: Playhead;
+  /** Steps between frames of the replay; null without a replay. */
   every: number | null;
 }
 
-export function GenomeCard({ creature, ...shown }: Props) {
+export function GenomeCard({ creature, ...rest }: Props) {
   const { genome, task } = creature.identity;
   const network = useMemo(() => {
     if ("nodes" in genome) return networkOf(genome);
@@ -41,29 +41,29 @@ export function GenomeCard({ creature, ...shown }: Props) {
       </Card>
     );
   }
-  const files = "nodes" in genome ? creature.sha256 : null;
-  return <Network {...shown} {...{ network, files }} control={genome.control} steps={Number(task.steps)} />;
+  const sha = "nodes" in genome ? creature.sha256 : null;
+  return <Network {...rest} {...{ network, sha }} control={genome.control} steps={Number(task.steps)} />;
 }
 
 interface NetworkProps extends Omit<Props, "creature"> {
   network: Graph;
-  /** The creature whose network can be downloaded. */
-  files: string | null;
+  /** The creature whose network can be downloaded; null without a file. */
+  sha: string | null;
   control: Spec;
   steps: number;
 }
 
-function Network({ network, files, ...rest }: NetworkProps) {
+function Network({ network, sha, ...rest }: NetworkProps) {
   const [selected, setSelected] = useState<number | null>(null);
   return (
     <Card id="network" title={text.network}>
       <NetworkGraph network={network} selected={selected} onSelect={setSelected} />
       <NetworkOutputs {...rest} {...{ network, selected }} />
-      {files && (
+      {sha && (
         <p class="links network-files">
           <span class="quiet small">{text.download}</span>
           {FORMATS.map(([format, title]) => (
-            <FileLink key={format} url={networkUrl(files, format)} name={title} />
+            <FileLink key={format} url={networkUrl(sha, format)} name={title} />
           ))}
         </p>
       )}

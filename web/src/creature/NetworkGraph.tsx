@@ -3,7 +3,7 @@
 import { useMemo } from "preact/hooks";
 import type { Link, Network } from "../decode/network";
 import { number } from "../ui/format";
-import { type Spot, layoutOf } from "./networkLayout";
+import { type PlacedNeuron, layoutOf } from "./networkLayout";
 import { text } from "./text";
 import "./creature.css";
 import "./details.css";
@@ -20,7 +20,7 @@ interface Props {
 }
 
 export function NetworkGraph({ network, selected = null, onSelect }: Props) {
-  const { width, height, spots } = useMemo(() => layoutOf(network), [network]);
+  const { width, height, placed } = useMemo(() => layoutOf(network), [network]);
   const largest = Math.max(1e-9, ...network.links.map(({ weight }) => Math.abs(weight)));
   const enabled = network.links.filter((link) => link.enabled).length;
   const summary = text.networkSummary(network.neurons.length, enabled);
@@ -35,10 +35,10 @@ export function NetworkGraph({ network, selected = null, onSelect }: Props) {
           aria-label={text.networkLabel(summary)}
         >
           {network.links.map((link, i) => (
-            <Wire key={i} {...{ link, spots, largest }} into={link.target === selected} />
+            <Wire key={i} {...{ link, placed, largest }} into={link.target === selected} />
           ))}
-          {[...spots.values()].map((spot) => (
-            <Node key={spot.neuron.id} {...{ ...spot, onSelect }} selected={spot.neuron.id === selected} />
+          {[...placed.values()].map((node) => (
+            <Node key={node.neuron.id} {...{ ...node, onSelect }} selected={node.neuron.id === selected} />
           ))}
         </svg>
       </div>
@@ -57,13 +57,13 @@ export function NetworkGraph({ network, selected = null, onSelect }: Props) {
 
 interface WireProps {
   link: Link;
-  spots: Map<number, Spot>;
+  placed: Map<number, PlacedNeuron>;
   largest: number;
   into: boolean;
 }
 
-function Wire({ link, spots, largest, into }: WireProps) {
-  const [from, to] = [spots.get(link.source), spots.get(link.target)];
+function Wire({ link, placed, largest, into }: WireProps) {
+  const [from, to] = [placed.get(link.source), placed.get(link.target)];
   if (!from || !to) return null;
   return (
     <path
@@ -76,7 +76,7 @@ function Wire({ link, spots, largest, into }: WireProps) {
   );
 }
 
-function pathOf(from: Spot, to: Spot): string {
+function pathOf(from: PlacedNeuron, to: PlacedNeuron): string {
   if (from === to) {
     const [side, top] = [2.2 * RADIUS, from.y - 4 * RADIUS];
     return `M${from.x},${from.y} C${from.x - side},${top} ${from.x + side},${top} ${to.x},${to.y}`;
@@ -87,7 +87,7 @@ function pathOf(from: Spot, to: Spot): string {
   return `M${from.x},${from.y} C${a},${from.y} ${b},${to.y} ${to.x},${to.y}`;
 }
 
-interface NodeProps extends Spot, Pick<Props, "onSelect"> {
+interface NodeProps extends PlacedNeuron, Pick<Props, "onSelect"> {
   selected: boolean;
 }
 

@@ -2,7 +2,7 @@
 
 import type { Network, Neuron } from "../decode/network";
 
-export interface Spot {
+export interface PlacedNeuron {
   neuron: Neuron;
   x: number;
   y: number;
@@ -20,15 +20,15 @@ export function layoutOf({ neurons, links, depth }: Network) {
   );
   const height = ROW * Math.max(2, ...layers.map((layer) => layer.length));
   const columns = layers.map((layer) =>
-    layer.map((neuron, i): Spot => ({
+    layer.map((neuron, i): PlacedNeuron => ({
       ...{ neuron, x: pitch * neuron.depth + MARGIN.x },
       y: (height * (i + 0.5)) / layer.length + MARGIN.y,
     })),
   );
-  const spots = new Map(columns.flat().map((spot) => [spot.neuron.id, spot]));
-  const connected = new Map<Spot, Spot[]>([...spots.values()].map((spot) => [spot, []]));
+  const placed = new Map(columns.flat().map((node) => [node.neuron.id, node]));
+  const connected = new Map<PlacedNeuron, PlacedNeuron[]>([...placed.values()].map((node) => [node, []]));
   for (const { source, target } of links) {
-    const [from, to] = [spots.get(source), spots.get(target)];
+    const [from, to] = [placed.get(source), placed.get(target)];
     if (!from || !to || from === to) continue;
     connected.get(from)!.push(to);
     connected.get(to)!.push(from);
@@ -38,18 +38,18 @@ export function layoutOf({ neurons, links, depth }: Network) {
   for (let sweep = 0; sweep < SWEEPS; sweep++) {
     for (const column of free) arrange(column, connected, height);
   }
-  return { width: pitch * depth + 2 * MARGIN.x, height: height + 2 * MARGIN.y, spots };
+  return { width: pitch * depth + 2 * MARGIN.x, height: height + 2 * MARGIN.y, placed };
 }
 
 /** Move nodes to the mean of their neighbours, then apart within the height. */
-function arrange(column: Spot[], connected: Map<Spot, Spot[]>, height: number): void {
-  for (const spot of column) {
-    const near = connected.get(spot)!;
-    if (near.length > 0) spot.y = near.reduce((sum, { y }) => sum + y, 0) / near.length;
+function arrange(column: PlacedNeuron[], connected: Map<PlacedNeuron, PlacedNeuron[]>, height: number): void {
+  for (const node of column) {
+    const near = connected.get(node)!;
+    if (near.length > 0) node.y = near.reduce((sum, { y }) => sum + y, 0) / near.length;
   }
   column.sort((a, b) => a.y - b.y);
   let limit = MARGIN.y + ROW / 2;
-  for (const spot of column) limit = (spot.y = Math.max(spot.y, limit)) + ROW;
+  for (const node of column) limit = (node.y = Math.max(node.y, limit)) + ROW;
   limit = MARGIN.y + height - ROW / 2;
-  for (const spot of column.toReversed()) limit = (spot.y = Math.min(spot.y, limit)) - ROW;
+  for (const node of column.toReversed()) limit = (node.y = Math.min(node.y, limit)) - ROW;
 }
