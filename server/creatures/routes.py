@@ -11,7 +11,7 @@ from microcosmos.archive import creature, creature_h5
 
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE, ShareAccessDep
 from ..core.api import sends
-from ..core.json_body import limited
+from ..core.json_body import read_body
 from ..core.schemas import Wire
 from ..core.static_files import IMMUTABLE
 from ..services.services import ServicesDep, SessionDep
@@ -43,7 +43,7 @@ class CreatureName(Wire):
 
 async def file_sent(request: Request) -> dict[str, Any]:
     """Return the creature file of a request; its first bytes tell JSON from HDF5."""
-    sent = await limited(request, FILE_BYTES)
+    sent = await read_body(request, FILE_BYTES)
     return await run_in_threadpool(sandbox().creature, sent)
 
 
@@ -121,7 +121,7 @@ def import_creature(
     ancestors = file.pop("ancestors")
     with services.sessions.write.begin() as session:
         new = session.get(Creature, file["sha256"]) is None
-        creatures.add(session, file, *ancestors)
+        creatures.import_files(session, file, *ancestors)
     response.status_code = 201 if new else 200
     response.headers["Location"] = f"/api/v1/creatures/{file['sha256']}"
     return CreatureName(creature=file["sha256"])

@@ -11,8 +11,8 @@ import redis
 
 from server.local.redis_embedded import prepare
 
-SERVER = os.environ.get("MICROCOSMOS_TEST_POSTGRESQL", "postgresql://127.0.0.1:5432")
-MESSAGES = os.environ.get("MICROCOSMOS_TEST_REDIS", "redis://127.0.0.1:6379")
+POSTGRES = os.environ.get("MICROCOSMOS_TEST_POSTGRESQL", "postgresql://127.0.0.1:5432")
+REDIS = os.environ.get("MICROCOSMOS_TEST_REDIS", "redis://127.0.0.1:6379")
 
 
 class Missing(RuntimeError):
@@ -24,15 +24,15 @@ def own_postgresql() -> Iterator[str]:
     """A new database of this machine's PostgreSQL; raises `Missing` without one."""
     name = f"microcosmos_test_{uuid4().hex[:12]}"
     try:
-        connection = psycopg.connect(f"{SERVER}/postgres", autocommit=True, connect_timeout=2)
+        connection = psycopg.connect(f"{POSTGRES}/postgres", autocommit=True, connect_timeout=2)
         connection.execute(f"CREATE DATABASE {name}")
     except psycopg.Error as error:
-        raise Missing(f"no PostgreSQL at {SERVER} where we may create a database") from error
+        raise Missing(f"no PostgreSQL at {POSTGRES} where we may create a database") from error
     with connection:
         # The data need not outlive the machine, so nothing waits for the disk.
         connection.execute(f"ALTER DATABASE {name} SET synchronous_commit = off")
         try:
-            yield f"{SERVER}/{name}"
+            yield f"{POSTGRES}/{name}"
         finally:
             connection.execute(f"DROP DATABASE {name} WITH (FORCE)")
 
@@ -52,7 +52,7 @@ def own_redis(folder: Path) -> Iterator[str]:
 def unused_redis() -> Iterator[str]:
     """An unused database of this machine's Redis; raises `Missing` without one."""
     for number in range(1, 16):
-        url = f"{MESSAGES}/{number}"
+        url = f"{REDIS}/{number}"
         with suppress(redis.RedisError), redis.Redis.from_url(url) as client:
             if not client.dbsize():
                 break

@@ -27,7 +27,7 @@ def nvml(monkeypatch):
     """A function that replaces NVIDIA's library by one that knows some cards.
 
     `cards` has name and memory by UUID, None for a card that fails; None is no driver.
-    `divided` is the UUID of a card with the parts `DIVIDED`.
+    `divided` is the UUID of a card with the MIG instances `DIVIDED`.
     """
     for name in ("JAX_PLATFORMS", "CUDA_VISIBLE_DEVICES", device.MEMORY_FRACTION):
         monkeypatch.delenv(name, raising=False)
@@ -106,7 +106,7 @@ def test_only_gpus_that_the_environment_allows_are_used(nvml, monkeypatch, allow
     assert [device.find(i, 2).gpu for i in range(2)] == found
 
 
-def test_parts_of_a_divided_card_are_devices(nvml, monkeypatch):
+def test_mig_instances_are_devices(nvml, monkeypatch):
     nvml(TWO, divided="GPU-aaaa1111")
     first, second, third = (device.find(i, 3) for i in range(3))
     assert (first.gpu, first.name) == ("MIG-cccc3333", "NVIDIA H200 MIG 3g.71gb")
@@ -182,7 +182,7 @@ def test_a_processor_reports_load_and_memory():
 @pytest.mark.parametrize(
     ("current", "expected"), [("1000", 990), ("5", 0), ("no number", None)]
 )
-def test_in_a_container_its_own_memory_is_told(tmp_path, monkeypatch, current, expected):
+def test_in_a_container_its_own_memory_is_reported(tmp_path, monkeypatch, current, expected):
     (tmp_path / "memory.max").write_text("2000")
     (tmp_path / "memory.current").write_text(current)
     (tmp_path / "memory.stat").write_text("inactive_file 10\n")

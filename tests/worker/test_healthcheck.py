@@ -72,17 +72,17 @@ def test_a_part_that_fails_for_minutes_is_terminated_then_killed_in_a_container_
     container, monkeypatch, tmp_path
 ):
     mark = tmp_path / "fails"
-    healthcheck.remedy(mark, container.pid)
+    healthcheck.end_failing(mark, container.pid)
     assert not mark.exists(), "nothing is ended outside a container"
     monkeypatch.setattr(healthcheck, "INITS", ("sh",))
     (program,) = psutil.Process(container.pid).children()
     time.sleep(0.2)  # It has set its trap.
-    healthcheck.remedy(mark, container.pid)
+    healthcheck.end_failing(mark, container.pid)
     assert mark.exists(), "the first failure is remembered"
 
     def failing_for(seconds):
         os.utime(mark, (time.time() - seconds,) * 2)
-        healthcheck.remedy(mark, container.pid)
+        healthcheck.end_failing(mark, container.pid)
 
     failing_for(healthcheck.TERMINATE_AFTER - 5)
     failing_for(healthcheck.TERMINATE_AFTER + 5)

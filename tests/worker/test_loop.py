@@ -71,7 +71,7 @@ def test_a_replay_whose_renderer_died_is_asked_for_again(services, worker):
 
 
 def take_and_die(services):
-    """Take an order as a renderer does that dies while it works."""
+    """Take a rendering job, as a renderer that dies during it."""
     queue = services.jobs.renderings
     renderer = SimpleWorker([queue], serializer=JSONSerializer)
     renderer.register_birth()
