@@ -12,7 +12,7 @@ from microcosmos.viz.networks import NetworkPositions
 
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE, ShareAccessDep
 from ..core.api import Answers, sends
-from ..core.json_body import limited
+from ..core.json_body import read_body
 from ..core.schemas import Wire
 from ..core.static_files import IMMUTABLE
 from ..services.services import ServicesDep, SessionDep
@@ -44,7 +44,7 @@ class CreatureName(Wire):
 
 async def file_sent(request: Request) -> dict[str, Any]:
     """Return the creature file of a request; its first bytes tell JSON from HDF5."""
-    sent = await limited(request, FILE_BYTES)
+    sent = await read_body(request, FILE_BYTES)
     return await run_in_threadpool(sandbox().creature, sent)
 
 
@@ -122,7 +122,7 @@ def import_creature(
     ancestors = file.pop("ancestors")
     with services.sessions.write.begin() as session:
         new = session.get(Creature, file["sha256"]) is None
-        creatures.add(session, file, *ancestors)
+        creatures.import_files(session, file, *ancestors)
     response.status_code = 201 if new else 200
     response.headers["Location"] = f"/api/v1/creatures/{file['sha256']}"
     return CreatureName(creature=file["sha256"])

@@ -9,7 +9,7 @@ import { type Network as Graph, networkOf } from "../decode/network";
 import { GeneStrip } from "./GeneStrip";
 import { NetworkGraph } from "./NetworkGraph";
 import { NetworkOutputs } from "./NetworkOutputs";
-import type { Moment } from "../replay/moment";
+import type { Playhead } from "../replay/playhead";
 import { useFetched } from "../store/fetch";
 import { Card } from "../ui/Page";
 import { FileLink } from "../ui/links";
@@ -24,12 +24,12 @@ const FORMATS: [NetworkFormat, string][] = [
 
 interface Props {
   creature: Creature;
-  moment: Moment;
-  /** Steps between frames of a moment; null without a replay. */
+  playhead: Playhead;
+  /** Steps between frames of the replay; null without a replay. */
   every: number | null;
 }
 
-export function GenomeCard({ creature, ...shown }: Props) {
+export function GenomeCard({ creature, ...rest }: Props) {
   const { genome, task } = creature.identity;
   const network = useMemo(() => {
     if ("nodes" in genome) return networkOf(genome);
@@ -44,7 +44,7 @@ export function GenomeCard({ creature, ...shown }: Props) {
     );
   }
   const about = { sha: creature.sha256, files: "nodes" in genome, control: genome.control };
-  return <Network {...shown} {...about} network={network} steps={Number(task.steps)} />;
+  return <Network {...rest} {...about} network={network} steps={Number(task.steps)} />;
 }
 
 interface NetworkProps extends Omit<Props, "creature"> {

@@ -1,25 +1,25 @@
 import { describe, expect, it, test } from "vitest";
 import type { Ancestors, Creature, Relative } from "../api/types";
-import { familyLayoutOf } from "./relatives";
+import { familyLayoutOf } from "./familyLayout";
 import { couplingRows, groupsOf } from "./facts";
 import { barsOf } from "./GeneStrip";
-import { moveSpot } from "./HeatMap";
+import { nextCell } from "./HeatMap";
 
 describe("a heat map", () => {
-  const cells = { columns: 5, rows: 3 };
+  const matrix = { columns: 5, rows: 3 };
 
-  it("is read with arrow keys, from the current moment, up to its edges", () => {
-    expect(moveSpot("ArrowUp", null, 2, cells)).toEqual({ column: 2, row: 0 });
-    expect(moveSpot("ArrowDown", null, 2, cells)).toEqual({ column: 2, row: 2 });
-    expect(moveSpot("ArrowRight", null, 2, cells)).toEqual({ column: 3, row: 0 });
-    expect(moveSpot("ArrowLeft", { column: 0, row: 1 }, 4, cells)).toEqual({ column: 0, row: 1 });
-    expect(moveSpot("ArrowUp", { column: 4, row: 2 }, 0, cells)).toEqual({ column: 4, row: 2 });
-    expect(moveSpot("Home", { column: 4, row: 2 }, 0, cells)).toBeNull();
+  it("is read with arrow keys, from the current time, up to its edges", () => {
+    expect(nextCell("ArrowUp", null, 2, matrix)).toEqual({ column: 2, row: 0 });
+    expect(nextCell("ArrowDown", null, 2, matrix)).toEqual({ column: 2, row: 2 });
+    expect(nextCell("ArrowRight", null, 2, matrix)).toEqual({ column: 3, row: 0 });
+    expect(nextCell("ArrowLeft", { column: 0, row: 1 }, 4, matrix)).toEqual({ column: 0, row: 1 });
+    expect(nextCell("ArrowUp", { column: 4, row: 2 }, 0, matrix)).toEqual({ column: 4, row: 2 });
+    expect(nextCell("Home", { column: 4, row: 2 }, 0, matrix)).toBeNull();
   });
 });
 
 describe("a family tree", () => {
-  const person = (creature: string, distance: number, parents: string[] = [], fitness = 1): Relative => ({
+  const relative = (creature: string, distance: number, parents: string[] = [], fitness = 1): Relative => ({
     creature,
     distance,
     parents,
@@ -29,15 +29,15 @@ describe("a family tree", () => {
     generation: 1,
     credit: [],
   });
-  const me = person("me", 0, ["a", "b"]);
+  const me = relative("me", 0, ["a", "b"]);
   const ancestors: Ancestors = {
     parents: ["a", "b"],
-    items: [person("a", 1, ["old"]), person("b", 1, ["old"]), person("old", 2)],
+    items: [relative("a", 1, ["old"]), relative("b", 1, ["old"]), relative("old", 2)],
     more: false,
   };
 
   it("has columns, the oldest first, and lines from parents to children", () => {
-    const tree = familyLayoutOf(me, ancestors, { total: 1, items: [person("child", 1, ["me"])] });
+    const tree = familyLayoutOf(me, ancestors, { total: 1, items: [relative("child", 1, ["me"])] });
     expect(tree.columns.map(({ title }) => title)).toEqual([
       "Grandparents",
       "Parents",
@@ -51,7 +51,7 @@ describe("a family tree", () => {
   });
 
   it("draws the fittest children, and counts the others", () => {
-    const items = Array.from({ length: 12 }, (_, i) => person(`c${i}`, 1, ["me"], 11 - i));
+    const items = Array.from({ length: 12 }, (_, i) => relative(`c${i}`, 1, ["me"], 11 - i));
     const tree = familyLayoutOf(me, ancestors, { total: 30, items });
     const drawn = tree.relatives.filter(({ relative }) => relative.creature.startsWith("c"));
     expect(drawn.map(({ relative }) => relative.fitness)).toEqual([11, 10, 9, 8, 7, 6, 5, 4]);

@@ -12,7 +12,7 @@ export const text = {
   fails: "does not survive",
   auditVerdict: (survives: boolean, reasons: string) =>
     `The swimming ${survives ? "survives" : "does not survive"} refinement${survives && reasons ? ", with reservations" : ""}${reasons && `: ${reasons}`}.`,
-  figure: "Figure",
+  figure: "Quantity",
   value: "Value",
   limit: "Limit",
   result: "Result",

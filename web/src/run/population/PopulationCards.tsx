@@ -24,12 +24,12 @@ export function PopulationCards({ run, elites }: { run: Run; elites: Elites }) {
 
 function SpeciesCard({ run }: { run: Run }) {
   const { value, error } = useSpecies(run);
-  const some = value !== null && value.generation.length > 0;
+  const hasSpecies = value !== null && value.generation.length > 0;
   return (
     <Card id="species" title={text.species}>
       {error && <p class="wrong-text small">{error}</p>}
-      {some && <SpeciesPlot history={value} />}
-      {value && !some && (
+      {hasSpecies && <SpeciesPlot history={value} />}
+      {value && !hasSpecies && (
         <p class="quiet waiting">{run.generation === 0 ? text.noSpeciesYet : text.noSpecies}</p>
       )}
     </Card>
