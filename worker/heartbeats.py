@@ -10,7 +10,7 @@ from uuid import UUID
 from sqlalchemy.exc import SQLAlchemyError
 
 from server.attempts import leases
-from server.attempts.leases import Lease
+from server.attempts.leases import LeaseState
 from server.core.database import Sessions
 from server.workers import registry
 
@@ -32,7 +32,7 @@ class Watch:
     run: UUID
     kill: Callable[[], None]
     held: bool = False
-    over: int = 0
+    since_end: int = 0  # Heartbeats since the run ended.
 
 
 class Heartbeats(threading.Thread):
@@ -85,7 +85,7 @@ class Heartbeats(threading.Thread):
     def beat(self) -> None:
         watch = self._watch
         plugins = self._plugins.report if self._plugins else PluginReport()
-        lease: Lease | None = None
+        lease: LeaseState | None = None
         if watch:
             lease = leases.heartbeat(self._sessions, watch.run, self._worker)
             self._end_lost_job(watch, lease)
@@ -103,10 +103,10 @@ class Heartbeats(threading.Thread):
             unloaded=list(plugins.unloaded),
         )
 
-    def _end_lost_job(self, watch: Watch, lease: Lease) -> None:
+    def _end_lost_job(self, watch: Watch, lease: LeaseState) -> None:
         """Kill the job if another worker has its run, or if the run ended some time ago."""
         watch.held |= lease == "held"
-        watch.over = watch.over + 1 if lease == "over" and watch.held else 0
-        if (lease == "lost" or watch.over > HEARTBEATS_AFTER_END) and watch is self._watch:
+        watch.since_end = watch.since_end + 1 if lease == "over" and watch.held else 0
+        if (lease == "lost" or watch.since_end > HEARTBEATS_AFTER_END) and watch is self._watch:
             log.warning("Run %s is lost: killing its job", watch.run)
             watch.kill()

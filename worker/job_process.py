@@ -18,7 +18,7 @@ NICE = 10
 
 def main(run_id: str, worker: str, parent: str) -> None:
     die_with_parent(int(parent), signal.SIGKILL)
-    process_setup.listen()
+    process_setup.handle_signals()
     os.nice(NICE)
     with claimed(
         connect(Settings()), UUID(run_id), worker, process_setup.stop_requested

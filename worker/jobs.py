@@ -1,4 +1,4 @@
-"""Jobs that the queues name. The engine is imported when the first one needs it."""
+"""RQ jobs: `render`. The first job imports the engine."""
 
 from functools import cache
 
@@ -16,8 +16,8 @@ def services() -> Services:
 
 
 @cache
-def prepared() -> None:
-    """Prepare the device and load plug-ins, once in a process."""
+def prepare_once() -> None:
+    """Prepare the device and load plug-ins, at the first call in a process."""
     from microcosmos.device import prepare
 
     prepare()
@@ -25,7 +25,7 @@ def prepared() -> None:
 
 
 def render(creature: str, kind: str = REPLAY) -> None:
-    prepared()
+    prepare_once()
     from .renderings import make
 
     renderings.save(services(), creature, kind, make(services(), creature, kind))

@@ -30,7 +30,7 @@ def visible() -> list[Gpu]:
         return []
     try:
         with _library():
-            found = list(map(_card_and_parts, range(pynvml.nvmlDeviceGetCount())))
+            found = list(map(_card_and_instances, range(pynvml.nvmlDeviceGetCount())))
     except NVMLError:  # No driver, or one that fails.
         return []
     cards = [one[0] for one in found if one]
@@ -39,7 +39,7 @@ def visible() -> list[Gpu]:
     return gpus if allowed is None else _allowed(allowed, cards, gpus)
 
 
-def measured(uuid: str) -> tuple[int | None, float | None]:
+def measure(uuid: str) -> tuple[int | None, float | None]:
     """Return the memory in use, in bytes, and the load of a GPU; None if unknown."""
     try:
         with _library():
@@ -58,7 +58,7 @@ def _allowed(names: str, cards: list[Gpu], found: list[Gpu]) -> list[Gpu]:
     for name in (part.strip() for part in names.split(",")):
         if name.isdigit() and int(name) < len(cards):
             card = cards[int(name)].uuid
-            those = [gpu for gpu in found if gpu.card == card][:1]  # CUDA sees one part of it.
+            those = [gpu for gpu in found if gpu.card == card][:1]  # CUDA sees one instance.
         else:
             those = [g for g in (*cards, *found) if name and g.uuid.startswith(name)][:1]
         if not those:
@@ -67,7 +67,7 @@ def _allowed(names: str, cards: list[Gpu], found: list[Gpu]) -> list[Gpu]:
     return chosen
 
 
-def _card_and_parts(index: int) -> list[Gpu]:
+def _card_and_instances(index: int) -> list[Gpu]:
     """Return a card and its MIG instances; nothing if the card fails."""
     try:
         handle = pynvml.nvmlDeviceGetHandleByIndex(index)
@@ -76,10 +76,10 @@ def _card_and_parts(index: int) -> list[Gpu]:
         return []
     if not _known(lambda: pynvml.nvmlDeviceGetMigMode(handle)[0]):
         return [card]
-    part_at = partial(pynvml.nvmlDeviceGetMigDeviceHandleByIndex, handle)
+    instance_at = partial(pynvml.nvmlDeviceGetMigDeviceHandleByIndex, handle)
     places = range(pynvml.nvmlDeviceGetMaxMigDeviceCount(handle))
-    parts = [_known(partial(part_at, place)) for place in places]
-    return [card, *(_gpu(part, card.uuid) for part in parts if part)]
+    instances = [_known(partial(instance_at, place)) for place in places]
+    return [card, *(_gpu(part, card.uuid) for part in instances if part)]
 
 
 def _gpu(handle: Any, card: str | None = None) -> Gpu:

@@ -13,7 +13,7 @@ def stop_requested() -> bool:
     return _stop_requested
 
 
-def listen(then: Callable[[], None] = lambda: None, *, interrupt: bool = False) -> None:
+def handle_signals(then: Callable[[], None] = lambda: None, *, interrupt: bool = False) -> None:
     """Note SIGTERM as a request to stop. Note SIGINT if `interrupt`, else ignore it."""
 
     def note(signum: int, frame: FrameType | None) -> None:

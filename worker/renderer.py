@@ -18,8 +18,8 @@ from server.services.services import connect
 from server.settings import Settings
 
 from . import loop
-from .jobs import prepared
-from .process_setup import listen, log_to_stderr
+from .jobs import prepare_once
+from .process_setup import handle_signals, log_to_stderr
 
 WORKER_TTL = 120
 """Seconds without a report after which Redis forgets a renderer."""
@@ -28,7 +28,7 @@ RETRIED = "retried"
 
 
 def retry_interrupted(jobs: Jobs, queue: Queue) -> None:
-    """Requeue once each job during which a renderer died."""
+    """Requeue the jobs during which a renderer died; give up at the second time."""
     for job_id in queue.started_job_registry.get_job_ids(cleanup=False):
         job = jobs.find(job_id)
         if job and job.meta.get(RETRIED):
@@ -43,9 +43,9 @@ def serve_queue(name: str) -> None:
     """Make the renderings of a queue until asked to stop."""
     # Renderings need little of a GPU that belongs to a worker.
     os.environ.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")
-    listen(interrupt=True)
+    handle_signals(interrupt=True)
     if name == "renderer":
-        prepared()
+        prepare_once()
     services = connect(Settings())
     queue = services.jobs.audits if name == "auditor" else services.jobs.renderings
     with loop.logging_outages():

@@ -15,7 +15,7 @@ from rq.serializers import JSONSerializer
 from rq.worker import BaseWorker
 from sqlalchemy.exc import SQLAlchemyError
 
-from server.attempts.leases import job_ended
+from server.attempts.leases import end_job
 from server.queue.order import in_order
 from server.services import services
 from server.services.services import Services
@@ -24,7 +24,7 @@ from server.settings import Settings
 from . import device, loop
 from .heartbeats import HEARTBEATS_PER_LEASE, Heartbeats
 from .plugins import PluginWatcher
-from .process_setup import listen, log_to_stderr, stop_requested
+from .process_setup import handle_signals, log_to_stderr, stop_requested
 
 SHORTEST_LEASE = 2
 """Shortest lease in Redis, in seconds."""
@@ -37,7 +37,7 @@ log = logging.getLogger(__name__)
 
 
 class Supervisor(BaseWorker):
-    """An RQ worker that runs each job in a process and sets the lifetime of its heartbeats.
+    """An RQ worker that runs each job in a process, with a lease on its run.
 
     SQL records the end of a run, so the job is only deleted from Redis.
     """
@@ -47,7 +47,7 @@ class Supervisor(BaseWorker):
     lease: int
     environment: dict[str, str]
     job: subprocess.Popen[bytes] | None = None
-    stop_asked_at: float | None = None
+    stop_sent_at: float | None = None
     """Time of the first request to the job to stop."""
     killed: bool = False
     """The job did not stop on request."""
@@ -66,7 +66,7 @@ class Supervisor(BaseWorker):
                 self.services.jobs.forget(job.id)
             with loop.logging_outages():
                 error = None if self.killed else "the process of the job died unexpectedly"
-                job_ended(self.services, run_id, self.name, error)
+                end_job(self.services, run_id, self.name, error)
 
     def start(self, run_id: str) -> None:
         """Start the job's process. Other users can read its arguments: no secrets."""
@@ -86,7 +86,7 @@ class Supervisor(BaseWorker):
         while (code := self._wait(self.job)) is None:
             with loop.logging_outages():
                 self.maintain_heartbeats(job)
-            if self.stop_asked_at and time.monotonic() - self.stop_asked_at > STOP_SECONDS:
+            if self.stop_sent_at and time.monotonic() - self.stop_sent_at > STOP_SECONDS:
                 self.killed = True  # One block takes too long.
                 self.job.kill()
         self.job = None
@@ -96,14 +96,14 @@ class Supervisor(BaseWorker):
     def _wait(self, job: subprocess.Popen[bytes]) -> int | None:
         with suppress(subprocess.TimeoutExpired):
             return job.wait(
-                STOP_CHECK_SECONDS if self.stop_asked_at else self.lease / HEARTBEATS_PER_LEASE
+                STOP_CHECK_SECONDS if self.stop_sent_at else self.lease / HEARTBEATS_PER_LEASE
             )
         return None
 
     def stop_job(self) -> None:
         """Ask the job to stop: between blocks, with a checkpoint."""
         if self.job:
-            self.stop_asked_at = self.stop_asked_at or time.monotonic()
+            self.stop_sent_at = self.stop_sent_at or time.monotonic()
             self.job.terminate()
 
     def get_heartbeat_ttl(self, job: Job) -> int:
@@ -135,7 +135,7 @@ def supervise(settings: Settings, index: int) -> None:
     worker.services, worker.lease, worker.environment = shared, lease, found.environment
     plugins = PluginWatcher(settings, settings.lease / HEARTBEATS_PER_LEASE)
     worker.heartbeats = Heartbeats(shared.sessions, name, found, settings.lease, plugins)
-    listen(worker.stop_job, interrupt=True)
+    handle_signals(worker.stop_job, interrupt=True)
     log.info("Worker %s on %s", name, found.name)
     worker.heartbeats.start()
     plugins.start()

@@ -51,7 +51,7 @@ class Gauge(threading.Thread):
 def usage(device: Device) -> Usage:
     """Measure the GPU, else the machine: its load is the average over a minute, per core."""
     if device.gpu is not None:
-        return Usage(*nvidia.measured(device.gpu))
+        return Usage(*nvidia.measure(device.gpu))
     return Usage(memory_in_use(), psutil.getloadavg()[0] / (os.cpu_count() or 1))
 
 

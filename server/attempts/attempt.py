@@ -62,7 +62,7 @@ class Attempt:
     other_device: bool = False
     """The run may continue on another kind of device than the one that started it."""
     stop_requested: Callable[[], bool] = lambda: False
-    """Tells whether the worker has to stop."""
+    """Returns True once the worker has to stop."""
     outage_seconds: float = 0.0
     """Seconds that a write waits while the database is away."""
     requested_state: str | None = None
@@ -112,15 +112,15 @@ class Attempt:
         self.services.events.publish("rewind", self.run_id, place)
 
     def interrupted(self) -> bool:
-        """Tell whether to stop now; experiments ask between blocks."""
+        """Return True if the attempt has to stop; experiments call this between blocks."""
         now = time.monotonic()
         if self.requested_state is None and now - self.checked_at >= CHECK_SECONDS:
             self.checked_at = now
-            self.check()
+            self.read_request()
         return self.requested_state is not None or self.stop_requested()
 
     @retried
-    def check(self) -> None:
+    def read_request(self) -> None:
         with self._current() as (_, run):
             self.requested_state = run.requested_state
 

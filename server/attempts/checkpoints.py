@@ -14,11 +14,11 @@ from ..tables import CHECKPOINT, Artifact, Elite, Generation, Result, Run
 
 
 class CheckpointUnavailable(Exception):
-    """The store lacks a intact file of a checkpoint that the run has."""
+    """The store has no intact file for a recorded checkpoint."""
 
-    def __init__(self, services: Services, row: Artifact, what: str):
+    def __init__(self, services: Services, row: Artifact, problem: str):
         super().__init__(
-            f"The checkpoint of generation {row.generation} {what}: no intact file "
+            f"The checkpoint of generation {row.generation} {problem}: no intact file "
             f"`{row.path}` in {services.artifacts.root}. Check "
             "MICROCOSMOS_ARTIFACTS_URL and the folder's mount, or restore the file"
         )

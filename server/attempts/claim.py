@@ -19,7 +19,7 @@ from .attempt import Attempt, ClaimLost
 from .checkpoints import CheckpointUnavailable, rewind
 from .leases import lease_expired
 
-DATABASE_SECONDS = 600.0
+OUTAGE_SECONDS = 600.0
 """Seconds that a computed generation waits while the database is away."""
 
 logger = logging.getLogger(__name__)
@@ -77,7 +77,7 @@ def claimed(
     if attempt is None:
         yield None
         return
-    attempt.stop_requested, attempt.outage_seconds = stop_requested, DATABASE_SECONDS
+    attempt.stop_requested, attempt.outage_seconds = stop_requested, OUTAGE_SECONDS
     try:
         yield attempt
     except ClaimLost as error:

@@ -13,10 +13,10 @@ from ..runs.lifecycle import change, fail_attempt, stop_attempt
 from ..services.services import Services
 from ..tables import QUEUED, RUNNING, Run
 
-Lease = Literal["held", "waiting", "over", "lost"]
+LeaseState = Literal["held", "waiting", "over", "lost"]
 
 
-def heartbeat(sessions: Sessions, run_id: UUID, worker: str) -> Lease:
+def heartbeat(sessions: Sessions, run_id: UUID, worker: str) -> LeaseState:
     """Renew a worker's lease on a run, and return the lease's state.
 
     `waiting`: no worker has claimed the run yet. `over`: no attempt is active any more.
@@ -37,8 +37,8 @@ def lease_expired(session: Session, lease: float) -> Any:
     return or_(Run.heartbeat_at.is_(None), Run.heartbeat_at < ago(session, lease))
 
 
-def job_ended(services: Services, run_id: UUID, worker: str, error: str | None = None) -> None:
-    """End the attempt of a job that died, or that its worker killed (without an `error`)."""
+def end_job(services: Services, run_id: UUID, worker: str, error: str | None = None) -> None:
+    """End the attempt of a dead job. Without an `error`, its worker killed it on purpose."""
     mine = Run.worker == worker
     with services.sessions.write.begin() as session:
         if error:

@@ -75,7 +75,7 @@ class Authenticator:
             return ENVIRONMENT
         return tokens.principal_of(self.services, token)
 
-    def count(self, error: ProblemError, address: str) -> ProblemError:
+    def reject(self, error: ProblemError, address: str) -> ProblemError:
         """Count an unknown token; return the error to answer, 429 where there were many."""
         wait = self.limit.add(address) if isinstance(error, tokens.UnknownToken) else 0
         if not wait:

@@ -1,4 +1,4 @@
-"""Authorise a request: the scope of its route, the owner of a row, the reach of a share."""
+"""Authorise a request: the scope of its route, the owner of a row, the share it names."""
 
 from typing import Annotated, Any, Protocol
 from uuid import UUID
@@ -63,10 +63,10 @@ def authorize_owner(
     with services.sessions.read() as session:
         row = session.get(table, key)
         if row is not None:
-            refuse_other(session, principal, row, "change")
+            refuse_non_owner(session, principal, row, "change")
 
 
-def refuse_other(session: Session, principal: Principal, row: Owned, action: str) -> None:
+def refuse_non_owner(session: Session, principal: Principal, row: Owned, action: str) -> None:
     """Raise `ProblemError` unless the principal owns the row or is an admin."""
     if principal.may(ADMIN) or row.owner == principal.token:
         return

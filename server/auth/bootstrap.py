@@ -19,7 +19,7 @@ def create_first_token(services: Services) -> str | None:
     """Create an admin token, write its secret to the data folder and return it.
 
     Return None if no token is needed or one exists. Raise `ValueError` if tokens exist but no
-    live one of an admin: a server that created another could not be closed to the public.
+    live admin token: a new one at each start would undo the revocation of the last one.
     """
     settings = services.settings
     if not settings.needs_admin_token:

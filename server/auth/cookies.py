@@ -18,7 +18,7 @@ def cookie_name(request: HTTPConnection) -> str:
     return f"{COOKIE}_{request.url.port}" if request.url.port else COOKIE
 
 
-def remember(
+def set_token(
     response: Response, request: HTTPConnection, token: str, expires_at: datetime | None
 ) -> None:
     """Set a cookie that neither scripts nor requests from other sites can use."""
@@ -33,5 +33,5 @@ def remember(
     )
 
 
-def forget(response: Response, request: HTTPConnection) -> None:
+def delete_token(response: Response, request: HTTPConnection) -> None:
     response.delete_cookie(cookie_name(request), httponly=True, samesite="strict")

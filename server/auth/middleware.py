@@ -11,7 +11,7 @@ from starlette.requests import HTTPConnection
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from ..core.errors import ProblemError, answer
+from ..core.errors import ProblemError, problem_response
 from ..settings import LOOPBACK
 from . import cookies
 from .authenticate import Authenticator
@@ -47,11 +47,11 @@ class PrincipalMiddleware:
             try:
                 app = await self._identified(HTTPConnection(scope)) or self.app
             except (ProblemError, OperationalError, TimeoutError) as error:
-                app = answer(error)
+                app = problem_response(error)
         await app(scope, receive, send)
 
     async def _identified(self, request: HTTPConnection) -> Response | None:
-        """Find the principal; return an answer if the application must not answer itself."""
+        """Set the principal; return a response if the application must not respond itself."""
         if not self.needs_token:
             _refuse_foreign_host(request.headers)
             _refuse_foreign_origin(request.headers)
@@ -73,8 +73,8 @@ class PrincipalMiddleware:
             identify = self.authenticator.identify
             request.state.principal = await run_in_threadpool(identify, token)
         except ProblemError as error:
-            # Only routes that are not public call it, and so count a wrong token.
-            request.state.refuse = partial(self.authenticator.count, error, address(request))
+            # Public routes never call it, so they count no wrong token.
+            request.state.refuse = partial(self.authenticator.reject, error, address(request))
             if method not in SAFE and path != SESSION:  # Before the body is read.
                 raise request.state.refuse() from None
         return None
@@ -90,10 +90,10 @@ class PrincipalMiddleware:
         try:
             principal = await run_in_threadpool(self.authenticator.identify, given)
         except ProblemError as error:
-            self.authenticator.count(error, address(request))
+            self.authenticator.reject(error, address(request))
             return None  # The page asks for a token.
         redirect = RedirectResponse(clean, 303)
-        cookies.remember(redirect, request, given, principal.expires_at)
+        cookies.set_token(redirect, request, given, principal.expires_at)
         return redirect
 
 

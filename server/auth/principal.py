@@ -1,4 +1,4 @@
-"""Principals: who sends a request, and with which scope."""
+"""Principals: the senders of requests, with their scopes."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -19,11 +19,11 @@ RANKS = (SHARE, *SCOPES)
 
 @dataclass(frozen=True)
 class Principal:
-    """The holder of a token, or the user of this machine, who has no token of the table."""
+    """The holder of a token or of a share, or the user of this machine."""
 
     name: str
     scope: Rank
-    token: UUID | None = None
+    token: UUID | None = None  # None without a row in the table of tokens.
     expires_at: datetime | None = None
 
     def may(self, scope: str) -> bool:

@@ -9,7 +9,7 @@ from ..services.services import ServicesDep, SessionDep
 from . import tokens
 from .authenticate import Authenticator
 from .authorize import MAY_ADMINISTER, PUBLIC, Reader
-from .cookies import forget, remember
+from .cookies import delete_token, set_token
 from .middleware import address
 from .schemas import PrincipalRead, SignIn, TokenCreate, TokenCreated, TokenRead
 
@@ -51,8 +51,8 @@ def sign_in(asked: SignIn, request: Request, response: Response) -> PrincipalRea
     try:
         principal = authenticator.identify(asked.token)
     except tokens.UnknownToken as error:
-        raise authenticator.count(error, address(request)) from None
-    remember(response, request, asked.token, principal.expires_at)
+        raise authenticator.reject(error, address(request)) from None
+    set_token(response, request, asked.token, principal.expires_at)
     needed = authenticator.services.settings.needs_token
     return PrincipalRead(**vars(principal), needed=needed)
 
@@ -60,4 +60,4 @@ def sign_in(asked: SignIn, request: Request, response: Response) -> PrincipalRea
 @router.delete("/session", status_code=204, dependencies=[PUBLIC])
 async def sign_out(request: Request, response: Response) -> None:
     """Forget the cookie. The token stays valid."""
-    forget(response, request)
+    delete_token(response, request)

@@ -19,7 +19,7 @@ from microcosmos.spec import field_path
 from .schemas import Wire
 
 log = logging.getLogger(__name__)
-MOST_ERRORS = 50
+MAX_ERRORS = 50
 """Limit on the errors in one answer: a document may have one for each of its values."""
 RETRY_AFTER = {"Retry-After": "2"}
 MEDIA_TYPE = "application/problem+json"
@@ -64,18 +64,18 @@ class ProblemError(Exception):
         return cls(problem.status, problem.title, problem.detail, problem.errors)
 
 
-ANSWERED = (
+HANDLED = (
     *(ProblemError, ValidationError, RequestValidationError, CreatureError, HTTPException),
     *(OperationalError, TimeoutError, RedisError, Exception),
 )
 
 
 def install(app: FastAPI) -> None:
-    for kind in ANSWERED:
-        app.add_exception_handler(kind, lambda _, error: answer(error))
+    for kind in HANDLED:
+        app.add_exception_handler(kind, lambda _, error: problem_response(error))
 
 
-def answer(error: Exception) -> JSONResponse:
+def problem_response(error: Exception) -> JSONResponse:
     problem = problem_of(error)
     retry = RETRY_AFTER if problem.status == 503 else None
     content = problem.model_dump(mode="json", exclude_none=True)
@@ -126,19 +126,19 @@ def field_errors(error: ValidationError) -> list[FieldError]:
 
 
 def _fields(errors: Sequence[Mapping[str, Any]]) -> list[FieldError]:
-    found = _without_echoes(errors[:MOST_ERRORS])
+    found = _without_redundant(errors[:MAX_ERRORS])
     return [_field_error(one, field_path(one["loc"])) for one in found]
 
 
-def _without_echoes(errors: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Drop the error "too short" of a list if one of its items has an error."""
+def _without_redundant(errors: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Drop the error that a list is too short if one of its items has an error."""
 
-    def echoes(error: Mapping[str, Any]) -> bool:
+    def redundant(error: Mapping[str, Any]) -> bool:
         place = error["loc"]
         inside = [e for e in errors if e is not error and e["loc"][: len(place)] == place]
         return error["type"] == "too_short" and bool(inside)
 
-    return [error for error in errors if not echoes(error)]
+    return [error for error in errors if not redundant(error)]
 
 
 def _field_error(error: Mapping[str, Any], path: str) -> FieldError:

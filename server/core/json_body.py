@@ -13,9 +13,9 @@ from fastapi.routing import APIRoute
 
 from .errors import ProblemError
 
-DEPTH = 32
-VALUES = 100_000
-"""Limit on commas, since each value may cause an error; the largest creature has fewer."""
+MAX_DEPTH = 32
+MAX_VALUES = 100_000
+"""Limit on commas: each value may cause an error. The largest creature has fewer."""
 NUL = re.compile(r"(?<!\\)(?:\\\\)*\\u0000")
 """An escaped NUL whose backslash is not itself escaped."""
 
@@ -33,7 +33,7 @@ def json_route(limit: int) -> type[APIRoute]:
                 return handle
 
             async def read(request: Request) -> Response:
-                body = await limited(request, limit)
+                body = await read_body(request, limit)
                 document = mapping(await run_in_threadpool(parse, body))
                 return await handle(_parsed(request, body, document))
 
@@ -60,7 +60,7 @@ def mapping(document: Any) -> dict[str, Any]:
     return document
 
 
-async def limited(request: Request, limit: int) -> bytes:
+async def read_body(request: Request, limit: int) -> bytes:
     """Return the body; raise `ProblemError` as soon as it is longer than the limit."""
     body = bytearray()
     async for chunk in request.stream():
@@ -76,8 +76,8 @@ def parse(body: bytes) -> Any:
 
     NaN, infinities, repeated names, deep nesting, lone surrogates and NUL are errors.
     """
-    if body.count(b",") > VALUES:
-        detail = f"The body has more than the {VALUES:,} values that are allowed."
+    if body.count(b",") > MAX_VALUES:
+        detail = f"The body has more than the {MAX_VALUES:,} values that are allowed."
         raise ProblemError(413, "Too large", detail)
     try:
         document = json.loads(
@@ -140,7 +140,7 @@ def _finite(text: str) -> float:
 
 def _refuse_depth(document: Any) -> None:
     level = [document]
-    for _ in range(DEPTH):
+    for _ in range(MAX_DEPTH):
         level = [
             child
             for value in level
@@ -153,5 +153,5 @@ def _refuse_depth(document: Any) -> None:
 
 
 def _too_deep() -> ProblemError:
-    detail = f"The body nests more than the {DEPTH} levels that are allowed."
+    detail = f"The body nests more than the {MAX_DEPTH} levels that are allowed."
     return ProblemError(422, "Nested too deeply", detail)

@@ -39,8 +39,8 @@ class Order:
         listed = statement.add_columns(self.key)
         if cursor:
             listed = listed.where(self._after(*self._position(cursor)))
-        falling = self.name.startswith("-")
-        columns = [column.desc() if falling else column for column in (self.key, self.id)]
+        descending = self.name.startswith("-")
+        columns = [column.desc() if descending else column for column in (self.key, self.id)]
         listed = listed.order_by(self.key.is_(None), *columns).limit(limit + 1)
         rows = session.execute(listed).all()
         items = [row for row, _ in rows[:limit]]
@@ -61,9 +61,9 @@ class Order:
         return key, identity
 
     def _after(self, key: Any, identity: Any) -> ColumnElement[bool]:
-        falling = self.name.startswith("-")
-        later = self.id < identity if falling else self.id > identity
+        descending = self.name.startswith("-")
+        later = self.id < identity if descending else self.id > identity
         if key is None:
             return and_(self.key.is_(None), later)
-        beyond = self.key < key if falling else self.key > key
+        beyond = self.key < key if descending else self.key > key
         return or_(beyond, and_(self.key == key, later), self.key.is_(None))

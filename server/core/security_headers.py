@@ -6,7 +6,7 @@ import re
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-SHARED = re.compile(r"(/s/|/api/v1/shares/).+")
+SHARE_PATH = re.compile(r"(/s/|/api/v1/shares/).+")
 POLICY = (
     "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
     "object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
@@ -34,7 +34,7 @@ class SecurityHeaders:
             await self.app(scope, receive, send)
             return
         path, named = scope["path"], Headers(scope=scope).get(self.header) is not None
-        shared = named or SHARED.fullmatch(path) is not None
+        shared = named or SHARE_PATH.fullmatch(path) is not None
 
         async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":

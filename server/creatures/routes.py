@@ -8,10 +8,11 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse, Response
 
 from microcosmos.archive import creature, creature_h5
+from microcosmos.viz.networks import NetworkPositions
 
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE, ShareAccessDep
-from ..core.api import sends
-from ..core.json_body import limited
+from ..core.api import Answers, sends
+from ..core.json_body import read_body
 from ..core.schemas import Wire
 from ..core.static_files import IMMUTABLE
 from ..services.services import ServicesDep, SessionDep
@@ -43,7 +44,7 @@ class CreatureName(Wire):
 
 async def file_sent(request: Request) -> dict[str, Any]:
     """Return the creature file of a request; its first bytes tell JSON from HDF5."""
-    sent = await limited(request, FILE_BYTES)
+    sent = await read_body(request, FILE_BYTES)
     return await run_in_threadpool(sandbox().creature, sent)
 
 
@@ -121,7 +122,7 @@ def import_creature(
     ancestors = file.pop("ancestors")
     with services.sessions.write.begin() as session:
         new = session.get(Creature, file["sha256"]) is None
-        creatures.add(session, file, *ancestors)
+        creatures.import_files(session, file, *ancestors)
     response.status_code = 201 if new else 200
     response.headers["Location"] = f"/api/v1/creatures/{file['sha256']}"
     return CreatureName(creature=file["sha256"])
@@ -144,8 +145,9 @@ def _network_reader(form: str, media_type: str, description: str) -> Callable[..
 
 
 for form, (media_type, description, _) in networks.FORMS.items():
+    json_model: Answers = {200: {"model": NetworkPositions}} if form == "json" else {}
     router.get(
         f"/{{sha}}/network.{form}",
-        **sends(media_type, {404: {}}),
+        **sends(media_type, {404: {}, **json_model}),
         dependencies=[MAY_READ_SHARED],
     )(_network_reader(form, media_type, description))

@@ -17,8 +17,8 @@ from .sandbox_process import CPU_SECONDS, LENGTH, PROBLEM, RESULT
 START_SECONDS = 30.0
 """Time for the process to start on a busy machine. One request has `CPU_SECONDS`."""
 END_SECONDS = 0.2
-"""Time within which the end of a killed process is noticed."""
-SINGLE = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "HDF5_PLUGIN_PRELOAD": "::"}
+"""Time to wait for the end of a killed process."""
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "HDF5_PLUGIN_PRELOAD": "::"}
 """A process that forks must have one thread, and HDF5 must load no plug-in."""
 SECRETS = [f"MICROCOSMOS_{name}_URL" for name in ("DATABASE", "REDIS", "ARTIFACTS")]
 SECRETS += ["MICROCOSMOS_TOKEN"]
@@ -71,21 +71,21 @@ class Sandbox:
         ours, theirs = socket.socketpair()
         with theirs, self._lock:
             try:
-                socket.send_fds(self._started(), [b"\0"], [theirs.fileno()])
-            except OSError:  # It was ended.
+                socket.send_fds(self._ensure_started(), [b"\0"], [theirs.fileno()])
+            except OSError:  # The process has ended.
                 self._end()
-                socket.send_fds(self._started(), [b"\0"], [theirs.fileno()])
+                socket.send_fds(self._ensure_started(), [b"\0"], [theirs.fileno()])
         return ours
 
     def start(self) -> None:
         """Start the process, which takes a second, before the first request."""
         with self._lock:
-            self._started()
+            self._ensure_started()
 
-    def _started(self) -> socket.socket:
+    def _ensure_started(self) -> socket.socket:
         if self._control is None:
             self._control, theirs = socket.socketpair()
-            environment = {k: v for k, v in os.environ.items() if k not in SECRETS} | SINGLE
+            environment = {k: v for k, v in os.environ.items() if k not in SECRETS} | ONE_THREAD
             with theirs:
                 command = [sys.executable, "-m", "server.creatures.sandbox_process"]
                 self._process = subprocess.Popen(

@@ -110,7 +110,7 @@ def with_ancestors(session: Session, row: Creature) -> dict[str, Any]:
     return pedigree.document(document(row), ancestors)
 
 
-def add(session: Session, *files: dict[str, Any]) -> None:
+def import_files(session: Session, *files: dict[str, Any]) -> None:
     """Import checked creature files, sorted, so that two requests cannot deadlock.
 
     A known creature stays as it is.

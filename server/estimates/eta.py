@@ -11,14 +11,14 @@ from sqlalchemy.orm import Session
 
 from microcosmos.spec import Folding, Scaling, Spec, estimate
 
-from ..specs.parsing import parsed
+from ..specs.parsing import parse_stored
 from ..tables import Generation, Run, Worker
 from .schemas import MeasuredSpeed
 
 MAX_RECENT_RUNS = 40
 """Number of runs of an experiment to read, the newest."""
 MAX_SIMILAR_RUNS = 5
-"""Number of runs that count: those whose generations are most like the new one's."""
+"""Number of runs to average: those whose generations are most like the new one's."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ def _recent(session: Session, experiment: str) -> Sequence[Row[Run, float]]:
 def _measured(recent: Sequence[Row[Run, float]], kind: Hashable) -> list[Measured]:
     found = []
     for run, first in recent:
-        earlier = parsed(run.spec)
+        earlier = parse_stored(run.spec)
         if earlier and _kind(earlier.spec) == kind:
             cell_steps = earlier.estimate.cell_steps / earlier.spec.generations
             each = (run.seconds - first) / (run.generation - 1)

@@ -11,7 +11,7 @@ from microcosmos.sizes import size
 
 from ..queue.order import in_order
 from ..services.services import Services
-from ..specs.parsing import parsed
+from ..specs.parsing import parse_stored
 from ..tables import QUEUED, Run, Worker
 from ..workers import plugins, registry
 from .schemas import QueueAhead
@@ -81,7 +81,7 @@ def reason(run: Run, place: int, queue: QueueState) -> str:
     versions = run.plugin_versions
     fit = [worker for worker in queue.alive if plugins.has_versions(worker, versions)]
     if not fit:
-        return plugins.missing_plugins(queue.alive, run.spec)
+        return plugins.explain_missing(queue.alive, run.spec)
     queue = replace(queue, alive=fit)
     before = queue.before(place)
     if before < 0:
@@ -103,5 +103,5 @@ def reason(run: Run, place: int, queue: QueueState) -> str:
 
 def needed_bytes(run: Run) -> int | None:
     """Return the memory that a run needs; None if another version wrote its spec."""
-    found = parsed(run.spec)
+    found = parse_stored(run.spec)
     return found.estimate.memory_bytes if found else None

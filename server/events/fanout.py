@@ -103,7 +103,7 @@ class Fanout:
         start = listener.since
         if after is None:
             yield ServerSentEvent(id=start, comment="new events follow")
-        elif not await self._keeps(after):
+        elif not await self._contains(after):
             yield Entry(start, "reset").sent()
         else:
             start = after
@@ -140,7 +140,7 @@ class Fanout:
         newest = await self.redis.xrevrange(self.stream, count=1)
         return newest[0][0].decode() if newest else "0-0"
 
-    async def _keeps(self, after: str) -> bool:
+    async def _contains(self, after: str) -> bool:
         try:
             first = await self.redis.xrange(self.stream, count=1)
             newest = await self._newest()
@@ -152,7 +152,7 @@ class Fanout:
 
 
 def position(identifier: str) -> tuple[int, int]:
-    """Return the numbers of an id, by which ids are ordered."""
+    """Return the two numbers of an id; ids are ordered by them."""
     milliseconds, _, number = identifier.partition("-")
     return int(milliseconds), int(number or 0)
 

@@ -145,7 +145,7 @@ def main() -> None:
         sys.exit(str(error))
     address = f"http://{settings.host}:{settings.port}"
     tree = Tree()
-    tree.listen()
+    tree.handle_signals()
     try:
         data = lock_data_folder(settings)
         refuse_port_in_use(settings.host, settings.port)

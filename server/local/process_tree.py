@@ -39,7 +39,7 @@ class Child:
         self.process = self._start()
         self._started = time.monotonic()
 
-    def revive(self) -> None:
+    def restart_if_dead(self) -> None:
         """Restart a dead process when its delay is over."""
         code, now = self.process.poll(), time.monotonic()
         if code is None:
@@ -68,7 +68,7 @@ class Tree:
         self.children: list[Child] = []
         self._requests = 0
 
-    def listen(self) -> None:
+    def handle_signals(self) -> None:
         """End on SIGINT, SIGTERM or the terminal's end; the second signal ends at once."""
         signal.signal(signal.SIGINT, self._request)
         signal.signal(signal.SIGTERM, self._request)
@@ -86,7 +86,7 @@ class Tree:
         """Restart dead processes until it is enough or a signal requests to stop."""
         while not (self.stop_requested or enough()):
             for child in (*self.services, *self.children):
-                child.revive()
+                child.restart_if_dead()
             time.sleep(POLL_SECONDS)
 
     def end(self) -> None:

@@ -42,7 +42,7 @@ def alive(services: Services, part: str, host: str) -> bool:
 
 
 def answers(port: int, path: str, host: str = "127.0.0.1") -> bool:
-    """Tell whether the server answers a request with 200."""
+    """Return whether the server answers a request with 200."""
     try:
         connection = HTTPConnection(host, port, timeout=5)
         connection.request("GET", path)
@@ -72,10 +72,10 @@ def fault(settings: Settings, part: str) -> str:
         services.close()
 
 
-def remedy(mark: Path, init: int = 1) -> None:
-    """End a container's program that has failed for minutes.
+def end_failing(mark: Path, init: int = 1) -> None:
+    """End the program of a container once its check has failed for minutes.
 
-    `mark` is as old as the first failure; `init` is the container's first process.
+    `mark` is a file as old as the first failure; `init` is the container's first process.
     """
     process = psutil.Process(init)
     if process.name() not in INITS:
@@ -99,7 +99,7 @@ def main(arguments: list[str]) -> None:
         mark.unlink(missing_ok=True)
         sys.exit(str(error))
     if found and options:
-        remedy(mark)
+        end_failing(mark)
     elif not found:
         mark.unlink(missing_ok=True)
     if found:

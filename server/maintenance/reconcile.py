@@ -22,7 +22,7 @@ from ..runs.log import note
 from ..services.services import Services
 from ..tables import CANCELLED, QUEUED, RUNNING, Run, Sweep, Worker
 
-FORGET_SECONDS = 3600.0
+SILENT_SECONDS = 3600.0
 """Seconds of silence after which a worker is deleted."""
 
 log = logging.getLogger(__name__)
@@ -59,9 +59,9 @@ def reconcile(services: Services) -> None:
     requeue_expired(services)
     services.jobs.clean()
     enqueue_missing(services)
-    forget_workers(services)
+    delete_silent_workers(services)
     purge(services)
-    forget_empty_sweeps(services)
+    delete_empty_sweeps(services)
 
 
 def cancel_overdue(services: Services) -> None:
@@ -107,7 +107,7 @@ def enqueue_missing(services: Services) -> None:
     services.jobs.enqueue(run for run in queued if str(run.id) not in known)
 
 
-def forget_empty_sweeps(services: Services) -> None:
+def delete_empty_sweeps(services: Services) -> None:
     """Delete sweeps whose last run is purged."""
     alone = ~select(Run.id).where(Run.sweep == Sweep.id).exists()
     with services.sessions.read() as session:
@@ -117,7 +117,7 @@ def forget_empty_sweeps(services: Services) -> None:
             session.execute(delete(Sweep).where(Sweep.id.in_(found), alone))
 
 
-def forget_workers(services: Services) -> None:
+def delete_silent_workers(services: Services) -> None:
     with services.sessions.write.begin() as session:
-        old = Worker.heartbeat_at < ago(session, FORGET_SECONDS)
+        old = Worker.heartbeat_at < ago(session, SILENT_SECONDS)
         session.execute(delete(Worker).where(old))

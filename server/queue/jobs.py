@@ -24,8 +24,8 @@ log = logging.getLogger(__name__)
 
 RUN_JOB = "worker.job_process.main"
 RENDER_JOB = "worker.jobs.render"
-PLUGINS = "-plugins-"
-"""Between the name of a queue and the hash of the plug-ins that its workers must have."""
+PLUGINS_SEPARATOR = "-plugins-"
+"""Separator of a queue's name and the hash of the plug-ins that its workers must have."""
 TIMEOUTS = {AUDIT: 3600, MEASUREMENT: 3600}
 RENDER_SECONDS = 600
 """Time limit of the renderings that `TIMEOUTS` does not name."""
@@ -156,13 +156,13 @@ class Jobs:
         if not plugin_versions:
             return queue
         name = sha256("".join(sorted(plugin_versions)).encode()).hexdigest()[:16]
-        return self._queue(f"{queue.name}{PLUGINS}{name}")
+        return self._queue(f"{queue.name}{PLUGINS_SEPARATOR}{name}")
 
     def all_run_queues(self) -> list[Queue]:
         """Return all queues of runs that Redis knows."""
         found = [as_text(name) for name in self.redis.smembers(Queue.redis_queues_keys)]  # pyright: ignore
         names = [name.removeprefix(Queue.redis_queue_namespace_prefix) for name in found]
-        ours = tuple(queue.name + PLUGINS for queue in self.run_queues)
+        ours = tuple(queue.name + PLUGINS_SEPARATOR for queue in self.run_queues)
         special = sorted(name for name in names if name.startswith(ours))
         return [*self.run_queues, *map(self._queue, special)]
 

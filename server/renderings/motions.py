@@ -11,7 +11,7 @@ FRAMES = 96
 """Limit on frames; a gallery shows no more."""
 COPIED = ("creature", "steps", "nodes", "edges", "member", "size")
 LENGTH = struct.Struct("<I")
-POSITION = 2 * 4
+POSITION_BYTES = 2 * 4
 """Bytes of the float32 coordinates of a node."""
 
 
@@ -23,7 +23,7 @@ def motion(artifacts: Artifacts, replay: Artifact) -> bytes:
     (length,) = LENGTH.unpack(_part(artifacts, replay, 0, LENGTH.size))
     start = LENGTH.size + length
     header = json.loads(_part(artifacts, replay, LENGTH.size, start))
-    frame = header["nodes"] * POSITION
+    frame = header["nodes"] * POSITION_BYTES
     positions = _part(artifacts, replay, start, start + header["frames"] * frame)
     stride = -(-header["frames"] // FRAMES)
     kept = range(0, header["frames"], stride)

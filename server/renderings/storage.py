@@ -18,8 +18,8 @@ from ..services.services import Services
 from ..storage.artifacts import rendering_path
 from ..tables import AUDIT, GIF, MP4, PREVIEW, REPLAY, STRIP, Artifact, Creature
 
-REFUSAL = re.compile(r"^[\w.]*(?:CreatureError|Missing|Broken): ")
-"""Prefix of the engine's own errors, whose message suffices; others keep the class name."""
+ENGINE_ERROR = re.compile(r"^[\w.]*(?:CreatureError|Missing|Broken): ")
+"""Prefix to remove from the engine's own errors; others keep their class name."""
 NOUNS = {AUDIT: "audit", STRIP: "picture", PREVIEW: "picture", GIF: "film", MP4: "film"}
 VERSIONS = {REPLAY: REPLAY_VERSION}
 """Versions of formats that have changed: a rendering in an earlier one does not count."""
@@ -42,11 +42,11 @@ class RenderingFailed(ProblemError):
 
 
 def find(session: Session, creature: str, kind: str = REPLAY) -> Artifact | None:
-    found = session.scalars(select(Artifact).where(_is(creature, kind))).one_or_none()
+    found = session.scalars(select(Artifact).where(_matches(creature, kind))).one_or_none()
     return found if found and found.number == VERSIONS.get(kind) else None
 
 
-def _is(creature: str, kind: str) -> ColumnElement[bool]:
+def _matches(creature: str, kind: str) -> ColumnElement[bool]:
     return (Artifact.creature == creature) & (Artifact.kind == kind)
 
 
@@ -64,7 +64,7 @@ def enqueue(
     if job and status == JobStatus.FAILED:
         result = job.latest_result()
         text = (result.exc_string if result else None) or "the renderer's process died"
-        raise RenderingFailed(kind, None if anonymous else REFUSAL.sub("", _reason(text)))
+        raise RenderingFailed(kind, None if anonymous else ENGINE_ERROR.sub("", _reason(text)))
     if not (anonymous and services.jobs.renderings.count >= ANONYMOUS_LIMIT):
         services.jobs.render(creature, kind, anonymous=anonymous)
 
@@ -74,7 +74,7 @@ def enqueue_again(services: Services, creature: str, kind: str) -> None:
     job = services.jobs.find(services.jobs.rendering_id(creature, kind))
     if job is None or job.get_status(refresh=False) not in UNDERWAY:
         with services.sessions.write.begin() as session:
-            session.execute(delete(Artifact).where(_is(creature, kind)))
+            session.execute(delete(Artifact).where(_matches(creature, kind)))
         services.jobs.render(creature, kind)
 
 
@@ -91,7 +91,7 @@ def save(services: Services, creature: str, kind: str, data: bytes) -> None:
     row = {**vars(stored), "kind": kind, "number": VERSIONS.get(kind), "creature": creature}
     try:
         with services.sessions.write.begin() as session:
-            session.execute(delete(Artifact).where(_is(creature, kind)))
+            session.execute(delete(Artifact).where(_matches(creature, kind)))
             insert_missing(session, Artifact, [row])
     except IntegrityError:  # The creature was deleted with its run meanwhile.
         services.artifacts.delete(stored.path)

@@ -17,11 +17,11 @@ from .schemas import RunRead
 
 log = logging.getLogger(__name__)
 
-CHANGING = {
+VOLATILE_FIELDS = {
     *("generation", "progress", "evaluations", "qd_score", "coverage", "best", "diverged"),
     *("sparkline", "evaluations_per_second", "eta_seconds", "summary", "waiting_reason"),
 }
-"""Fields that may differ at each reading; events of generations contain them too."""
+"""Fields that may differ at each reading; changes of these alone cause no event."""
 
 
 def announce(
@@ -35,8 +35,8 @@ def announce(
     """
     published: dict[UUID, RunRead] = {}
     try:
-        while news := _news(services, run_ids, published):
-            for run in news:
+        while changed_runs := _changed_runs(services, run_ids, published):
+            for run in changed_runs:
                 data = run.model_dump(mode="json", exclude=set(without))
                 services.events.publish("run", run.id, data)
                 published[run.id] = run
@@ -45,7 +45,7 @@ def announce(
     return list(published.values())
 
 
-def _news(
+def _changed_runs(
     services: Services, run_ids: Sequence[UUID], published: Mapping[UUID, RunRead]
 ) -> Sequence[RunRead]:
     """Read the runs that differ from those published; read the queue only for these."""
@@ -56,13 +56,13 @@ def _news(
             rows = [
                 row
                 for row, run in zip(rows, now, strict=True)
-                if row.id not in published or _facts(run) != _facts(published[row.id])
+                if row.id not in published or _stable(run) != _stable(published[row.id])
             ]
         return read_runs(services, session, rows) if rows else []
 
 
-def _facts(run: RunRead) -> dict[str, Any]:
-    return run.model_dump(exclude=CHANGING)
+def _stable(run: RunRead) -> dict[str, Any]:
+    return run.model_dump(exclude=VOLATILE_FIELDS)
 
 
 def announced(services: Services, run_id: UUID) -> RunRead:

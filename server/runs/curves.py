@@ -11,10 +11,10 @@ from sqlalchemy.orm import Session
 from ..tables import Generation
 
 COUNT_PREFIX = "diverged: "
-"""Prefix of names whose numbers count evaluations of their generation alone."""
+"""Prefix of counts per generation, which are added up between two points."""
 
 
-def evenly(last: int, points: int) -> list[int]:
+def thinned(last: int, points: int) -> list[int]:
     """Return about so many generations, evenly spaced from 1 to the last."""
     if last <= points:
         return list(range(1, last + 1))

@@ -14,7 +14,7 @@ from ..services.services import SessionDep
 from ..specs.schemas import pictures
 from ..tables import Generation
 from . import curves, listing, log
-from .curves import evenly
+from .curves import thinned
 from .deps import RunDep
 from .schemas import Curves, Log, LogEntryRead, Species, TagRead, Target
 
@@ -36,7 +36,7 @@ def read_generations(
         Generation.run_id == run.id, Generation.generation <= run.generation
     )
     if points:
-        statement = statement.where(Generation.generation.in_(evenly(run.generation, points)))
+        statement = statement.where(Generation.generation.in_(thinned(run.generation, points)))
     rows = session.execute(statement.order_by(Generation.generation)).all()
     values = [list(column) for column in zip(*rows, strict=True)] or [[] for _ in names]
     columns = dict(zip(names, values, strict=True))
@@ -53,7 +53,7 @@ def read_species(
 
     The columns are empty if the search has no species.
     """
-    return Species(**curves.species(session, run.id, evenly(run.generation, points)))
+    return Species(**curves.species(session, run.id, thinned(run.generation, points)))
 
 
 @router.get("/runs/{run_id}/log", tags=["runs"], dependencies=[MAY_READ])

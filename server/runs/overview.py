@@ -12,7 +12,7 @@ from ..estimates import position
 from ..services.services import Services
 from ..tables import FAILED, RUNNING, Generation, Run
 from ..workers.registry import progress
-from .curves import evenly
+from .curves import thinned
 from .schemas import ForkedFrom, RunRead
 
 SPARKLINE_POINTS = 32
@@ -39,7 +39,7 @@ def _curves(session: Session, runs: Sequence[Run]) -> dict[UUID, list[Generation
     wanted = [
         and_(
             Generation.run_id == run.id,
-            Generation.generation.in_(evenly(run.generation, SPARKLINE_POINTS)),
+            Generation.generation.in_(thinned(run.generation, SPARKLINE_POINTS)),
         )
         for run in runs
         if run.generation

@@ -1,4 +1,4 @@
-"""Services of server and workers: database, queues, events and files; their dependencies."""
+"""Services of server and workers: database, queues, events, files; FastAPI dependencies."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -30,7 +30,7 @@ def state(session: Session, share: Share) -> ShareState:
 
 
 def find(session: Session, slug: str) -> Share | None:
-    """Return the share of a slug, if there is one; some databases refuse other texts."""
+    """Return the share of a slug, if any. Some databases refuse malformed slugs."""
     return session.get(Share, slug) if SLUG.fullmatch(slug) else None
 
 
@@ -86,7 +86,7 @@ class LiveShare:
         )
 
     def refuse_unless_holds(self, session: Session, creature: str) -> None:
-        """Raise `ProblemError` unless a creature is shared: itself, or as an elite."""
+        """Raise `ProblemError` unless the share shows a creature, alone or as an elite."""
         share = self.share
         held = creature == share.creature
         if share.run_id:

@@ -31,11 +31,11 @@ def read_share_page(request: Request, slug: str, session: SessionDep) -> Respons
     except ProblemError as error:
         return HTMLResponse(index, error.problem.status)
     request.state.listed = share.listed
-    found = tags(base(request), share, description(session, share))
+    found = tags(public_address(request), share, description(session, share))
     return HTMLResponse(with_tags(index, found))
 
 
-def base(request: Request) -> str:
+def public_address(request: Request) -> str:
     """Return the public address of this server, without a slash at the end."""
     given = request.app.state.services.settings.public_url
     return (given or str(request.base_url)).rstrip("/")

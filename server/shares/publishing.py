@@ -7,7 +7,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from ..archives import measures
-from ..auth.authorize import refuse_other
+from ..auth.authorize import refuse_non_owner
 from ..auth.principal import Principal
 from ..core.errors import ProblemError, invalid_field
 from ..creatures.deps import find_creature
@@ -22,11 +22,11 @@ COMPARED = (
     *("creature", "run_id", "generation", "title", "credit", "licence", "listed"),
     "expires_at",
 )
-"""Two shares with the same values are one."""
+"""Columns of a share's content: a share with the same values is reused."""
 
 
-def shown(session: Session, sent: ShareCreate, principal: Principal) -> dict[str, Any]:
-    """Return the columns of what a request shares; raise `ProblemError` if it cannot be shared.
+def share_columns(session: Session, sent: ShareCreate, principal: Principal) -> dict[str, Any]:
+    """Return the columns of the shared content; raise `ProblemError` if it cannot be shared.
 
     Title, licence and credit are those of the file.
     """
@@ -36,7 +36,7 @@ def shown(session: Session, sent: ShareCreate, principal: Principal) -> dict[str
         return {**columns, "cover": row.sha256, "licence": row.licence, "credit": row.credit}
     assert sent.run is not None
     run = find_run(session, sent.run)
-    refuse_other(session, principal, run, "publish")
+    refuse_non_owner(session, principal, run, "publish")
     if not measures.has_archive(run):
         detail = f"A run of `{run.experiment}` has no archive to publish."
         raise ProblemError(422, "No archive", detail)
@@ -68,7 +68,7 @@ def publish(session: Session, sent: ShareCreate, principal: Principal) -> tuple[
         listed=sent.listed,
         expires_at=sent.expires_at,
         owner=principal.token,
-        **shown(session, sent, principal),
+        **share_columns(session, sent, principal),
     )
     new.title, new.licence = sent.title or new.title, sent.licence or new.licence
     new.credit = list(dict.fromkeys([*new.credit, *sent.credit]))

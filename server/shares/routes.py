@@ -23,7 +23,7 @@ from ..renderings.schemas import Rendering
 from ..services.services import Services, ServicesDep, SessionDep
 from ..tables import PREVIEW, Share
 from . import access, archive_files, publishing
-from .page import base
+from .page import public_address
 from .schemas import ShareCreate, SharePage, ShareRead
 
 log = logging.getLogger(__name__)
@@ -160,7 +160,7 @@ def revoke(slug: OwnSlug, request: Request, services: ServicesDep) -> ShareRead:
 def share_read(request: Request, session: Session, share: Share) -> ShareRead:
     names = [name for name in ShareRead.model_fields if name not in ("url", "run", "state")]
     return ShareRead(
-        url=f"{base(request)}/s/{share.slug}",
+        url=f"{public_address(request)}/s/{share.slug}",
         run=share.run_id,
         state=access.state(session, share),
         **{name: getattr(share, name) for name in names},

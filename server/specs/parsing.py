@@ -55,8 +55,8 @@ class ParsedSpec:
     estimate: Estimate
 
 
-def parsed(document: dict[str, Any]) -> ParsedSpec | None:
-    """Return None if this version cannot read a spec of another version."""
+def parse_stored(document: dict[str, Any]) -> ParsedSpec | None:
+    """Return the spec and estimate of a stored run; None if this version cannot read it."""
     return _parsed(json.dumps(document, sort_keys=True))
 
 

@@ -1,1 +1,1 @@
-"""Artifacts behind fsspec: checkpoints and renderings."""
+"""Artifacts behind fsspec: checkpoints, renderings and shared archives."""

@@ -1,4 +1,4 @@
-"""Files behind fsspec: checkpoints and renderings, each complete or absent."""
+"""Files behind fsspec: checkpoints, renderings, shared archives; each complete or absent."""
 
 import hashlib
 import os

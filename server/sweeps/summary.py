@@ -9,7 +9,7 @@ import numpy as np
 from sqlalchemy import case, select
 from sqlalchemy.orm import Session
 
-from ..runs.curves import evenly, numbers
+from ..runs.curves import numbers, thinned
 from ..runs.lifecycle import NOT_IN_BIN
 from ..tables import CANCELLED, FAILED, FINISHED, Generation, Run, Sweep
 from .overview import combinations
@@ -55,7 +55,7 @@ def recorded(session: Session, sweep: Sweep, points: int | None) -> Recorded:
     last = max((run.generation for run in runs), default=0)
     most = max(2, POINTS // max(1, len(runs)))
     wanted = points or last
-    generation = evenly(last, wanted if wanted <= most else min(most, GENERATIONS_PER_QUERY))
+    generation = thinned(last, wanted if wanted <= most else min(most, GENERATIONS_PER_QUERY))
     return Recorded(runs, generation, *_table(session, sweep, runs, generation, last))
 
 

@@ -12,7 +12,7 @@ from .base import Base, Place, RunKey, Sha256
 
 
 class Creature(Base):
-    """A creature. It stays after another one has taken its cell."""
+    """A creature. Its row stays when another creature replaces it in its cell."""
 
     __tablename__ = "creatures"
 
@@ -29,11 +29,11 @@ class Creature(Base):
     """People to name wherever the creature is shown."""
     created_at: Mapped[datetime] = mapped_column(default=clock())
     imported: Mapped[bool] = mapped_column(default=False)
-    """An imported creature stays without any run."""
+    """Imported creatures are never deleted, even if no run uses them."""
 
 
 class Parent(Base):
-    """One parent of a creature; narrow, so that children are found as fast as parents."""
+    """A parent of a creature; indexed both ways, so that children are found as fast."""
 
     __tablename__ = "parents"
     __table_args__ = (Index(None, "parent"),)
@@ -41,7 +41,7 @@ class Parent(Base):
     child: Mapped[str] = mapped_column(Sha256, ForeignKey("creatures.sha256"), primary_key=True)
     position: Mapped[Place]
     parent: Mapped[str] = mapped_column(Sha256)
-    """Only elites are kept as creatures, so the parent may have no row."""
+    """The parent has no row in `creatures` if it was neither an elite nor imported."""
 
 
 class InitialCreature(Base):

@@ -9,7 +9,7 @@ from .base import Base, Place, RunKey, Sha256
 
 
 class Generation(Base):
-    """One narrow row per generation: the curves."""
+    """A point of a run's curves."""
 
     __tablename__ = "generations"
 
@@ -23,7 +23,7 @@ class Generation(Base):
     diverged: Mapped[int] = mapped_column(BigInteger)
     seconds: Mapped[float]
     summary: Mapped[dict[str, Any] | None]
-    """As the run's, if this generation changed it."""
+    """The summary of the run as of this generation; None if it did not change."""
 
 
 class Result(Base):

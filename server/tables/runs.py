@@ -51,7 +51,7 @@ class Run(Owned, Base):
     started_at: Mapped[datetime | None]
     finished_at: Mapped[datetime | None]
     attempt: Mapped[int] = mapped_column(default=0)
-    """Number of the current attempt, which each write of a worker proves to be its own."""
+    """Number of the current attempt; writes of other attempts are refused."""
     attempts_without_checkpoint: Mapped[int] = mapped_column(default=0)
     worker: Mapped[str | None] = mapped_column(String(255))
     device: Mapped[str | None] = mapped_column(Text)
@@ -129,5 +129,5 @@ class LogEntry(Base):
     level: Mapped[str] = mapped_column(String(16))
     attempt: Mapped[int]
     kind: Mapped[str | None] = mapped_column(String(16))
-    """Set for entries of which an attempt keeps the first and the last alone."""
+    """Set for frequent entries: an attempt keeps only the first and the last of a kind."""
     text: Mapped[str] = mapped_column(Text)

@@ -32,7 +32,7 @@ class KnownPlugins:
 
     @cached_property
     def known(self) -> list[Declaration]:
-        """All versions: those of live workers first, then the newest first."""
+        """Every known version: those of live workers first, then the newest first."""
         rows = self._session.scalars(select(Plugin).order_by(Plugin.seen_at.desc())).all()
         found = [Declaration.model_validate(row.declaration) for row in rows]
         return sorted(found, key=lambda one: not self.workers_with(one.source))
@@ -94,7 +94,7 @@ def has_versions(worker: Worker | None, needed: Sequence[str] | None) -> bool:
     return not needed or (worker is not None and set(needed) <= versions_of(worker))
 
 
-def missing_plugins(alive: Sequence[Worker], document: Any) -> str:
+def explain_missing(alive: Sequence[Worker], document: Any) -> str:
     """Return a sentence about a run that none of the live workers can compute."""
     absent = {
         one.name: one.version.source

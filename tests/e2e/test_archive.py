@@ -139,7 +139,7 @@ def test_a_cell_that_changes_live_flashes_once(page, idle, motion):
         assert flashed == []
         return
     assert flashed
-    the_map(page).press("ArrowRight")  # To the best one, who has just come.
+    the_map(page).press("ArrowRight")  # To the best elite, which is new.
     left, top, right, bottom = box_of(corners_of_the_marked(page))
     pixel = 0.005
     assert box_of(flashed) == pytest.approx((left, top, right, bottom), abs=pixel)
@@ -148,7 +148,7 @@ def test_a_cell_that_changes_live_flashes_once(page, idle, motion):
         for at in flashed
         if left + pixel < at[0] < right - pixel and top + pixel < at[1] < bottom - pixel
     ]
-    assert inside == [], "its colour is to be seen all the while"
+    assert inside == [], "the colour of the cell stays visible"
 
 
 def corners_of_the_marked(page: Page) -> list[list[float]]:

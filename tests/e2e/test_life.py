@@ -1,4 +1,4 @@
-"""A run's further life, by mouse and keyboard: forked, extended, binned, undone, restored."""
+"""A run is forked, extended, deleted, undone and restored, by mouse and keyboard."""
 
 import re
 
@@ -68,10 +68,10 @@ def choose_by_mouse(page: Page) -> None:
     page.mouse.move(box["x"] + box["width"] - 2, box["y"] + box["height"] - 2)
     page.mouse.up()
     expect(chosen(page)).to_have_text(re.compile(r"^\d+ creatures selected$"))
-    assert re.search(r"/runs/[^/]+\?", page.url), "a drag opens nobody"
-    everybody = int(chosen(page).inner_text().split()[0])
+    assert re.search(r"/runs/[^/]+\?", page.url), "a drag opens no creature"
+    selected = int(chosen(page).inner_text().split()[0])
     page.get_by_role("button", name="Select", exact=True).click()
-    expect(chosen(page)).to_have_text(re.compile(f"^{everybody - 1} creatures? selected$"))
+    expect(chosen(page)).to_have_text(re.compile(f"^{selected - 1} creatures? selected$"))
 
 
 def fork_the_chosen(page: Page, address: str, run: str) -> None:

@@ -24,10 +24,10 @@ def test_a_run_is_shown_from_the_queue_to_its_end_and_compared(page, idle):
     see_species_and_the_best_network(page, run)
     see_why_evaluations_diverged(page)
     choose_how_curves_are_drawn(page)
-    lay_another_run_beside(page, other)
+    compare_with_another_run(page, other)
     see_what_differs_in_the_spec(page, other)
     assert page.evaluate("window.neverReloaded")
-    come_back_by_the_address(page, other)
+    reload_and_close_comparisons(page, other)
     walk_by_keyboard(page)
 
 
@@ -112,7 +112,7 @@ def pixels(page: Page) -> str:
     return page.evaluate("document.querySelector('#curves canvas').toDataURL()")
 
 
-def lay_another_run_beside(page: Page, other: Written) -> None:
+def compare_with_another_run(page: Page, other: Written) -> None:
     curves = page.get_by_role("region", name="Curves")
     alone = pixels(page)
     curves.get_by_role("button", name="Compare with a run").click()
@@ -136,7 +136,7 @@ def see_what_differs_in_the_spec(page: Page, other: Written) -> None:
     assert f"against={other.id}" in page.url
 
 
-def come_back_by_the_address(page: Page, other: Written) -> None:
+def reload_and_close_comparisons(page: Page, other: Written) -> None:
     page.reload()
     curves = page.get_by_role("region", name="Curves")
     expect(curves.get_by_label("Log scale")).to_be_checked()

@@ -21,11 +21,11 @@ def test_a_creature_is_published_viewed_and_revoked(shared, page, stranger):
     expect(stage(stranger)).to_be_visible(timeout=SLOW)
     expect(stranger.get_by_text("Ada, Bob").first).to_be_visible()
     expect(stranger.get_by_role("button", name="Publish")).to_have_count(0)
-    stay_within(link, asked)
-    tell_other_sites(stranger, link)
+    check_requests(link, asked)
+    check_the_link_preview(stranger, link)
     import_it(stranger, address, sha)
-    meet_it_in_the_commons(stranger, address, link)
-    take_back(page, address, "An eel <b>&")
+    find_it_in_the_commons(stranger, address, link)
+    revoke(page, address, "An eel <b>&")
     stranger.goto(link)
     expect(stranger.get_by_text("Its owner has revoked this share.")).to_be_visible()
 
@@ -43,7 +43,7 @@ def test_an_archive_is_published_and_its_elites_are_opened(shared, page, strange
     stranger.keyboard.press("Enter")
     stranger.wait_for_url(re.compile("/s/.+/creatures/"))
     expect(stage(stranger)).to_be_visible(timeout=SLOW)
-    stay_within(link, asked)
+    check_requests(link, asked)
     slug = link.rpartition("/")[2]
     commons = stranger.request.get(f"{address}/api/v1/commons").json()["items"]
     assert slug not in [share["slug"] for share in commons], "it is not listed"
@@ -77,7 +77,7 @@ def requests_of(page: Page) -> list[tuple[str, str | None]]:
     return asked
 
 
-def stay_within(link: str, asked: list[tuple[str, str | None]]) -> None:
+def check_requests(link: str, asked: list[tuple[str, str | None]]) -> None:
     """The page of a share asks for its own script, and for data through the share alone."""
     slug = link.rpartition("/")[2]
     own = re.compile(rf"/s/{slug}(/.*)?|/assets/.+|/favicon.svg|/api/v1/shares/{slug}(/.*)?")
@@ -86,7 +86,7 @@ def stay_within(link: str, asked: list[tuple[str, str | None]]) -> None:
     assert others == []
 
 
-def tell_other_sites(stranger: Page, link: str) -> None:
+def check_the_link_preview(stranger: Page, link: str) -> None:
     """Other sites find a title, and a picture that exists."""
     text = stranger.request.get(link).text()
     assert 'property="og:title" content="An eel &lt;b&gt;&amp;"' in text
@@ -116,7 +116,7 @@ def import_it(stranger: Page, address: str, sha: str) -> None:
     assert (answer.status, answer.json()) == (200, {"creature": sha})
 
 
-def meet_it_in_the_commons(stranger: Page, address: str, link: str) -> None:
+def find_it_in_the_commons(stranger: Page, address: str, link: str) -> None:
     asked = requests_of(stranger)
     stranger.goto(f"{address}/commons")
     tile = stranger.get_by_role("link", name=re.compile("An eel <b>&"))
@@ -129,7 +129,7 @@ def meet_it_in_the_commons(stranger: Page, address: str, link: str) -> None:
     ] == []
 
 
-def take_back(page: Page, address: str, title: str) -> None:
+def revoke(page: Page, address: str, title: str) -> None:
     page.goto(f"{address}/shares")
     page.get_by_role("button", name=f"Revoke {title}").click()
     expect(page.get_by_role("button", name=f"Revoke now: {title}")).to_be_focused()

@@ -56,7 +56,7 @@ class Installation:
         self.url = f"http://127.0.0.1:{self.port}"
         self.http = httpx.Client(base_url=self.url, timeout=30)
 
-    def start(self, seconds: float = 60) -> None:
+    def start(self) -> None:
         self.folder.mkdir(parents=True, exist_ok=True)
         settings = {"MICROCOSMOS_DATA": str(self.folder), "PORT": str(self.port)}
         inherited = {name: value for name, value in os.environ.items() if name not in SERVICES}
@@ -70,7 +70,7 @@ class Installation:
                 stderr=output,
                 start_new_session=True,
             )
-        wait_until(self.answers, seconds, f"the server answers; {self.output.read_text()}")
+        wait_until(self.answers, 120, f"the server answers; {self.output.read_text()}")
 
     def answers(self) -> bool:
         if self.process.poll() is not None:
@@ -131,11 +131,9 @@ class Installation:
 
         def there() -> dict[str, Any] | None:
             found = self.read(run)
-            if condition(found):
-                return found
-            if found["status"] in TERMINAL:
+            if not (holds := condition(found)) and found["status"] in TERMINAL:
                 raise RuntimeError(f"the run {found['status']} too soon: {found['error']}")
-            return None
+            return found if holds else None
 
         return wait_until(there, *limits)
 
@@ -174,6 +172,8 @@ class Installation:
         A suspended writer would keep SQLite's lock, and no other process could write.
         """
 
+        database = self.folder / "microcosmos.sqlite"
+
         def resume() -> None:
             for process in processes:
                 process.resume()
@@ -181,24 +181,18 @@ class Installation:
         def freeze() -> bool:
             for process in processes:
                 process.suspend()
-            if not (writable := self.writable()):
-                resume()
-            return writable
+            connection = sqlite3.connect(database, timeout=1, isolation_level=None)
+            with closing(connection), suppress(sqlite3.OperationalError):
+                connection.execute("BEGIN IMMEDIATE")
+                return True
+            resume()
+            return False
 
         wait_until(freeze, 60, "the processes are frozen outside of a transaction")
         try:
             yield
         finally:
             resume()
-
-    def writable(self) -> bool:
-        """Tell whether the embedded database can be written to within a second."""
-        path = self.folder / "microcosmos.sqlite"
-        connection = sqlite3.connect(path, timeout=1, isolation_level=None)
-        with closing(connection), suppress(sqlite3.OperationalError):
-            connection.execute("BEGIN IMMEDIATE")
-            return True
-        return False
 
     def named(self, module: str) -> list[psutil.Process]:
         """Living processes that run a Python module or a program."""
@@ -218,13 +212,11 @@ class Installation:
 
 
 @contextmanager
-def running(
-    folder: Path, environment: dict[str, str], seconds: float = 120
-) -> Iterator[Installation]:
+def running(folder: Path, environment: dict[str, str]) -> Iterator[Installation]:
     """An installation that is started, and ended at the end."""
     place = Installation(folder, environment)
     try:
-        place.start(seconds)
+        place.start()
         yield place
         place.end()
     finally:
@@ -232,7 +224,6 @@ def running(
 
 
 JOB, SUPERVISOR = "worker.job_process", "worker.supervisor"
-RENDERER, REDIS = "worker.renderer", "redis-server"
 
 
 def kill_job(place: Installation, run: str) -> None:
@@ -240,7 +231,7 @@ def kill_job(place: Installation, run: str) -> None:
     place.signal(JOB, signal.SIGKILL)
 
 
-def kill_supervisor(place: Installation, run: str) -> None:
+def kill_worker(place: Installation, run: str) -> None:
     place.signal(SUPERVISOR, signal.SIGKILL)
 
 

@@ -103,8 +103,6 @@ REPLACEMENTS = {
     "many": [0] * 9000,
     "long": "A" * 100_000,
 }
-CONSTANTS = ("NaN", "-Infinity", "1e999", "01", "+1")
-ESCAPES = (r'"\ud800"', r'"\u0000"', r'"\x41"', '"\n"')
 
 
 def changed(document: dict[str, Any]) -> Iterator[Case]:
@@ -118,14 +116,14 @@ def changed(document: dict[str, Any]) -> Iterator[Case]:
             # A missing part has its default, and true counts as 1: the file may stay valid.
             body = edited(document, path, setitem, value)
             yield Case(f"{place}: {name}", body, harmless=value in (True, {}))
-        for constant in CONSTANTS:
+        for constant in ("NaN", "-Infinity", "1e999", "01", "+1"):
             yield Case(f"{place}: {constant}", literal(document, path, constant), "JSON|finite")
         if isinstance(last, str) and last not in ("measured", "provenance", "licence"):
             yield Case(f"{place} missing", edited(document, path, delitem), harmless=True)
         if isinstance(here, dict):
             body = edited(document, path, setitem, here | {"surprise": 1})
             yield Case(f"{place}: surprise", body)
-    for escape in ESCAPES:
+    for escape in (r'"\ud800"', r'"\u0000"', r'"\x41"', '"\n"'):
         yield Case(f"licence: {escape!r}", literal(document, ("licence",), escape))
 
 

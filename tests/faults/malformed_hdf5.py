@@ -121,16 +121,12 @@ def bombs() -> Edits:
             edit = partial(huge, **options)
             yield f"{name}: {title}", "stored plainly|one text|must be", edit, name
         yield f"{name}: growing", "stored plainly", growing, name
-    attributes = {f"surprise {number}": np.bytes_(b"a" * 50) for number in range(3000)}
+    names = list(map("surprise {}".format, range(3000)))
+    attributes = dict.fromkeys(names, np.bytes_(b"a" * 50))
     yield "many attributes", "attributes must be", lambda file: file.attrs.update(attributes)
-    yield "many groups", "must hold", add_groups, map("surprise {}".format, range(3000))
-    yield "deep groups", "must hold", add_groups, ["/".join("a" * 500)]
+    yield "many groups", "must hold", lambda file: list(map(file.create_group, names))
+    yield "deep groups", "must hold", lambda file: file.create_group("/".join("a" * 500))
     yield "a group in itself", "must hold|must be", add_cycle
-
-
-def add_groups(file: h5py.File, names: Iterator[str]) -> None:
-    for name in names:
-        file.create_group(name)
 
 
 def add_cycle(file: h5py.File) -> None:
@@ -163,7 +159,8 @@ def others() -> Edits:
     for name in sorted(creature_h5.ATTRIBUTES):
         texts = {repr(text[:9]): np.bytes_(text) for text in TEXTS}
         for title, value in (VALUES | texts).items():
-            yield f"@{name}: {title}", "", set_attribute, name, value
+            new = {name: value}
+            yield f"@{name}: {title}", "", lambda file, new=new: file.attrs.update(new)
         yield f"@{name} missing", "attributes must be", lambda file, n=name: file.attrs.pop(n)
 
 
@@ -178,7 +175,3 @@ def flip(file: h5py.File, name: str) -> None:
     raw[-1] ^= 0x40
     flipped = np.frombuffer(bytes(raw), value.dtype if value.size else "u1")
     replace(file, name, flipped.reshape(value.shape if value.size else (1,)))
-
-
-def set_attribute(file: h5py.File, name: str, value: Any) -> None:
-    file.attrs[name] = value

@@ -88,8 +88,8 @@ def compare(place: Installation, runs: dict[str, list[dict]]) -> bool:
         good &= own / other > bar
         rich.print(f"{method}, {figure}: {own / other:.2f} × random search (bar {bar})")
     draw(runs)
-    for method, found in runs.items():
-        purities = [purity(file) for run in found for file in fittest(place, run["id"], 10)]
+    for method, some in runs.items():
+        purities = [purity(file) for run in some for file in fittest(place, run["id"], 10)]
         rich.print(
             f"{method}: {np.mean(np.array(purities) >= PURE):.0%} of the ten fittest of each "
             f"seed are sinusoidal (median {statistics.median(purities):.0%} of the power in "
@@ -245,6 +245,8 @@ def forage_spec(seed: int, fitness: str) -> dict:
 
 def forage(place: Installation) -> bool:
     """Tell whether selection for energy collects more, and blindness less, as medians."""
+    from microcosmos.audit.reproducibility import check
+
     found: dict[str, list[float]] = {"displacement+energy": [], "displacement": [], "blind": []}
     for seed in FORAGERS:
         for fitness in ("displacement+energy", "displacement"):
@@ -252,7 +254,7 @@ def forage(place: Installation) -> bool:
             (best,) = fittest(place, run["id"], 1)
             found[fitness].append(best["measured"]["measures"]["energy"])
             if fitness == "displacement+energy":
-                found["blind"].append(collected(blinded(best)))
+                found["blind"].append(check(blinded(best)).repeated["energy"])
     middle = {kind: statistics.median(values) for kind, values in found.items()}
     for kind, values in found.items():
         listed = ", ".join(f"{value:.0f}" for value in values)
@@ -269,9 +271,3 @@ def blinded(file: dict) -> dict:
     genome = {**identity["genome"], "connections": {**connections, "weight": encode(weights)}}
     changed = {**identity, "genome": genome}
     return {**file, "identity": changed, "sha256": name(changed)}
-
-
-def collected(file: dict) -> float:
-    from microcosmos.audit.reproducibility import check
-
-    return check(file).repeated["energy"]

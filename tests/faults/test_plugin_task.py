@@ -5,7 +5,6 @@ import shutil
 import subprocess
 import sys
 from hashlib import sha256
-from pathlib import Path
 
 import pytest
 from drive import ROOT, SUPERVISOR, wait_until
@@ -32,15 +31,10 @@ SMALL = {
 
 
 @pytest.fixture
-def module(tmp_path):
-    return Path(shutil.copy(EXAMPLE, tmp_path))
-
-
-@pytest.fixture
-def hire(module):
+def hire(tmp_path):
     """Starts a second worker of an installation, with the example and a broken module."""
     hired = []
-    broken = module.with_name("broken.py")
+    module, broken = shutil.copy(EXAMPLE, tmp_path), tmp_path / "broken.py"
     broken.write_text("import os\nos.nothing\n")
 
     def start(place):
@@ -62,7 +56,7 @@ def worker_with_plugins(place):
     return next((one for one in place.get("workers") if one["plugins"]), None)
 
 
-def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(installation, hire, module):
+def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(installation, hire, tmp_path):
     place = installation(WORKERS="1")
     wait_until(lambda: place.get("workers"), 60, "its worker lives")
     refused = place.http.post("/api/v1/runs", json=SMALL)
@@ -92,6 +86,7 @@ def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(installation, h
     assert archive["measures"]["plugin_task.straight"] == archive["fitness"]
     assert archive["fitness"] == tree["archive"]["fitness"].tolist()
 
+    module = tmp_path / EXAMPLE.name
     module.write_text(f"{EXAMPLE.read_text()}# Changed.\n")
     wait_until(
         lambda: worker_with_plugins(place)["plugins"] != worker["plugins"],

@@ -12,21 +12,12 @@ from contextlib import suppress
 import h5py
 import pytest
 from databases import Missing, services
-from drive import (
-    REDIS,
-    RENDERER,
-    interrupt,
-    kill_job,
-    kill_supervisor,
-    pause_and_resume,
-    stop_worker,
-    wait_until,
-)
+from drive import interrupt, kill_job, kill_worker, pause_and_resume, stop_worker, wait_until
 
 from microcosmos.archive import file
 
 FEW = [kill_job, pause_and_resume]
-MANY = [kill_job, stop_worker, kill_job, pause_and_resume, kill_supervisor, kill_job]
+MANY = [kill_job, stop_worker, kill_job, pause_and_resume, kill_worker, kill_job]
 LATEST = 9
 """Faults come before this generation, so that the run is not over."""
 
@@ -46,7 +37,7 @@ def test_a_run_that_is_killed_stopped_and_paused_ends_with_the_same_archive(
 def test_a_run_goes_on_while_redis_is_killed_and_started_again(place, spec, undisturbed):
     run = place.submit(spec)
     attempt = place.reach(run, 1)
-    place.signal(REDIS, signal.SIGKILL)
+    place.signal("redis-server", signal.SIGKILL)
     assert place.wait(run, "finished")["attempt"] == attempt
     assert place.results(run) == undisturbed
     place.wait(place.submit(spec), "finished")
@@ -123,10 +114,10 @@ def test_postgresql_and_a_redis_server_give_the_same_bytes(
     """`undisturbed` is of SQLite and the embedded Redis."""
     place = installation(**elsewhere)
     assert "the one that MICROCOSMOS_REDIS_URL names" in place.output.read_text()
-    assert not place.named(REDIS)
+    assert not place.named("redis-server")
     assert not list(place.folder.glob("*.sqlite"))
     run = place.submit(spec)
-    interrupt(place, run, [(1, kill_job), (4, kill_supervisor), (7, stop_worker)])
+    interrupt(place, run, [(1, kill_job), (4, kill_worker), (7, stop_worker)])
     assert place.wait(run, "finished")["attempt"] == 4
     assert place.results(run) == undisturbed
 
@@ -194,7 +185,7 @@ def test_a_replay_is_made_though_its_renderer_is_killed(place, undisturbed):
     creature = undisturbed["archive"]["creature"][0]
     address = f"/api/v1/creatures/{creature}/replay"
     assert place.http.get(address).status_code == 202
-    place.signal(RENDERER, signal.SIGKILL)
+    place.signal("worker.renderer", signal.SIGKILL)
 
     def there():
         answer = place.http.get(address)

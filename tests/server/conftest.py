@@ -99,7 +99,7 @@ def flush(services) -> Callable[[], None]:
 @pytest.fixture
 def eventually() -> Callable[[Callable[[], Any]], None]:
     def wait(condition: Callable[[], Any]) -> None:
-        deadline = time.monotonic() + 20
+        deadline = time.monotonic() + 60
         while not condition():
             assert time.monotonic() < deadline, "the condition never held"
             time.sleep(0.01)

@@ -1,4 +1,4 @@
-"""The whole: health, the page, the description of the API, and no JAX."""
+"""The application: health, page, OpenAPI document, and no import of JAX."""
 
 import os
 import socket

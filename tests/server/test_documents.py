@@ -63,7 +63,7 @@ def known(
     claim(services, sweep_id, "worker").record(table(1, {"number": 1, "speed": 0.5}), 1.0)
     kept = creature.document(identity(3), None, None)
     with services.sessions.write.begin() as session:
-        creatures.add(session, kept)
+        creatures.import_files(session, kept)
     renderings.save(services, kept["sha256"], REPLAY, replay(np.zeros((1, 2, 2))))
     token = tokens.create(services, "somebody", "read").token
     return {

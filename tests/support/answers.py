@@ -1,4 +1,4 @@
-"""Refusals of the API, read after their status is checked."""
+"""Problems that the API answers with: status, detail, and fields."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ import httpx
 
 
 def detail(answer: httpx.Response, status: int) -> str:
-    """The sentence of a refusal with this status."""
+    """The `detail` of a problem, after checking its status."""
     assert answer.status_code == status, answer.text
     return answer.json()["detail"]
 
@@ -17,5 +17,5 @@ def errors(answer: httpx.Response, status: int = 422) -> list[dict[str, Any]]:
 
 
 def fields(answer: httpx.Response, status: int = 422) -> list[str]:
-    """The fields at fault of an invalid request."""
+    """The invalid fields of a request."""
     return [error["field"] for error in errors(answer, status)]

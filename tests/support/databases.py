@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from uuid import uuid4
 
@@ -11,8 +11,8 @@ import redis
 
 from server.local.redis_embedded import prepare
 
-SERVER = os.environ.get("MICROCOSMOS_TEST_POSTGRESQL", "postgresql://127.0.0.1:5432")
-MESSAGES = os.environ.get("MICROCOSMOS_TEST_REDIS", "redis://127.0.0.1:6379")
+POSTGRES = os.environ.get("MICROCOSMOS_TEST_POSTGRESQL", "postgresql://127.0.0.1:5432")
+REDIS = os.environ.get("MICROCOSMOS_TEST_REDIS", "redis://127.0.0.1:6379")
 
 
 class Missing(RuntimeError):
@@ -22,20 +22,17 @@ class Missing(RuntimeError):
 @contextmanager
 def own_postgresql() -> Iterator[str]:
     """A new database of this machine's PostgreSQL; raises `Missing` without one."""
-    if given := os.environ.get("MICROCOSMOS_TEST_DATABASE_URL"):
-        yield given
-        return
     name = f"microcosmos_test_{uuid4().hex[:12]}"
     try:
-        connection = psycopg.connect(f"{SERVER}/postgres", autocommit=True, connect_timeout=2)
+        connection = psycopg.connect(f"{POSTGRES}/postgres", autocommit=True, connect_timeout=2)
         connection.execute(f"CREATE DATABASE {name}")
     except psycopg.Error as error:
-        raise Missing(f"no PostgreSQL at {SERVER} where we may create a database") from error
+        raise Missing(f"no PostgreSQL at {POSTGRES} where we may create a database") from error
     with connection:
         # The data need not outlive the machine, so nothing waits for the disk.
         connection.execute(f"ALTER DATABASE {name} SET synchronous_commit = off")
         try:
-            yield f"{SERVER}/{name}"
+            yield f"{POSTGRES}/{name}"
         finally:
             connection.execute(f"DROP DATABASE {name} WITH (FORCE)")
 
@@ -55,7 +52,7 @@ def own_redis(folder: Path) -> Iterator[str]:
 def unused_redis() -> Iterator[str]:
     """An unused database of this machine's Redis; raises `Missing` without one."""
     for number in range(1, 16):
-        url = f"{MESSAGES}/{number}"
+        url = f"{REDIS}/{number}"
         with suppress(redis.RedisError), redis.Redis.from_url(url) as client:
             if not client.dbsize():
                 break
@@ -71,9 +68,9 @@ def unused_redis() -> Iterator[str]:
 @contextmanager
 def services() -> Iterator[dict[str, str]]:
     """The settings of an installation on this machine's PostgreSQL and Redis."""
-    with ExitStack() as stack:
+    with own_postgresql() as database, unused_redis() as messages:
         yield {
-            "MICROCOSMOS_DATABASE_URL": stack.enter_context(own_postgresql()),
-            "MICROCOSMOS_REDIS_URL": stack.enter_context(unused_redis()),
+            "MICROCOSMOS_DATABASE_URL": database,
+            "MICROCOSMOS_REDIS_URL": messages,
             "MICROCOSMOS_REDIS_PREFIX": f"microcosmos_faults_{os.getpid()}:",
         }

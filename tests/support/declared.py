@@ -1,4 +1,4 @@
-"""Declarations of a module `mine` of plug-ins."""
+"""Declarations of the plug-ins of an invented module, `mine`."""
 
 from typing import Any
 

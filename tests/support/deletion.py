@@ -33,7 +33,7 @@ def finish(services, run_id, *reports, files=True):
     attempt.finish()
 
 
-def another(services, spec, seed, key=None):
+def submit_another(services, spec, seed, key=None):
     seeded = {**spec, "seed": seed}
     return submit(services, parse(seeded), IdempotentRequest(seeded, key))[0].id
 

@@ -49,7 +49,7 @@ def empty_redis(services: Services) -> None:
 
 @contextmanager
 def running(settings: Settings) -> Iterator[str]:
-    """A server in a thread: its address."""
+    """Run a server in a thread; yield its address."""
     app = create_app(connect(settings))
     config = uvicorn.Config(app, port=0, log_level="warning", timeout_graceful_shutdown=5)
     server = uvicorn.Server(config)

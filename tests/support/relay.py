@@ -1,4 +1,4 @@
-"""A relay that breaks connections off, and a foreign server."""
+"""A relay that breaks connections off, and a server of another program."""
 
 import socket
 import threading
@@ -67,8 +67,8 @@ def hang_up(end: socket.socket) -> None:
 
 
 @contextmanager
-def other(*answers: tuple[int, dict[str, str], bytes]) -> Iterator[tuple[str, list[str]]]:
-    """A foreign server with these answers in order, the last one repeated."""
+def foreign(*answers: tuple[int, dict[str, str], bytes]) -> Iterator[tuple[str, list[str]]]:
+    """A server of another program, with its answers in order, the last one repeated."""
     left, asked = list(answers), []
 
     class Handler(BaseHTTPRequestHandler):

@@ -36,11 +36,6 @@ def services(installation):
 
 
 @pytest.fixture
-def settings(services):
-    return services.settings
-
-
-@pytest.fixture
 def run_id(services):
     return submit(services, EXPERIMENTS["quality-diversity"].presets[0].spec)[0].id
 

@@ -8,10 +8,8 @@ from types import SimpleNamespace
 import pynvml
 import pytest
 
-from server.workers import registry
 from worker import device, usage
 from worker.device import Device, memory
-from worker.heartbeats import Heartbeats
 from worker.usage import Usage
 
 TWO = {
@@ -29,7 +27,7 @@ def nvml(monkeypatch):
     """A function that replaces NVIDIA's library by one that knows some cards.
 
     `cards` has name and memory by UUID, None for a card that fails; None is no driver.
-    `divided` is the UUID of a card with the parts `DIVIDED`.
+    `divided` is the UUID of a card with the MIG instances `DIVIDED`.
     """
     for name in ("JAX_PLATFORMS", "CUDA_VISIBLE_DEVICES", device.MEMORY_FRACTION):
         monkeypatch.delenv(name, raising=False)
@@ -108,7 +106,7 @@ def test_only_gpus_that_the_environment_allows_are_used(nvml, monkeypatch, allow
     assert [device.find(i, 2).gpu for i in range(2)] == found
 
 
-def test_parts_of_a_divided_card_are_devices(nvml, monkeypatch):
+def test_mig_instances_are_devices(nvml, monkeypatch):
     nvml(TWO, divided="GPU-aaaa1111")
     first, second, third = (device.find(i, 3) for i in range(3))
     assert (first.gpu, first.name) == ("MIG-cccc3333", "NVIDIA H200 MIG 3g.71gb")
@@ -184,7 +182,7 @@ def test_a_processor_reports_load_and_memory():
 @pytest.mark.parametrize(
     ("current", "expected"), [("1000", 990), ("5", 0), ("no number", None)]
 )
-def test_in_a_container_its_own_memory_is_told(tmp_path, monkeypatch, current, expected):
+def test_in_a_container_its_own_memory_is_reported(tmp_path, monkeypatch, current, expected):
     (tmp_path / "memory.max").write_text("2000")
     (tmp_path / "memory.current").write_text(current)
     (tmp_path / "memory.stat").write_text("inactive_file 10\n")
@@ -208,17 +206,6 @@ GPU = {"GPU-3": ("a GPU", 80 << 30)}
 def test_a_gpu_reports_its_own_usage_and_none_for_the_rest(nvml, cards, used, load, expected):
     nvml(cards, used=used, load=load)
     assert usage.usage(Device("gpu", 80 << 30, {}, "GPU-3")) == expected
-
-
-def test_a_heartbeat_reports_the_latest_usage(services):
-    heartbeat = Heartbeats(
-        services.sessions, "worker", Device("gpu", 8 << 30, {}, "0"), lease=20
-    )
-    heartbeat.gauge.last = Usage(5, 0.25)
-    heartbeat.beat()
-    with services.sessions.read() as session:
-        (found,) = registry.live(session, 20)
-    assert (found.kind, found.memory_used_bytes, found.load) == ("gpu", 5, 0.25)
 
 
 @pytest.mark.parametrize("error", [OSError("gone"), ValueError("no number")])

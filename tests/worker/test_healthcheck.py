@@ -42,7 +42,8 @@ def test_a_renderer_is_alive_from_birth_to_death(services, part):
     assert not alive(services, part, HOST)
 
 
-def test_a_missing_part_gives_an_exit_status(services, settings, monkeypatch):
+def test_a_missing_part_gives_an_exit_status(services, monkeypatch):
+    settings = services.settings
     monkeypatch.setenv("MICROCOSMOS_DATA", str(settings.data))
     monkeypatch.setenv("MICROCOSMOS_DATABASE_URL", settings.database_url)
     monkeypatch.setenv("MICROCOSMOS_REDIS_URL", settings.redis_url)
@@ -54,11 +55,10 @@ def test_a_missing_part_gives_an_exit_status(services, settings, monkeypatch):
 
 
 @pytest.fixture
-def container(monkeypatch):
+def container():
     """A first process with one program in it, which ignores that it is asked to end."""
     script = "(trap '' TERM; while :; do sleep 0.1; done) & wait"
     init = subprocess.Popen(["sh", "-c", script], stdout=subprocess.DEVNULL)
-    monkeypatch.setattr(healthcheck, "INITS", ("sh",))
     while not (children := psutil.Process(init.pid).children()):
         time.sleep(0.02)
     yield init
@@ -68,16 +68,21 @@ def container(monkeypatch):
     init.wait()
 
 
-def test_a_part_that_fails_for_minutes_is_terminated_then_killed(container, tmp_path):
+def test_a_part_that_fails_for_minutes_is_terminated_then_killed_in_a_container_alone(
+    container, monkeypatch, tmp_path
+):
     mark = tmp_path / "fails"
+    healthcheck.end_failing(mark, container.pid)
+    assert not mark.exists(), "nothing is ended outside a container"
+    monkeypatch.setattr(healthcheck, "INITS", ("sh",))
     (program,) = psutil.Process(container.pid).children()
     time.sleep(0.2)  # It has set its trap.
-    healthcheck.remedy(mark, container.pid)
+    healthcheck.end_failing(mark, container.pid)
     assert mark.exists(), "the first failure is remembered"
 
     def failing_for(seconds):
         os.utime(mark, (time.time() - seconds,) * 2)
-        healthcheck.remedy(mark, container.pid)
+        healthcheck.end_failing(mark, container.pid)
 
     failing_for(healthcheck.TERMINATE_AFTER - 5)
     failing_for(healthcheck.TERMINATE_AFTER + 5)
@@ -87,13 +92,8 @@ def test_a_part_that_fails_for_minutes_is_terminated_then_killed(container, tmp_
     assert container.wait(10) is not None, "the container ends with its program"
 
 
-def test_nothing_is_ended_outside_a_container(container, monkeypatch, tmp_path):
-    monkeypatch.setattr(healthcheck, "INITS", ("docker-init",))
-    healthcheck.remedy(tmp_path / "fails", container.pid)
-    assert not (tmp_path / "fails").exists()
-
-
-def test_a_part_without_its_database_or_redis_is_not_unhealthy(settings, monkeypatch):
+def test_a_part_without_its_database_or_redis_is_not_unhealthy(services, monkeypatch):
+    settings = services.settings
     monkeypatch.setattr(healthcheck, "answers", lambda port, path: False)
     assert healthcheck.fault(settings, "server") == "The server does not answer."
     monkeypatch.setattr(healthcheck, "answers", lambda port, path: path == "/healthz")

@@ -22,9 +22,9 @@ from worker.device import Device
 from worker.heartbeats import HEARTBEATS_AFTER_END, Heartbeats
 from worker.renderer import retry_interrupted
 from worker.supervisor import Supervisor
+from worker.usage import Usage
 
 CREATURE = "ab" * 32
-ENGINE_FREE = ("supervisor", "heartbeats", "loop", "job_process")
 
 
 @pytest.fixture
@@ -71,7 +71,7 @@ def test_a_replay_whose_renderer_died_is_asked_for_again(services, worker):
 
 
 def take_and_die(services):
-    """Take an order as a renderer does that dies while it works."""
+    """Take a rendering job, as a renderer that dies during it."""
     queue = services.jobs.renderings
     renderer = SimpleWorker([queue], serializer=JSONSerializer)
     renderer.register_birth()
@@ -103,14 +103,16 @@ def test_a_long_rendering_counts_as_alive_for_all_its_time(services):
 
 
 def test_the_supervisor_never_loads_jax_and_starts_in_any_folder(tmp_path):
-    modules = ", ".join(f"worker.{name}" for name in ENGINE_FREE)
-    check = f"import sys, {modules}; sys.exit('jax' in sys.modules)"
+    modules = "supervisor, heartbeats, loop, job_process"
+    check = f"import sys; from worker import {modules}; sys.exit('jax' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", check], cwd=tmp_path).returncode == 0
 
 
 @pytest.fixture
 def heartbeat(services):
-    return Heartbeats(services.sessions, "worker", Device("some device", 8 << 30, {}), lease=20)
+    return Heartbeats(
+        services.sessions, "worker", Device("some device", 8 << 30, {}, "0"), lease=20
+    )
 
 
 @pytest.fixture
@@ -149,28 +151,26 @@ def test_a_job_is_stopped_before_its_supervisor_is_killed():
 
 
 @pytest.fixture
-def killed():
-    return []
-
-
-@pytest.fixture
-def watched(services, heartbeat, run_id, killed):
-    """Heartbeats of a worker that computes the run; `killed` lists runs whose job they kill."""
+def killed(services, heartbeat, run_id):
+    """The runs whose job the heartbeats of their worker have killed."""
+    runs = []
     claim(services, run_id, "worker")
-    heartbeat.watch(run_id, lambda: killed.append(run_id))
-    return heartbeat
+    heartbeat.watch(run_id, lambda: runs.append(run_id))
+    return runs
 
 
-def test_a_heartbeat_renews_the_lease_and_reports_device_memory_and_run(
-    services, watched, run_id, row, killed
+def test_a_heartbeat_renews_the_lease_and_reports_device_usage_and_run(
+    services, heartbeat, run_id, row, killed
 ):
     with services.sessions.write.begin() as session:
         session.execute(update(Run).values(heartbeat_at=None))
-    watched.beat()
+    heartbeat.gauge.last = Usage(5, 0.25)
+    heartbeat.beat()
     assert row().heartbeat_at is not None
     with services.sessions.read() as session:
         found = registry.live(session, 20)[0]
     assert (found.name, found.device, found.memory_bytes) == ("worker", "some device", 8 << 30)
+    assert (found.kind, found.memory_used_bytes, found.load) == ("gpu", 5, 0.25)
     assert (found.status, found.run_id) == ("busy", run_id)
     assert not killed
 
@@ -180,19 +180,20 @@ def test_a_heartbeat_renews_the_lease_and_reports_device_memory_and_run(
     [({"worker": "another"}, 0), ({"status": CANCELLED, "worker": None}, HEARTBEATS_AFTER_END)],
 )
 def test_a_job_that_loses_or_outlives_its_run_is_killed(
-    services, watched, run_id, killed, changes, patience
+    services, heartbeat, run_id, killed, changes, patience
 ):
-    watched.beat()
+    heartbeat.beat()
     with services.sessions.write.begin() as session:
         session.execute(update(Run).values(**changes))
     for _ in range(patience):
-        watched.beat()
+        heartbeat.beat()
     assert not killed
-    watched.beat()
+    heartbeat.beat()
     assert killed == [run_id]
 
 
-def test_a_job_that_has_not_claimed_its_run_yet_is_left_alone(heartbeat, run_id, killed):
+def test_a_job_that_has_not_claimed_its_run_yet_is_left_alone(heartbeat, run_id):
+    killed = []
     heartbeat.watch(run_id, lambda: killed.append(run_id))
     for _ in range(HEARTBEATS_AFTER_END + 2):
         heartbeat.beat()

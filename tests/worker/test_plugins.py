@@ -61,7 +61,7 @@ def test_without_modules_no_process_is_started(monkeypatch):
     assert plugins.list_plugins(Settings(modules="")) == plugins.PluginReport()
 
 
-def test_a_changed_file_is_looked_at_again(settings, monkeypatch):
+def test_a_changed_file_is_listed_again(settings, monkeypatch):
     chosen, asked, report = settings(mine=GOOD), Queue(), plugins.PluginReport()
     monkeypatch.setattr(plugins, "list_plugins", lambda given: asked.put(given) or report)
     watcher = plugins.PluginWatcher(chosen, 0.01)

@@ -35,7 +35,7 @@ def replay() -> bytes:
 def known(services):
     file = creature.parse(creature.document(reports.identity(), None, None))
     with services.sessions.write.begin() as session:
-        creatures.add(session, file)
+        creatures.import_files(session, file)
     return file["sha256"]
 
 

@@ -1,4 +1,4 @@
-"""Migrations: bring the tables up to date, and tell which revision they have."""
+"""Migrations: bring the tables up to date, and read their revision."""
 
 from pathlib import Path
 from typing import Any
@@ -15,13 +15,13 @@ LOCK = 0x6D6963726F  # "micro": PostgreSQL's advisory locks are numbers.
 
 
 def upgrade(sessions: Sessions) -> None:
-    """Apply what is missing, in one transaction under a lock: several may start at once."""
+    """Apply missing migrations in one transaction under a lock: processes may start at once."""
     writer = sessions.engine.execution_options(writer=True)
     with writer.connect() as connection:
         _prepare(connection)
         with connection.begin():
             if connection.dialect.name == "postgresql":
-                for limit in ("statement_timeout", "lock_timeout"):  # Those of requests.
+                for limit in ("statement_timeout", "lock_timeout"):  # Set for requests.
                     connection.execute(text(f"SET LOCAL {limit} = 0"))
                 connection.execute(text(f"SELECT pg_advisory_xact_lock({LOCK})"))
             command.upgrade(config(connection), "head")
@@ -53,7 +53,7 @@ def config(connection: Connection | None = None) -> Config:
 
 
 def _prepare(connection: Connection) -> None:
-    """Rebuilding a table in SQLite drops the old one, which must not cascade."""
+    """Switch foreign keys off in SQLite: dropping a rebuilt table must not cascade."""
     if connection.dialect.name == "sqlite":
         driver: Any = connection.connection.dbapi_connection
         driver.execute("PRAGMA foreign_keys=OFF")

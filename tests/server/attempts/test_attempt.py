@@ -34,7 +34,7 @@ def disk():
 
 @pytest.fixture
 def services(services, disk):
-    """The common ones, their files on a disk that can be full."""
+    """The services of the tests, with files on a disk that can be full."""
     artifacts = Artifacts(services.settings.artifacts)
     artifacts.files = disk
     settings = services.settings.model_copy(update={"checkpoint_interval": 0.0})
@@ -147,11 +147,11 @@ def test_a_running_run_cannot_be_claimed(held):
 
 
 @pytest.fixture
-def away(monkeypatch):
-    """A database that fails a number of times."""
+def database_fails(monkeypatch):
+    """A function that makes the database fail a number of times."""
     monkeypatch.setattr(database, "RETRY_SECONDS", 0)
 
-    def leave(tries):
+    def fail(tries):
         answers = [OperationalError("", {}, Exception("away"))] * tries
 
         def change(*args, **values):
@@ -161,19 +161,19 @@ def away(monkeypatch):
 
         monkeypatch.setattr(attempts, "change", change)
 
-    return leave
+    return fail
 
 
-def test_a_generation_waits_for_a_database_that_is_away(held, row, report, away):
+def test_a_generation_waits_for_a_database_that_is_away(held, row, report, database_fails):
     with held() as attempt:
-        away(2)
+        database_fails(2)
         attempt.record(report(1), 1.0)
     assert row().generation == 1
 
 
-def test_a_stopping_worker_does_not_wait_for_the_database(attempt, record, away):
+def test_a_stopping_worker_does_not_wait_for_the_database(attempt, record, database_fails):
     attempt.outage_seconds, attempt.stop_requested = 60.0, lambda: True
-    away(1)
+    database_fails(1)
     with pytest.raises(OperationalError):
         record(1)
 

@@ -1,4 +1,4 @@
-"""Checkpoints: what an attempt keeps, and what the next one goes on from."""
+"""Checkpoints: saved, pruned, and restored by the next attempt."""
 
 import errno
 import shutil

@@ -39,7 +39,7 @@ def test_a_silent_workers_run_is_claimed_and_its_writes_refused(
         lambda: first.record(report(2), 1.0),
         lambda: first.save(1, b"data"),
         lambda: first.warn("text"),
-        first.check,
+        first.read_request,
         first.finish,
         first.pause,
         first.requeue,

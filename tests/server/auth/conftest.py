@@ -1,4 +1,4 @@
-"""Tokens in the database."""
+"""Fixtures of tokens."""
 
 import pytest
 

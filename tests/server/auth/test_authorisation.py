@@ -143,7 +143,7 @@ def parameters(services, secrets, spec, identity):
     """Fills the parameters of a path with new objects of `owner`."""
     file = creature.document(identity(3), None, None)
     with services.sessions.write.begin() as session:
-        creatures.add(session, file)
+        creatures.import_files(session, file)
 
     owner = tokens.principal_of(services, secrets["owner"])
 

@@ -1,4 +1,4 @@
-"""Tokens: shown once, kept as hashes, useless once they have ended."""
+"""Tokens: creation, hashes, expiry, revocation, and ownership of runs."""
 
 import stat
 from dataclasses import replace

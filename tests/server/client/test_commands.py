@@ -37,7 +37,7 @@ def command(address: str, monkeypatch) -> Callable[..., Result]:
     return carry_out
 
 
-def test_a_run_is_submitted_listed_and_kept(command, client):
+def test_a_run_is_submitted_listed_and_downloaded(command, client):
     made = command("submit", "demo", "--set", "seed=11", "--name", "first")
     (id,) = made.stdout.split()
     run = client.run(id)

@@ -146,8 +146,8 @@ def test_the_client_sends_its_token(serve, monkeypatch):
         assert list(Client().runs()) == []
 
 
-class Kept:
-    """A view that keeps the states that it was shown."""
+class RecordingView:
+    """A view that records the states that it receives."""
 
     def __init__(self, react=lambda state: None):
         self.shown: list[tuple[str, int, list[int]]] = []
@@ -161,8 +161,8 @@ class Kept:
 
 
 @pytest.fixture
-def worked(attempt, record):
-    """Records a generation whenever the run is shown; finishes it after the third."""
+def advance(attempt, record):
+    """Records a generation at each update of a view; finishes the run after the third."""
     left = [1, 2, 3, None]
 
     def go_on(state: polling.RunState) -> None:
@@ -177,8 +177,8 @@ def worked(attempt, record):
     return go_on
 
 
-def test_a_run_is_followed_by_events(client, run, worked):
-    view = Kept(worked)
+def test_a_run_is_followed_by_events(client, run, advance):
+    view = RecordingView(advance)
     states = polling.follow(client.connection, run.id)
     assert watch(states, "Run x", nullcontext(view)) == "finished"
     assert view.shown[-1] == ("finished", 3, [1, 2, 3])
@@ -186,20 +186,20 @@ def test_a_run_is_followed_by_events(client, run, worked):
     assert curves == sorted(curves)  # Nothing twice, nothing out of order.
 
 
-def test_watching_polls_without_a_stream(client, run, worked, monkeypatch):
+def test_watching_polls_without_a_stream(client, run, advance, monkeypatch):
     def none(*_: object):
         raise Refused("no streams here")
         yield
 
     monkeypatch.setattr(polling, "events", none)
     monkeypatch.setattr(polling, "POLL", 0.01)
-    view = Kept(worked)
+    view = RecordingView(advance)
     for state in polling.follow(client.connection, run.id):
         view(state)
     assert view.shown[-1] == ("finished", 3, [1, 2, 3])
 
 
-def test_watching_survives_an_absence_of_the_server(serve, services, run, worked, monkeypatch):
+def test_watching_survives_an_absence_of_the_server(serve, services, run, advance, monkeypatch):
     monkeypatch.setattr(polling, "POLL", 0.01)
     with serve() as address:
         client = Client(address, patience=0.0)
@@ -212,14 +212,14 @@ def test_watching_survives_an_absence_of_the_server(serve, services, run, worked
             return ask(path, **asked)
 
         found = polling.follow(client.connection, run.id)
-        view = Kept()
+        view = RecordingView()
         view(next(found))
         monkeypatch.setattr(client.connection, "read", read)
         troubles = []
         for state in found:
             troubles.append(state.problem)
             if state.problem is None:
-                worked(state)
+                advance(state)
         assert troubles.count("No server answers.") >= 1
         assert (troubles[-1], state.record["status"]) == (None, "finished")
 

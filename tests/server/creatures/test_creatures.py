@@ -1,4 +1,4 @@
-"""Creatures by their name, brought by anybody, and their replays."""
+"""Creatures: reading by name, uploading, and replays."""
 
 import json
 

@@ -10,7 +10,7 @@ from microcosmos.archive import creature, creature_h5
 
 
 @pytest.fixture
-def bring(upload, identity):
+def upload_child(upload, identity):
     """Uploads a creature with parents, given by number or name, and returns its name."""
 
     def name(parent: int | str) -> str:
@@ -33,10 +33,10 @@ def names(found):
     return [item["creature"] for item in found["items"]]
 
 
-def test_ancestors_are_listed_once_nearest_first(api, bring):
+def test_ancestors_are_listed_once_nearest_first(api, upload_child):
     # 1 is a parent of 4 and of its other parent 3.
-    old, one = bring(10), bring(1, 10)
-    three, four = bring(3, 1, 1), bring(4, 1, 3)
+    old, one = upload_child(10), upload_child(1, 10)
+    three, four = upload_child(3, 1, 1), upload_child(4, 1, 3)
     found = api.get(f"creatures/{four}/ancestors").json()
     assert names(found) == [one, three, old]
     assert [item["distance"] for item in found["items"]] == [1, 1, 2]
@@ -44,8 +44,8 @@ def test_ancestors_are_listed_once_nearest_first(api, bring):
     assert (found["parents"], found["more"]) == ([one, three], False)
 
 
-def test_limited_ancestors_say_whether_more_exist(api, bring):
-    one, two, three = bring(1), bring(2, 1), bring(3, 2)
+def test_limited_ancestors_say_whether_more_exist(api, upload_child):
+    one, two, three = upload_child(1), upload_child(2, 1), upload_child(3, 2)
     near = api.get(f"creatures/{three}/ancestors", params={"depth": 1}).json()
     assert (names(near), near["more"]) == ([two], True)
     all_of_them = api.get(f"creatures/{three}/ancestors", params={"depth": 2}).json()
@@ -58,28 +58,28 @@ def digests(begin, count):
 
 
 @pytest.mark.parametrize("depth", [1, 2, 32])
-def test_at_most_200_ancestors_are_listed(api, bring, depth):
+def test_at_most_200_ancestors_are_listed(api, upload_child, depth):
     parents = digests(0, 201)
-    child = bring(1, *parents)
+    child = upload_child(1, *parents)
     found = api.get(f"creatures/{child}/ancestors", params={"depth": depth}).json()
     assert (names(found), found["more"]) == (parents[:200], True)
-    child = bring(2, *parents[:200])
+    child = upload_child(2, *parents[:200])
     found = api.get(f"creatures/{child}/ancestors", params={"depth": depth}).json()
     assert (names(found), found["more"]) == (parents[:200], False)
 
 
-def test_the_order_of_parents_decides_which_ancestors_are_listed(api, bring):
+def test_the_order_of_parents_decides_which_ancestors_are_listed(api, upload_child):
     older = {1: digests(0, 150), 2: digests(1000, 150)}
-    one, two = bring(1, *older[1]), bring(2, *older[2])
+    one, two = upload_child(1, *older[1]), upload_child(2, *older[2])
     for child, first, second, parents in ((3, 1, 2, [one, two]), (4, 2, 1, [two, one])):
-        name = bring(child, first, second)
+        name = upload_child(child, first, second)
         found = api.get(f"creatures/{name}/ancestors", params={"depth": 2}).json()
         assert names(found) == parents + older[first] + older[second][:48]
         assert found["more"]
 
 
-def test_a_missing_parent_is_listed_by_hash(api, bring, identity, enter):
-    child = bring(2, 1)
+def test_a_missing_parent_is_listed_by_hash(api, upload_child, identity, enter):
+    child = upload_child(2, 1)
     (only,) = api.get(f"creatures/{child}/ancestors").json()["items"]
     assert only["creature"] == creature.name(identity(1))
     assert (only["stored"], only["fitness"], only["operator"]) == (False, None, None)
@@ -89,10 +89,10 @@ def test_a_missing_parent_is_listed_by_hash(api, bring, identity, enter):
     assert (only["creature"], only["stored"]) == (parent, False)
 
 
-def test_children_are_counted_and_named_once_each(api, bring):
-    parent = bring(1)
-    two, three = bring(2, 1, 1), bring(3, 1)
-    bring(4, 3)
+def test_children_are_counted_and_named_once_each(api, upload_child):
+    parent = upload_child(1)
+    two, three = upload_child(2, 1, 1), upload_child(3, 1)
+    upload_child(4, 3)
     found = api.get(f"creatures/{parent}/children").json()
     assert (found["total"], sorted(names(found))) == (2, sorted([two, three]))
     few = api.get(f"creatures/{parent}/children", params={"limit": 1}).json()
@@ -114,9 +114,9 @@ def enter(api, report, attempt):
     return enter
 
 
-def test_children_are_named_best_first_and_unmeasured_ones_last(api, bring, enter):
-    parent = bring(1)
-    unmeasured = bring(2, 1)
+def test_children_are_named_best_first_and_unmeasured_ones_last(api, upload_child, enter):
+    parent = upload_child(1)
+    unmeasured = upload_child(2, 1)
     fitness = [9.5, -3.0, 10.25, 1e-7, 0.0]
     made = {enter(i, value, parent): value for i, value in enumerate(fitness, 1)}
     best = sorted(made, key=lambda name: made[name], reverse=True)
@@ -126,8 +126,8 @@ def test_children_are_named_best_first_and_unmeasured_ones_last(api, bring, ente
     assert (few["total"], names(few)) == (6, best[:2])
 
 
-def test_a_creature_as_hdf5_is_complete_and_always_the_same_bytes(api, bring):
-    name = bring(3, 1)
+def test_a_creature_as_hdf5_is_complete_and_always_the_same_bytes(api, upload_child):
+    name = upload_child(3, 1)
     answer = api.get(f"creatures/{name}/creature.h5")
     assert answer.status_code == 200
     assert f'filename="creature-{name[:12]}.h5"' in answer.headers["content-disposition"]
@@ -139,7 +139,7 @@ def test_a_creature_as_hdf5_is_complete_and_always_the_same_bytes(api, bring):
         assert weights[:] == [3.0]
 
 
-def test_measures_of_any_name_survive_every_format(api, identity, bring):
+def test_measures_of_any_name_survive_every_format(api, identity, upload_child):
     measures = {"displacement": 0.5, "": 1.0, ".": 2.0, "a": 3.0, "a/b": 4.0, "fitness": 5.0}
     measured = {
         "fitness": 0.5,
@@ -149,7 +149,7 @@ def test_measures_of_any_name_survive_every_format(api, identity, bring):
         "room": [24, 64],
         "device": "/",
     }
-    parent = bring(2)
+    parent = upload_child(2)
     origin = {"parents": [parent], "operator": "a/b", "generation": 1, "seed": 0}
     file = creature.document(identity(1), measured, {**origin, "version": ""})
     sent = api.post("creatures", json=file)

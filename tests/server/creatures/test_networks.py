@@ -1,4 +1,4 @@
-"""A creature's network in other forms."""
+"""Networks of creatures as SVG, Graphviz, Python and TensorNEAT."""
 
 import io
 import re
@@ -15,6 +15,7 @@ from server.creatures.sandbox_process import CPU_SECONDS
 from server.tables import Creature
 
 TYPES = {
+    "json": "application/json",
     "svg": "image/svg+xml",
     "dot": "text/vnd.graphviz; charset=utf-8",
     "py": "text/x-python; charset=utf-8",
@@ -24,16 +25,16 @@ TYPES = {
 
 @pytest.fixture
 def known(upload, identity):
-    def bring(change=lambda identity: None) -> str:
+    def upload_changed(change=lambda identity: None) -> str:
         found = identity(2)
         change(found)
         return upload(found)
 
-    return bring
+    return upload_changed
 
 
 @pytest.mark.parametrize("form", TYPES)
-def test_each_form_is_for_ever_and_has_a_name(api, known, form):
+def test_each_form_is_cached_for_ever_under_a_file_name(api, known, form):
     sha = known()
     answer = api.get(f"creatures/{sha}/network.{form}")
     assert (answer.status_code, answer.headers["content-type"]) == (200, TYPES[form])
@@ -43,6 +44,8 @@ def test_each_form_is_for_ever_and_has_a_name(api, known, form):
 
 def test_the_forms_hold_the_network(api, known):
     sha = known()
+    placed = api.get(f"creatures/{sha}/network.json").json()
+    assert placed["nodes"]["3"][0] == placed["width"] == 1
     picture = ElementTree.fromstring(api.get(f"creatures/{sha}/network.svg").text)
     assert picture.tag == "{http://www.w3.org/2000/svg}svg"
     assert re.search(r"1 -> 3", api.get(f"creatures/{sha}/network.dot").text)
@@ -74,10 +77,11 @@ def test_a_network_with_a_cycle_is_updated_as_often_as_there_are_steps(api, know
     # v ← x / 2 + v / 2 comes to x.
     np.testing.assert_allclose(space["network"](np.ones((3, 1)))[0], 1.0)
     assert api.get(f"creatures/{sha}/network.svg").status_code == 200
+    assert "3" in api.get(f"creatures/{sha}/network.json").json()["nodes"]
 
 
 def test_the_code_of_a_network_with_very_many_steps_is_written_at_once(api, known):
-    """A few steps prove it, in the sandbox: nobody else waits meanwhile."""
+    """The sandbox verifies the code over a few steps, not over all."""
 
     def long(identity):
         cycle(identity)
@@ -92,7 +96,7 @@ def test_the_code_of_a_network_with_very_many_steps_is_written_at_once(api, know
 
 @pytest.mark.parametrize("form", TYPES)
 def test_a_network_is_written_without_a_connection(api, services, known, form, monkeypatch):
-    """A stranger's network may take its time; the database has others to answer."""
+    """A slow network does not hold a connection of the database."""
     sha, held = known(), []
 
     def write(self, identity, form):

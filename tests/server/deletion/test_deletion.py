@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from answers import detail
-from deletion import another, delete_for_good, files, finish, let_time_pass, rows
+from deletion import delete_for_good, files, finish, let_time_pass, rows, submit_another
 from sqlalchemy import select
 
 from microcosmos.archive import creature
@@ -101,10 +101,10 @@ def child(identity):
 
 
 def test_a_purge_leaves_no_row_or_file(api, services, spec, report, run_id):
-    other = another(services, spec, 7)
+    other = submit_another(services, spec, 7)
     finish(services, other, report(1, {3: 1.0}))
     before = rows(services), files(services)
-    doomed = another(services, spec, 8, key="a key")
+    doomed = submit_another(services, spec, 8, key="a key")
     attempt = claim(services, doomed, "worker")
     attempt.record(report(1, {0: 1.0, 1: 2.0}), 1.0)
     attempt.save(1, b"one")
@@ -128,8 +128,8 @@ def test_a_purge_leaves_no_row_or_file(api, services, spec, report, run_id):
 
 
 def test_a_purge_keeps_what_others_use(api, services, spec, report, identity, child, run_id):
-    """Shared with another run, brought by somebody, begun from, or an ancestor of one such."""
-    doomed, other = another(services, spec, 1), another(services, spec, 2)
+    """Uses: another run, an import, initial creatures, and ancestors of those."""
+    doomed, other = submit_another(services, spec, 1), submit_another(services, spec, 2)
     shared, brought, parent, grandparent, alone = (
         creature.name(identity(number)) for number in (1000, 1001, 1002, 1003, 1004)
     )
@@ -164,11 +164,11 @@ def test_a_purge_keeps_what_others_use(api, services, spec, report, identity, ch
 
 
 def test_a_purge_may_be_killed_anywhere(api, services, spec, report, run_id, monkeypatch):
-    """After every transaction. A run whose purge has begun is not restored."""
+    """Stop it after every transaction. A partly purged run cannot be restored."""
     monkeypatch.setattr(purge, "ROWS_PER_TRANSACTION", 2)
     monkeypatch.setattr("server.deletion.garbage.CREATURES_PER_TRANSACTION", 2)
     before = rows(services), files(services)
-    doomed = another(services, spec, 3)
+    doomed = submit_another(services, spec, 3)
     finish(services, doomed, *(report(g, {0: g, 1: g, 2: g}) for g in range(1, 4)))
     api.delete(f"runs/{doomed}")
     let_time_pass(services, doomed)
@@ -211,7 +211,7 @@ def test_a_rendering_that_was_made_again_stays(services, run_id, report, identit
 def test_a_restored_run_is_not_purged_and_a_purged_one_is_not_restored(
     services, run_id, report, api
 ):
-    """Both prove in their own transaction that the time is over, or is not."""
+    """Purge and restore each check the time in their own transaction."""
     finish(services, run_id, report(1, {0: 1.0}))
     api.delete(f"runs/{run_id}")
     assert not purge.purge_rows(services)
@@ -226,8 +226,8 @@ def test_a_restored_run_is_not_purged_and_a_purged_one_is_not_restored(
 def test_a_creature_that_comes_into_use_during_a_purge_stays(
     services, run_id, spec, report, api
 ):
-    """Another run writes the same creature between the purge of one and the collection."""
-    other = another(services, spec, 4)
+    """Another run records the creature between the purge and the garbage collection."""
+    other = submit_another(services, spec, 4)
     finish(services, run_id, report(1, {0: 1.0}))
     api.delete(f"runs/{run_id}")
     let_time_pass(services, run_id)

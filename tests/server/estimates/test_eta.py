@@ -1,4 +1,4 @@
-"""Estimates of time, from the runs before."""
+"""Estimates of time from earlier runs."""
 
 import pytest
 

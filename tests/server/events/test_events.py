@@ -1,4 +1,4 @@
-"""One stream of everything that happens: in order, nothing twice, nothing lost."""
+"""The event stream: every change in order, once, also after an outage."""
 
 import json
 import threading

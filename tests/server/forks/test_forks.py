@@ -18,7 +18,7 @@ from server.tables import InitialCreature
 
 @pytest.fixture
 def ended(run_id, attempt, record):
-    """A run of three generations: cells 0 to 2, the first taken again by a later elite."""
+    """A run of three generations: elites in cells 0 to 2, the first one replaced."""
     record(1, {0: 1.0, 1: 2.0})
     record(2, {0: 3.0}, (0.5, 0.5))
     record(3, {2: 4.0}, (0.9, 0.9))

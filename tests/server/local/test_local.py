@@ -104,7 +104,7 @@ def test_a_child_that_keeps_dying_is_started_ever_more_slowly(tmp_path, monkeypa
     assert all(wait > 0.05 * 2**n for n, wait in enumerate(waits)), waits
 
 
-def test_a_terminals_interrupt_does_not_reach_the_children_before_us(sleeper):
+def test_ctrl_c_in_a_terminal_does_not_reach_the_children(sleeper):
     process = sleeper()
     assert os.getpgid(process.pid) == process.pid != os.getpgid(0)
 
@@ -159,7 +159,7 @@ def connected(url, **options):
         yield client
 
 
-def test_keeps_its_messages_when_it_is_ended_and_started_again(embedded, tmp_path):
+def test_redis_keeps_its_data_when_it_is_ended_and_started_again(embedded, tmp_path):
     prepared = redis_embedded.prepare(tmp_path / "redis")
     process = embedded(prepared)
     with connected(prepared.url) as client:
@@ -171,7 +171,7 @@ def test_keeps_its_messages_when_it_is_ended_and_started_again(embedded, tmp_pat
         assert client.get("message") == b"kept"
 
 
-def test_asks_for_a_password_and_listens_on_loopback_alone(embedded, tmp_path):
+def test_redis_needs_a_password_and_listens_on_loopback_alone(embedded, tmp_path):
     prepared = redis_embedded.prepare(tmp_path / "redis")
     process = embedded(prepared)
     stranger = connected(f"redis://127.0.0.1:{prepared.port}")
@@ -184,7 +184,7 @@ def test_asks_for_a_password_and_listens_on_loopback_alone(embedded, tmp_path):
     assert prepared.password.encode() not in arguments
 
 
-def test_two_never_share_a_folder(embedded, tmp_path, monkeypatch):
+def test_two_redis_never_share_a_folder(embedded, tmp_path, monkeypatch):
     monkeypatch.setattr(redis_embedded, "LOCK_SECONDS", 0)
     prepared = redis_embedded.prepare(tmp_path / "redis")
     embedded(prepared)

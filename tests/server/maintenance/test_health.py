@@ -1,4 +1,4 @@
-"""The health report says what the server finds out about its own parts."""
+"""The health report: the state of each part, and its error."""
 
 import httpx
 import pytest

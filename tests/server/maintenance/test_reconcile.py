@@ -6,7 +6,7 @@ from redis import ConnectionError
 from rq.registry import StartedJobRegistry
 
 from server.attempts.attempt import ClaimLost
-from server.attempts.leases import job_ended
+from server.attempts.leases import end_job
 from server.maintenance import reconcile as reconciler
 from server.maintenance.reconcile import reconcile
 from server.tables import Run, Worker
@@ -89,14 +89,14 @@ def test_a_worker_that_ignores_a_cancellation_loses_the_run(
     reconcile(services)
     assert row().status == "cancelled"
     with pytest.raises(ClaimLost):
-        attempt.check()
+        attempt.read_request()
 
 
 def test_a_dead_jobs_run_is_enqueued_at_once(services, run_id, attempt, row, flush):
     flush()
-    job_ended(services, run_id, "another", "killed")
+    end_job(services, run_id, "another", "killed")
     assert row().status == "running"
-    job_ended(services, run_id, "worker", "killed by signal 9")
+    end_job(services, run_id, "worker", "killed by signal 9")
     assert (row().status, row().error) == ("queued", "killed by signal 9")
     assert enqueued(services) == [str(run_id)]
 
@@ -104,12 +104,12 @@ def test_a_dead_jobs_run_is_enqueued_at_once(services, run_id, attempt, row, flu
 def test_a_job_killed_by_a_stopping_worker_costs_no_attempt(services, run_id, row, claim_run):
     for _ in range(4):
         attempt = claim_run()
-        job_ended(services, run_id, "another")
+        end_job(services, run_id, "another")
         assert row().status == "running"
-        job_ended(services, run_id, "worker")
+        end_job(services, run_id, "worker")
         assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
         with pytest.raises(ClaimLost):
-            attempt.check()
+            attempt.read_request()
     assert enqueued(services) == [str(run_id)]
 
 

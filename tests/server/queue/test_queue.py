@@ -1,4 +1,4 @@
-"""Messages, of which Redis keeps no more than is good."""
+"""RQ jobs: at most one for each run and rendering, also in a race."""
 
 from rq import Queue, SimpleWorker
 from rq.job import Job

@@ -1,4 +1,4 @@
-"""The journal tells what happened to a run, in the words of the page's log."""
+"""The log of a run: an entry for each change, request, checkpoint and failure."""
 
 from uuid import uuid4
 
@@ -76,7 +76,7 @@ def test_the_log_names_stopped_workers_dead_jobs_and_the_last_attempt(
     claim_run().requeue()
     assert texts()[-2:] == ["Worker stopped after generation 0.", "Queued for another attempt."]
     claim_run()
-    leases.job_ended(services, run_id, "worker", "killed by signal 9")
+    leases.end_job(services, run_id, "worker", "killed by signal 9")
     assert ("error", 2, "Attempt 2 failed: killed by signal 9") in log()
     for _ in range(lifecycle.MAX_ATTEMPTS - 1):
         claim_run().fail("no luck")

@@ -36,7 +36,7 @@ def test_a_worker_carries_out_a_requested_state(api, run_id, claim_run, attempt,
     api.post(f"runs/{run_id}/resume")
     attempt = claim_run()
     api.post(f"runs/{run_id}/cancel")
-    attempt.check()
+    attempt.read_request()
     assert attempt.requested_state == "cancelled"
     attempt.cancel()
     assert api.get(f"runs/{run_id}").json()["status"] == "cancelled"

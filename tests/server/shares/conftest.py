@@ -1,4 +1,4 @@
-"""Requests of the holder of a share."""
+"""Fixtures of shares, and requests with a share's header."""
 
 from typing import Any
 

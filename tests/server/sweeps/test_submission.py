@@ -1,4 +1,4 @@
-"""Submitting a sweep: its grid and seeds, and what is refused as a whole."""
+"""Submitting a sweep: its grid and seeds, and invalid sweeps, refused as a whole."""
 
 from concurrent.futures import ThreadPoolExecutor
 

@@ -1,4 +1,4 @@
-"""The summary of a sweep: bands over its runs, and the figures at their ends."""
+"""The summary of a sweep: quantiles by generation, and figures at a common generation."""
 
 from types import SimpleNamespace
 from uuid import UUID
@@ -13,7 +13,7 @@ from server.tables import Generation, Run, Sweep
 VISCOSITIES = {"world.viscosity": [0.05, 0.1]}
 
 
-def test_bands_are_quartiles_of_the_runs_that_reached_a_generation(api, services, post):
+def test_quantiles_are_those_of_the_runs_that_reached_a_generation(api, services, post):
     sweep = post(seeds=4, grid=VISCOSITIES).json()
     rng = np.random.default_rng(0)
     lengths = [5, 3, 4, 0]
@@ -95,9 +95,7 @@ def record(services, run, rows):
             row.qd_score, row.coverage, row.best = values
 
 
-def test_a_summary_asks_the_database_as_often_for_many_runs_as_for_few(
-    services, post, statements
-):
+def test_a_summary_takes_as_many_queries_for_many_runs_as_for_few(services, post, statements):
     sizes = []
     for seeds in (1, 20):
         sweep_id = UUID(post(seeds=seeds, grid=VISCOSITIES).json()["id"])

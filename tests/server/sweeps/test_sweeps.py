@@ -1,4 +1,4 @@
-"""Many runs by one request: all or none of them, steered and summed up together."""
+"""Sweeps: order in the queue, estimates, lists, and actions on all runs."""
 
 from datetime import UTC, datetime
 from uuid import UUID
@@ -7,7 +7,7 @@ import httpx
 import pytest
 from sqlalchemy import delete, update
 
-from server.maintenance.reconcile import forget_empty_sweeps, reconcile
+from server.maintenance.reconcile import delete_empty_sweeps, reconcile
 from server.queue.order import in_order
 from server.tables import Run
 
@@ -173,9 +173,9 @@ def test_an_unknown_sweep_is_not_found(address):
 
 
 def test_a_sweep_ends_with_the_last_of_its_runs(api, services, six):
-    forget_empty_sweeps(services)
+    delete_empty_sweeps(services)
     assert api.get(f"sweeps/{six['id']}").status_code == 200
     with services.sessions.write.begin() as session:
         session.execute(delete(Run).where(Run.sweep == UUID(six["id"])))
-    forget_empty_sweeps(services)
+    delete_empty_sweeps(services)
     assert api.get(f"sweeps/{six['id']}").status_code == 404

@@ -6,19 +6,19 @@ from server.workers import registry
 
 
 @pytest.fixture
-def have(services):
-    """A worker that reports its plug-ins."""
+def offer(services):
+    """Reports a live worker that offers plug-ins."""
 
-    def have(name="worker", plugins=(), **more):
+    def offer(name="worker", plugins=(), **more):
         found = [dict(one) for one in plugins]
         worker = (services.sessions, name, "some device", 1 << 40, "idle")
         registry.report(*worker, plugins=found, **more)
 
-    return have
+    return offer
 
 
 @pytest.fixture
-def waiting(api):
+def reason(api):
     """Reads why a run waits."""
     return lambda run: api.get(f"runs/{run}").json()["waiting_reason"]
 

@@ -12,9 +12,9 @@ from server.workers.plugins import KnownPlugins
 from worker.supervisor import runnable_queues
 
 
-def test_plug_ins_of_workers_appear_in_the_schemas(api, services, have):
+def test_plug_ins_of_workers_appear_in_the_schemas(api, services, offer):
     before = api.get("experiments").json()
-    have(plugins=declared())
+    offer(plugins=declared())
     after = {one["experiment"]: one["schema"] for one in api.get("experiments").json()}
     search = after["quality-diversity"]
     fitness = search["$defs"]["Task"]["properties"]["fitness"]
@@ -35,8 +35,8 @@ def test_plug_ins_of_workers_appear_in_the_schemas(api, services, have):
     assert api.get("experiments").json() == before
 
 
-def test_a_run_pins_plug_in_versions_and_settings(api, have, mine):
-    have(plugins=declared())
+def test_a_run_pins_plug_in_versions_and_settings(api, offer, mine):
+    offer(plugins=declared())
     answer = api.post("runs", json=mine)
     assert answer.status_code == 202, answer.text
     spec = answer.json()["spec"]
@@ -55,8 +55,8 @@ def test_a_run_pins_plug_in_versions_and_settings(api, have, mine):
     assert "plugin" not in api.post("runs", json=usual).json()["spec"]["task"]
 
 
-def test_a_plug_in_body_is_estimated_but_not_drawn(api, have, mine):
-    have(plugins=declared())
+def test_a_plug_in_body_is_estimated_but_not_drawn(api, offer, mine):
+    offer(plugins=declared())
     found = api.post("runs/estimate", json=mine).json()
     chain = {**mine, "body": {"builder": "chain", "nodes": 40}}
     assert found["memory_bytes"] == api.post("runs/estimate", json=chain).json()["memory_bytes"]
@@ -93,9 +93,9 @@ def test_a_plug_in_body_is_estimated_but_not_drawn(api, have, mine):
     ],
 )
 def test_a_missing_plug_in_is_refused_with_field_and_reason(
-    api, have, spec, part, value, field, words
+    api, offer, spec, part, value, field, words
 ):
-    have(plugins=declared())
+    offer(plugins=declared())
     answer = api.post("runs", json={**spec, part: value})
     (error,) = errors(answer)
     assert error["field"] == field
@@ -117,8 +117,8 @@ def test_a_missing_plug_in_is_refused_with_field_and_reason(
         "Mine.straight",
     ],
 )
-def test_an_unknown_name_imports_nothing(api, have, spec, name, monkeypatch):
-    have(plugins=declared())
+def test_an_unknown_name_imports_nothing(api, offer, spec, name, monkeypatch):
+    offer(plugins=declared())
     tried = []
     monkeypatch.setattr("importlib.import_module", lambda *given: tried.append(given))
     for part, field in (("task", "fitness"), ("body", "builder"), ("control", "encoding")):
@@ -129,24 +129,24 @@ def test_an_unknown_name_imports_nothing(api, have, spec, name, monkeypatch):
     assert not tried
 
 
-def test_workers_list_plug_ins_and_failed_modules(api, have):
-    have(plugins=declared(), unloaded=[{"module": "bad.py", "reason": "SyntaxError: x"}])
+def test_workers_list_plug_ins_and_failed_modules(api, offer):
+    offer(plugins=declared(), unloaded=[{"module": "bad.py", "reason": "SyntaxError: x"}])
     (worker,) = api.get("workers").json()
     straight = {"kind": "fitness", "name": "mine.straight", "title": "Straight way"}
     assert worker["plugins"][0] == {**straight, "unit": "cells", "source": A}
     assert worker["unloaded"] == [{"module": "bad.py", "reason": "SyntaxError: x"}]
 
 
-def test_settings_never_make_the_server_fetch_a_url(api, have, mine):
+def test_settings_never_make_the_server_fetch_a_url(api, offer, mine):
     abroad = {"$ref": "http://127.0.0.1:9/schema.json"}
     body = [{**one, "settings": abroad} for one in declared() if one["kind"] == "body"]
-    have(plugins=body)
+    offer(plugins=body)
     spec = {name: mine[name] for name in mine if name not in ("task", "archive")}
     assert api.post("runs", json=spec).status_code == 422
 
 
-def test_only_a_worker_with_the_plug_in_claims_the_run(api, services, have, mine, row):
-    have("with", plugins=declared()), have("without"), have("other", plugins=declared(B))
+def test_only_a_worker_with_the_plug_in_claims_the_run(api, services, offer, mine, row):
+    offer("with", plugins=declared()), offer("without"), offer("other", plugins=declared(B))
     run = api.post("runs", json={**mine, "task": {"steps": 40}}).json()
     with services.sessions.read() as session:
         known = KnownPlugins(services, session)
@@ -159,8 +159,8 @@ def test_only_a_worker_with_the_plug_in_claims_the_run(api, services, have, mine
     assert claim(services, UUID(run["id"]), able)
 
 
-def test_the_job_is_queued_for_its_plug_in_version(api, services, have, mine, spec):
-    have("with", plugins=declared())
+def test_the_job_is_queued_for_its_plug_in_version(api, services, offer, mine, spec):
+    offer("with", plugins=declared())
     first = api.post("runs", json=mine).json()["id"]
     second = api.post("runs", json=spec).json()["id"]
     assert services.jobs.runs.get_job_ids() == [second]
@@ -172,20 +172,20 @@ def test_the_job_is_queued_for_its_plug_in_version(api, services, have, mine, sp
         assert jobs == [[second], []]
 
 
-def test_a_run_names_the_plug_in_it_waits_for(api, services, have, mine, waiting):
-    have("with", plugins=declared())
+def test_a_run_names_the_plug_in_it_waits_for(api, services, offer, mine, reason):
+    offer("with", plugins=declared())
     run = api.post("runs", json=mine).json()["id"]
-    assert waiting(run) == "A worker is free; this run is next."
+    assert reason(run) == "A worker is free; this run is next."
     registry.retire(services.sessions, "with")
-    have("without")
+    offer("without")
     missing = f"Waits for a worker that has mine.cross (version {A[:12]}), "
-    assert waiting(run).startswith(missing)
-    have("other", plugins=declared(B))
-    assert "; other has another version" in waiting(run)
+    assert reason(run).startswith(missing)
+    offer("other", plugins=declared(B))
+    assert "; other has another version" in reason(run)
     late = api.post("runs", json={**mine, "body": {"builder": "mine.cross"}}).json()
     assert late["spec"]["body"]["plugin"]["source"] == B, "the version that a live worker has"
-    have("again", plugins=declared())
-    assert "free" in waiting(run)
+    offer("again", plugins=declared())
+    assert "free" in reason(run)
 
 
 def test_a_run_refused_by_its_worker_fails_at_once_with_the_reason(attempt, row):
@@ -201,19 +201,19 @@ def test_a_run_set_aside_continues_when_resumed(api, run_id, attempt, row):
     assert api.post(f"runs/{run_id}/resume").json()["status"] == "queued"
 
 
-def test_plug_ins_that_no_worker_has_together_are_named(services, have):
-    have("one", plugins=declared()), have("two", plugins=declared(B))
+def test_plug_ins_that_no_worker_has_together_are_named(services, offer):
+    offer("one", plugins=declared()), offer("two", plugins=declared(B))
     with services.sessions.read() as session:
         alive = KnownPlugins(services, session).alive
     task = {"fitness": "mine.straight", "plugin": {"source": A, "title": "x"}}
     body = {"builder": "mine.cross", "plugin": {"source": B, "title": "x"}}
     document = {"task": task, "body": body}
     assert plugins.needed_versions(document) == [A, B]
-    assert "none has them together" in plugins.missing_plugins(alive, document)
+    assert "none has them together" in plugins.explain_missing(alive, document)
 
 
-def test_plugin_gaits_encodings_and_folded_bodies_are_queued(api, have, mine, sweep, waiting):
-    have(plugins=declared())
+def test_plugin_gaits_encodings_and_folded_bodies_are_queued(api, offer, mine, sweep, reason):
+    offer(plugins=declared())
     swim = {**sweep, "swimmers": ["worm", "mine.wiggler"]}
     code = {
         **{name: mine[name] for name in ("experiment", "world")},
@@ -234,15 +234,15 @@ def test_plugin_gaits_encodings_and_folded_bodies_are_queued(api, have, mine, sw
         found = answer.json()["spec"][part]
         version = found["mine.wiggler"] if part == "plugins" else found["plugin"]
         assert version["source"] == A
-        assert waiting(answer.json()["id"]).startswith("A worker is")
+        assert reason(answer.json()["id"]).startswith("A worker is")
     assert "plugins" not in api.post("runs", json=sweep).json()["spec"]
 
 
-def test_a_run_with_a_plugin_is_extended_as_it_is(api, services, have, mine):
-    have(plugins=declared(A))
+def test_a_run_with_a_plugin_is_extended_as_it_is(api, services, offer, mine):
+    offer(plugins=declared(A))
     run = api.post("runs", json=mine).json()
     claim(services, UUID(run["id"]), "worker").finish()
-    have(plugins=declared(B))
+    offer(plugins=declared(B))
     longer = api.post(f"runs/{run['id']}/extend", json={"generations": 1})
     assert longer.status_code == 202
     search = {**run["spec"]["search"], "generations": run["generations"] + 1}

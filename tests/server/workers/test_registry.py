@@ -64,7 +64,7 @@ def test_since_changes_with_the_workers_status(api, run_id, alive):
     assert moment(read()["since"]) > moment(second)
 
 
-def test_the_queue_lists_waiting_runs_in_order(api, services, spec, submit, waiting):
+def test_the_queue_lists_waiting_runs_in_order(api, services, spec, submit, reason):
     ids = submit(4)
     api.post(f"runs/{ids[0]}/pause")
     claim(services, UUID(ids[1]), "worker")
@@ -76,7 +76,7 @@ def test_the_queue_lists_waiting_runs_in_order(api, services, spec, submit, wait
     assert {run["memory_bytes"] for run in queue["items"]} == {needed}
     first = api.get("queue", params={"limit": 1}).json()
     assert (first["total"], [run["id"] for run in first["items"]]) == (3, [ids[2]])
-    assert first["items"][0]["waiting_reason"] == waiting(ids[2])
+    assert first["items"][0]["waiting_reason"] == reason(ids[2])
 
 
 def test_a_run_has_the_time_since_when_it_is_queued(api, run_id, claim_run):
@@ -89,46 +89,46 @@ def test_a_run_has_the_time_since_when_it_is_queued(api, run_id, claim_run):
     assert api.post(f"runs/{run_id}/resume").json()["queued_at"] > first["queued_at"]
 
 
-def test_only_runs_that_are_queued_wait(api, run_id, waiting, claim_run, report):
-    assert "`make run` or `python -m worker.supervisor`" in waiting(run_id)
+def test_only_runs_that_are_queued_wait(api, run_id, reason, claim_run, report):
+    assert "`make run` or `python -m worker.supervisor`" in reason(run_id)
     api.post(f"runs/{run_id}/pause")
-    assert waiting(run_id) is None
+    assert reason(run_id) is None
     api.post(f"runs/{run_id}/resume")
     attempt = claim_run()
-    assert waiting(run_id) is None
+    assert reason(run_id) is None
     attempt.record(report(1), 1.0)
     attempt.finish()
-    assert waiting(run_id) is None
+    assert reason(run_id) is None
 
 
-def test_a_queued_run_names_busy_workers_and_its_position(services, submit, alive, waiting):
+def test_a_queued_run_names_busy_workers_and_its_position(services, submit, alive, reason):
     ids = submit(4)
     claim(services, UUID(ids[0]), "worker")
     alive("worker", "busy", UUID(ids[0]))
     busy = f"Waits for a worker: the only one is busy with run {ids[0][:8]}; "
-    assert waiting(ids[0]) is None
-    assert waiting(ids[1]) == busy + "this run is next."
-    assert waiting(ids[2]) == busy + "1 run is before it."
-    assert waiting(ids[3]) == busy + "2 runs are before it."
+    assert reason(ids[0]) is None
+    assert reason(ids[1]) == busy + "this run is next."
+    assert reason(ids[2]) == busy + "1 run is before it."
+    assert reason(ids[3]) == busy + "2 runs are before it."
     claim(services, UUID(ids[1]), "another")
     alive("another", "busy", UUID(ids[1]))
-    assert waiting(ids[2]) == "Waits for a worker: all 2 are busy; this run is next."
+    assert reason(ids[2]) == "Waits for a worker: all 2 are busy; this run is next."
     alive("third")
-    assert waiting(ids[3]) == "A worker is free; 1 run is before it."
+    assert reason(ids[3]) == "A worker is free; 1 run is before it."
 
 
-def test_a_run_that_a_worker_has_taken_is_about_to_begin(api, spec, submit, alive, waiting):
+def test_a_run_that_a_worker_has_taken_is_about_to_begin(api, spec, submit, alive, reason):
     ids = submit(2)
     alive("worker", "busy")
-    assert waiting(ids[0]) == "A worker is about to start it."
-    assert waiting(ids[1]) == "Waits for a worker: the only one is busy; this run is next."
+    assert reason(ids[0]) == "A worker is about to start it."
+    assert reason(ids[1]) == "Waits for a worker: the only one is busy; this run is next."
     ahead = {"runs_ahead": 1, "workers": 1, "idle_workers": 0}
     assert api.post("runs/estimate", json=spec).json()["queue"] == ahead
     third = api.post("runs", json={**spec, "seed": 2}).json()["id"]
     busy = "Waits for a worker: the only one is busy; "
-    assert waiting(third) == busy + "1 run is before it."
+    assert reason(third) == busy + "1 run is before it."
     reasons = {run["id"]: run["waiting_reason"] for run in api.get("queue").json()["items"]}
-    assert reasons == {run: waiting(run) for run in (*ids, third)}
+    assert reasons == {run: reason(run) for run in (*ids, third)}
 
 
 def test_starting_workers_leave_no_run_ahead(api, spec, alive):
@@ -138,14 +138,14 @@ def test_starting_workers_leave_no_run_ahead(api, spec, alive):
     assert api.post("runs/estimate", json=spec).json()["queue"] == ahead
 
 
-def test_a_run_that_no_worker_can_hold_says_how_much_it_needs(api, spec, alive, waiting):
+def test_a_run_that_no_worker_can_hold_says_how_much_it_needs(api, spec, alive, reason):
     needed = api.post("runs/estimate", json=spec).json()["memory_bytes"]
     run = api.post("runs", json=spec).json()["id"]
     alive(memory=1000)
     words = f"Needs {needed / 1e6:.3g} MB; the largest live worker has 1 kB."
-    assert waiting(run) == words
+    assert reason(run) == words
     alive("large", memory=needed)
-    assert waiting(run) == "A worker is free; this run is next."
+    assert reason(run) == "A worker is free; this run is next."
 
 
 def test_a_list_asks_the_queue_once_however_many_runs_wait(services, submit, alive, statements):

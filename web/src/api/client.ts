@@ -103,6 +103,10 @@ export const restoreSweep = (id: string) =>
 export const readCreature = (sha: string) =>
   typed<wire.Creature>(client.GET("/creatures/{sha}", creature(sha)));
 
+/** Positions of the nodes of a creature's network. */
+export const readNetwork = (sha: string) =>
+  typed<wire.NetworkPositions>(client.GET("/creatures/{sha}/network.json", creature(sha)));
+
 const CHILDLESS: wire.Children = { total: 0, items: [] };
 
 /** Ancestors of `depth` generations, and children; a share contains no children. */

@@ -25,7 +25,7 @@ async function request(url: string, signal?: AbortSignal): Promise<Response> {
 }
 
 /** Download a file under the server's name for it. In a share, fetch it: a link cannot send the header. */
-export async function save(url: string): Promise<void> {
+export async function downloadFile(url: string): Promise<void> {
   const link = document.createElement("a");
   if (sharedSlug) {
     const response = await request(url);
@@ -45,6 +45,6 @@ export const resultsUrl = (id: string) => `${ROOT}/runs/${id}/results.csv`;
 export type PictureFormat = "strip.png" | "film.gif" | "film.mp4";
 export const pictureUrl = (sha: string, kind: PictureFormat) => `${ROOT}/creatures/${sha}/${kind}`;
 export type NetworkFormat = "svg" | "dot" | "py" | "npz";
-export const networkUrl = (sha: string, form: NetworkFormat) => `${ROOT}/creatures/${sha}/network.${form}`;
+export const networkUrl = (sha: string, kind: NetworkFormat) => `${ROOT}/creatures/${sha}/network.${kind}`;
 export const creatureFileUrl = (sha: string) => `${ROOT}/creatures/${sha}?download=1&ancestors=1`;
 export const creatureH5Url = (sha: string) => `${ROOT}/creatures/${sha}/creature.h5`;

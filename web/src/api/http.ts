@@ -1,4 +1,4 @@
-/** The HTTP client: it sends the share of the page, throws problems, and notes that nobody is signed in. */
+/** The HTTP client: it sends the share of the page, throws problems, and reports a missing sign-in. */
 
 import createClient from "openapi-fetch";
 import { shareHeaders } from "./address";

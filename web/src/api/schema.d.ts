@@ -266,6 +266,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/creatures/{sha}/network.json": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Network Json
+         * @description Return the network as positions of its nodes.
+         */
+        get: operations["read_network_json_api_v1_creatures__sha__network_json_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/creatures/{sha}/network.npz": {
         parameters: {
             query?: never;
@@ -1772,6 +1792,30 @@ export interface components {
             /** Recorded Device */
             recorded_device: string;
         };
+        /**
+         * NetworkPositions
+         * @description Points from (0, 0) to (width, height): x in columns, y in rows.
+         */
+        NetworkPositions: {
+            /** Height */
+            height: number;
+            /** Nodes */
+            nodes: {
+                [key: string]: [
+                    number,
+                    number
+                ];
+            };
+            /** Passages */
+            passages: {
+                [key: string]: [
+                    number,
+                    number
+                ][];
+            };
+            /** Width */
+            width: number;
+        };
         /** PictureRead */
         PictureRead: {
             /** Height */
@@ -3073,6 +3117,44 @@ export interface operations {
                 };
                 content: {
                     "text/vnd.graphviz": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_network_json_api_v1_creatures__sha__network_json_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["NetworkPositions"];
                 };
             };
             /** @description Not Found */

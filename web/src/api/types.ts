@@ -117,6 +117,7 @@ export interface Vector {
 
 export type Genome = Genes | Vector | Gait;
 
+export type NetworkPositions = Wire["NetworkPositions"];
 export type Relative = Wire["Relative"];
 export type Ancestors = Wire["Ancestors"];
 export type Children = Wire["Children"];

@@ -78,12 +78,12 @@ function Navigation({ page }: { page: string }) {
   return (
     <>
       <nav aria-label={text.pages}>
-        {links.map(([href, name, own]) => (
+        {links.map(([href, name, linkedPage]) => (
           <a
             key={href}
             href={href}
-            target={own ? undefined : "_self"}
-            aria-current={own === page ? "page" : undefined}
+            target={linkedPage ? undefined : "_self"}
+            aria-current={linkedPage === page ? "page" : undefined}
           >
             {name}
           </a>

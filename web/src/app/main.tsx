@@ -8,8 +8,8 @@ import { connect } from "../store/stream";
 
 const app = document.getElementById("app")!;
 if (isPublicPage(location.pathname)) {
-  const { PublicApp: Open } = await import("./PublicApp");
-  render(<Open />, app);
+  const { PublicApp } = await import("./PublicApp");
+  render(<PublicApp />, app);
 } else {
   await connect();
   render(<App />, app);

@@ -36,13 +36,13 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
   const view = useArchiveView(run, archive, elites, query, at);
   const [focused, setFocused] = useState<Elite | null>(null);
   const tour = useTour(run);
-  const [about, setAbout] = useState<string | null>(null);
+  const [tourPart, setTourPart] = useState<string | null>(null);
   const gallery = query.get("view") === "gallery";
   const selection = useSelection(query, view.elites);
   const props = useViewProps(run, view, gallery ? view.grid : view.map, selection, query);
   const names = `${view.axes[0].name} ${view.axes[1].name}`;
   return (
-    <div data-tour={about}>
+    <div data-tour={tourPart}>
       <Head count={view.elites.size} gallery={gallery} onTour={tour.begin} />
       <MapOptions archive={archive} view={view} />
       <Slices slices={view.slices} />
@@ -64,13 +64,13 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
         <Tour
           steps={stepsOf(run, archive, view)}
           requested={tour.requested}
-          onStep={({ about }) => {
-            setAbout(about);
+          onStep={({ part }) => {
+            setTourPart(part);
             const best = fittest(view.elites);
-            if (about === "legend" && best && props.marked === null) props.onMark(best[0]);
+            if (part === "legend" && best && props.marked === null) props.onMark(best[0]);
           }}
           onEnd={() => {
-            setAbout(null);
+            setTourPart(null);
             tour.end();
           }}
         />

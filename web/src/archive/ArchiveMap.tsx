@@ -7,7 +7,7 @@ import { type ArchiveViewProps, tileUnder, useBinFocus } from "./binFocus";
 import { useBoxSelect } from "./boxSelect";
 import { EliteMeasures } from "./EliteMeasures";
 import { AxisLabels, ColourLegend } from "./labels";
-import type { Layout, Spot } from "./layout";
+import type { Layout, Position } from "./layout";
 import { useMapCanvas } from "./mapCanvas";
 import { type Box, binsOf, binsWithin, cellsIn, isAdditive, toggle, union } from "./selection";
 import { text } from "./text";
@@ -41,7 +41,7 @@ export function ArchiveMap(props: Props) {
 function MapPlot({ focus, ...props }: Props & { focus: ReturnType<typeof useBinFocus> }) {
   const { projection, elites, colouring, onMark, onOpen, onSelect } = props;
   const { layout, tiles } = projection;
-  const { hovered, setHovered, from, focused } = focus;
+  const { hovered, setHovered, markedBin, focused } = focus;
   const plot = useRef<HTMLDivElement>(null);
   const drag = useBoxSelect(onSelect !== null, (box, event) => {
     const inside = cellsIn(binsWithin(box, layout, tiles), projection);
@@ -58,7 +58,7 @@ function MapPlot({ focus, ...props }: Props & { focus: ReturnType<typeof useBinF
     if (onSelect && isAdditive(event)) return onSelect(toggle(props.selected, cellsIn([bin], projection)));
     const { cell } = tiles.get(bin)!;
     // Fingers cannot hover: the first tap marks, the second opens.
-    if ((event as PointerEvent).pointerType === "touch" && bin !== from) onMark(cell);
+    if ((event as PointerEvent).pointerType === "touch" && bin !== markedBin) onMark(cell);
     else onOpen(cell);
   };
   return (
@@ -83,7 +83,7 @@ function MapPlot({ focus, ...props }: Props & { focus: ReturnType<typeof useBinF
         {focus.tile && <BinOutline layout={layout} bin={focused!} />}
         {drag.box && <SelectionBox {...drag.box} />}
       </svg>
-      {focus.tile && !drag.box && <PlacedBeside spot={layout.centre(focused!)} children={props.inset} />}
+      {focus.tile && !drag.box && <PlacedBeside position={layout.centre(focused!)} children={props.inset} />}
     </div>
   );
 }
@@ -106,7 +106,7 @@ function SelectionBox({ from, to }: Box) {
 }
 
 /** Content beside a bin, placed so that it hides neither the bin nor much of the map. */
-function PlacedBeside({ spot: [x, y], children }: { spot: Spot; children: ComponentChildren }) {
+function PlacedBeside({ position: [x, y], children }: { position: Position; children: ComponentChildren }) {
   const place = { "--x": `${100 * x}%`, "--y": `${100 * y}%` };
   return (
     <div class={`map-beside ${x < 0.5 ? "right" : "left"}`} style={place}>

@@ -1,7 +1,7 @@
 /** The replay of an elite, shown once the pointer rests on it. */
 
 import { useLayoutEffect, useState } from "preact/hooks";
-import { ReplayLoop } from "../replay/Loop";
+import { ReplayLoop } from "../replay/ReplayLoop";
 import { useReplays } from "../replay/replays";
 import { text } from "./text";
 
@@ -9,13 +9,13 @@ import { text } from "./text";
 const HOVER_MS = 12;
 
 export function ElitePreview({ sha }: { sha: string }) {
-  const [wanted, setWanted] = useState<string | null>(null);
+  const [requested, setRequested] = useState<string | null>(null);
   // A layout effect saves the wait for the next frame.
   useLayoutEffect(() => {
-    const timer = setTimeout(() => setWanted(sha), HOVER_MS);
+    const timer = setTimeout(() => setRequested(sha), HOVER_MS);
     return () => clearTimeout(timer);
   }, [sha]);
-  const { replays, error } = useReplays(wanted === sha ? [sha] : []);
+  const { replays, error } = useReplays(requested === sha ? [sha] : []);
   const replay = replays?.[0];
   return (
     <div class="inset" data-inset>

@@ -28,18 +28,18 @@ export function Gallery({ query, ...props }: ArchiveViewProps & { query: URLSear
   const [requested, setSide] = useState(() => Number(query.get("tile")) || null);
   const fitting = Math.max(MIN_READABLE, Math.floor(size.width / shape[0]));
   const side = Math.min(LARGEST, Math.max(SMALLEST, requested ?? fitting));
-  const wall: Size = { width: side * shape[0], height: side * shape[1] };
-  const shown = { width: Math.min(size.width, wall.width), height: Math.min(size.height, wall.height) };
+  const total: Size = { width: side * shape[0], height: side * shape[1] };
+  const view = { width: Math.min(size.width, total.width), height: Math.min(size.height, total.height) };
   const focus = useBinFocus(props, (bin) => scrollToTile(port.current!, cornerOf(bin, shape, side), side));
   return (
     <div class="gallery" data-gallery>
       <TileSize side={side} onSide={setSide} />
       <div class="gallery-frame">
-        <AxisRail axis={axes[1]} side="y" by={-scroll[1]} length={wall.height} shown={shown.height} />
-        <Port {...props} {...{ port, focus, wall }} onScroll={setScroll}>
-          <Tiles {...props} {...{ shape, side, scroll }} size={shown} marked={focus.focused} />
-        </Port>
-        <AxisRail axis={axes[0]} side="x" by={-scroll[0]} length={wall.width} shown={shown.width} />
+        <AxisRail axis={axes[1]} side="y" offset={-scroll[1]} length={total.height} view={view.height} />
+        <Viewport {...props} {...{ port, focus, total }} onScroll={setScroll}>
+          <Tiles {...props} {...{ shape, side, scroll }} size={view} marked={focus.focused} />
+        </Viewport>
+        <AxisRail axis={axes[0]} side="x" offset={-scroll[0]} length={total.width} view={view.width} />
       </div>
       <ColourLegend colouring={props.colouring} />
       <EliteMeasures {...props} tile={focus.tile} hint={text.galleryHint} />
@@ -65,17 +65,17 @@ function TileSize({ side, onSide }: { side: number; onSide: (side: number) => vo
   );
 }
 
-interface PortProps extends ArchiveViewProps {
+interface ViewportProps extends ArchiveViewProps {
   port: RefObject<HTMLDivElement | null>;
   focus: ReturnType<typeof useBinFocus>;
   /** The size of all tiles together. */
-  wall: Size;
+  total: Size;
   onScroll: (scroll: Offset) => void;
   children: ComponentChildren;
 }
 
 /** The scrolling window, with pointer and keys. */
-function Port({ port, focus, wall, onScroll, children, ...props }: PortProps) {
+function Viewport({ port, focus, total, onScroll, children, ...props }: ViewportProps) {
   const { projection, selected, onSelect, onOpen } = props;
   const element = useRef<HTMLDivElement>(null);
   const binUnder = (event: MouseEvent) => tileUnder(event, element.current!, projection);
@@ -99,7 +99,7 @@ function Port({ port, focus, wall, onScroll, children, ...props }: PortProps) {
       onKeyDown={focus.press}
     >
       {children}
-      <div ref={element} style={px({ ...wall })} />
+      <div ref={element} style={px({ ...total })} />
     </div>
   );
 }
@@ -134,19 +134,19 @@ function Tiles({ projection, colouring, shape, side, scroll, size, marked, selec
 interface RailProps {
   axis: MapAxis;
   side: "x" | "y";
-  /** Scroll offset in pixels. */
-  by: number;
+  /** In pixels. */
+  offset: number;
   length: number;
   /** The visible length; the name of the axis is in its middle. */
-  shown: number;
+  view: number;
 }
 
 /** An axis that scrolls with the gallery. */
-function AxisRail({ axis, side, by, length, shown }: RailProps) {
-  const place = side === "x" ? px({ width: length, left: by }) : px({ height: length, top: by });
+function AxisRail({ axis, side, offset, length, view }: RailProps) {
+  const place = side === "x" ? px({ width: length, left: offset }) : px({ height: length, top: offset });
   return (
     <div class={`axis-rail gallery-${side}`}>
-      <div style={{ ...place, "--middle": `${shown / 2 - by}px` }}>
+      <div style={{ ...place, "--middle": `${view / 2 - offset}px` }}>
         <AxisLabels axis={axis} side={side} />
       </div>
     </div>

@@ -3,7 +3,7 @@
 import { useEffect, useState } from "preact/hooks";
 import { count } from "../ui/format";
 import { useClock } from "../replay/clock";
-import { IconButton, TimeRange } from "../replay/Transport";
+import { IconButton, TimeRange } from "../replay/timeControls";
 import { text } from "./text";
 
 interface Props {

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { axisOf, choicesOf, missingOf, namesOf } from "./axes";
-import { binOf, project } from "./projection";
-import { type Spot, voronoiLayout } from "./layout";
+import { binOfValue, project } from "./projection";
+import { type Position, voronoiLayout } from "./layout";
 import { Delaunay } from "d3-delaunay";
 import { AXES, archiveOf, elite, elitesOf, measuresOf, NONE, over } from "./archive.fixture";
 
@@ -69,7 +69,7 @@ describe("an archive on a map", () => {
 
   it("of Voronoi cells shows each cell around its centroid", () => {
     const points = ["0.2 0.2", "0.8 0.2", "0.5 0.9"].map((point) => point.split(" ").map(Number));
-    const cells = voronoiLayout(points as unknown as Spot[], Delaunay);
+    const cells = voronoiLayout(points as unknown as Position[], Delaunay);
     const elites = new Map([[2, elite(1, 0.99, 1)]]);
     const axis = (name: string) => axisOf(name, archiveOf(2, "cvt"), elites, NONE);
     const { tiles, layout } = project(elites, [axis("a"), axis("b")], [], cells);
@@ -104,6 +104,6 @@ describe("an archive on a map", () => {
     [100, 3],
     [1e9, 3],
   ])("puts %s into bin %s of a log axis from 1 to 100", (value, bin) => {
-    expect(binOf(AXES[1], value)).toBe(bin);
+    expect(binOfValue(AXES[1], value)).toBe(bin);
   });
 });

@@ -2,7 +2,7 @@
 
 import { useEffect, useMemo, useState } from "preact/hooks";
 import type { Archive, Run } from "../api/types";
-import { type Elites, walkThrough } from "../store/elites";
+import { type Elites, elitesByGeneration } from "../store/elites";
 import { useCentroids, useMeasures, useHistory } from "../store/fetch";
 import { setQuery } from "../store/router";
 import { type MapAxis, FITNESS, axisOf, missingOf, namesOf } from "./axes";
@@ -25,12 +25,12 @@ export function useArchiveView(
   const colour = coloursOf(archive).find(([name]) => name === query.get("colour"))?.[0] ?? FITNESS;
   const palette = PALETTES.find((name) => name === query.get("palette")) ?? PALETTES[0]!;
   const names = missingOf(archive, [x, y, colour]).filter((name) => name !== AGE);
-  const now = useMeasures(run.id, names, live);
+  const liveMeasures = useMeasures(run.id, names, live);
   const { value: past, error } = useHistory(run.id, names, at);
-  const measures = at !== null && past ? past.measures : now;
-  const walk = useMemo(() => past && walkThrough(past.history), [past]);
-  const elites = useMemo(() => (at !== null && walk ? walk(at) : live), [at, walk, live]);
-  // Axes follow the newest elites, so that they stay while the history is played.
+  const measures = at !== null && past ? past.measures : liveMeasures;
+  const elitesAt = useMemo(() => past && elitesByGeneration(past.history), [past]);
+  const elites = useMemo(() => (at !== null && elitesAt ? elitesAt(at) : live), [at, elitesAt, live]);
+  // Axes and colours follow the newest elites, so that they stay while the history is played.
   const axis = (name: string) => axisOf(name, archive, live, measures);
   const axes = useMemo(() => [axis(x), axis(y)] as const, [x, y, archive, live, measures]);
   const hidden = archive.axes.map(({ name }) => name).filter((name) => name !== x && name !== y);
@@ -39,15 +39,15 @@ export function useArchiveView(
     () => hidden.map((name) => sliceOf(axis(name), query)),
     [x, y, archive, live, measures, requested],
   );
-  const cells = useCells(run.id, archive, [x, y]);
-  const map = useMemo(() => project(elites, axes, slices, cells), [elites, axes, slices, cells]);
+  const voronoi = useVoronoi(run.id, archive, [x, y]);
+  const map = useMemo(() => project(elites, axes, slices, voronoi), [elites, axes, slices, voronoi]);
   // The projection onto even bins, also if the map shows Voronoi cells.
-  const grid = useMemo(() => (cells ? project(elites, axes, slices) : map), [map, cells]);
+  const grid = useMemo(() => (voronoi ? project(elites, axes, slices) : map), [map, voronoi]);
   const generation = at ?? run.generation;
   const colouring = useMemo(() => {
     const measure = colourMeasure(colour, archive, measures, generation);
-    const steady = at === null || colour === AGE ? map : project(live, axes, slices, cells);
-    return colouringOf(measure, palette, steady.tiles);
+    const newest = at === null || colour === AGE ? map : project(live, axes, slices, voronoi);
+    return colouringOf(measure, palette, newest.tiles);
   }, [colour, palette, archive, measures, generation, map]);
   const ready = at === null || past !== null;
   return { axes, slices, colour, palette, elites, generation, ready, error, map, grid, colouring };
@@ -68,14 +68,14 @@ export function setSlice(axis: MapAxis, from: number, to: number): void {
 }
 
 /** The Voronoi cells, if the axes are both descriptors of a CVT. */
-function useCells(id: string, archive: Archive, names: [string, string]): Layout | null {
+function useVoronoi(id: string, archive: Archive, names: [string, string]): Layout | null {
   const [x, y] = names.map((name) => archive.axes.findIndex((axis) => axis.name === name));
-  const wanted = archive.kind === "cvt" && archive.axes.length === 2 && x! >= 0 && y! >= 0;
-  const centroids = useCentroids(id, wanted);
+  const shown = archive.kind === "cvt" && archive.axes.length === 2 && x! >= 0 && y! >= 0;
+  const centroids = useCentroids(id, shown);
   const [layout, setLayout] = useState<Layout | null>(null);
   useEffect(() => {
     setLayout(null);
-    if (!wanted || !centroids) return;
+    if (!shown || !centroids) return;
     const points = centroids.map((centroid) => [centroid[x!]!, 1 - centroid[y!]!] as const);
     let current = true;
     // Load the library on demand, because few archives have Voronoi cells.
@@ -85,6 +85,6 @@ function useCells(id: string, archive: Archive, names: [string, string]): Layout
     return () => {
       current = false;
     };
-  }, [wanted, centroids, x, y]);
+  }, [shown, centroids, x, y]);
   return layout;
 }

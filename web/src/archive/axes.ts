@@ -22,9 +22,9 @@ export const choicesOf = (archive: Archive) => [
 /** The names of both axes: the requested ones, or the archive's first two, or fitness. */
 export function namesOf(archive: Archive, x: string | null, y: string | null): [string, string] {
   const known = new Set(choicesOf(archive).map(([name]) => name));
-  const own = [...archive.axes.map(({ name }) => name), FITNESS];
-  const first = x && known.has(x) ? x : own[0]!;
-  return [first, y && known.has(y) ? y : (own.slice(0, 2).find((name) => name !== first) ?? FITNESS)];
+  const defaults = [...archive.axes.map(({ name }) => name), FITNESS];
+  const first = x && known.has(x) ? x : defaults[0]!;
+  return [first, y && known.has(y) ? y : (defaults.slice(0, 2).find((name) => name !== first) ?? FITNESS)];
 }
 
 /** The names of measures that elites do not contain, which are fetched. */
@@ -37,7 +37,7 @@ export const scaleOf = ({ scale, low, high }: Axis): Scale => ({ log: scale === 
 
 export interface MapAxis extends Axis, Measure {
   /** The bin of a cell, if this is an axis of the grid. */
-  binOf: ((cell: number) => number) | null;
+  binOfCell: ((cell: number) => number) | null;
 }
 
 /** A measure of elites, with its title and unit. */
@@ -50,11 +50,11 @@ export interface Measure {
 }
 
 export function measureOf(name: string, archive: Archive, measures: Measures): Measure {
-  const own = archive.axes.findIndex((axis) => axis.name === name);
+  const index = archive.axes.findIndex((axis) => axis.name === name);
   const recorded = archive.recorded.find((measure) => measure.name === name);
-  const scale = archive.axes[own]?.scale ?? recorded?.scale ?? "linear";
+  const scale = archive.axes[index]?.scale ?? recorded?.scale ?? "linear";
   const common = { name, title: recorded?.title ?? words(name), unit: recorded?.unit ?? "", scale };
-  if (own >= 0) return { ...common, valueOf: ({ descriptors }) => descriptors[own] ?? null };
+  if (index >= 0) return { ...common, valueOf: ({ descriptors }) => descriptors[index] ?? null };
   if (name === FITNESS) return { ...common, valueOf: ({ fitness }) => fitness };
   const column = measures.get(name);
   return { ...common, valueOf: ({ creature }) => column?.get(creature) ?? null };
@@ -62,24 +62,24 @@ export function measureOf(name: string, archive: Archive, measures: Measures): M
 
 export function axisOf(name: string, archive: Archive, elites: Elites, measures: Measures): MapAxis {
   const measure = measureOf(name, archive, measures);
-  const own = archive.axes.findIndex((axis) => axis.name === name);
-  if (own >= 0) {
+  const index = archive.axes.findIndex((axis) => axis.name === name);
+  if (index >= 0) {
     const grid = archive.kind === "grid";
-    const bins = grid ? archive.axes[own]!.bins : BINS;
-    const binOf = grid ? placeAlong(archive.axes, own) : null;
-    return { ...archive.axes[own]!, ...measure, bins, binOf };
+    const bins = grid ? archive.axes[index]!.bins : BINS;
+    const binOfCell = grid ? binAlong(archive.axes, index) : null;
+    return { ...archive.axes[index]!, ...measure, bins, binOfCell };
   }
   const recorded = archive.recorded.find((measure) => measure.name === name);
   const values = [...elites.values()].map(measure.valueOf).filter((value) => value !== null);
-  const [least, most] = [recorded?.low ?? 0, recorded?.high ?? 1];
-  const [low, high, bins] = endsOf(values, measure.scale, least, most);
-  return { ...measure, low, high, bins, binOf: null };
+  const defaults = [recorded?.low ?? 0, recorded?.high ?? 1] as const;
+  const [low, high, bins] = endsOf(values, measure.scale, ...defaults);
+  return { ...measure, low, high, bins, binOfCell: null };
 }
 
 /** The bin of a cell along one axis; cells count in C order. */
-function placeAlong(axes: readonly Axis[], own: number): (cell: number) => number {
-  const after = axes.slice(own + 1).reduce((product, { bins }) => product * bins, 1);
-  return (cell) => Math.floor(cell / after) % axes[own]!.bins;
+function binAlong(axes: readonly Axis[], index: number): (cell: number) => number {
+  const after = axes.slice(index + 1).reduce((product, { bins }) => product * bins, 1);
+  return (cell) => Math.floor(cell / after) % axes[index]!.bins;
 }
 
 /** Round ends around the values; without values, those of the measure. */

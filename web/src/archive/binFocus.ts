@@ -30,14 +30,14 @@ export function useBinFocus(
   const { layout, tiles, bins } = projection;
   const [hovered, setHovered] = useState<number | null>(null);
   /** The bin of the marked cell. */
-  const from = marked === null ? null : (bins.get(marked) ?? null);
+  const markedBin = marked === null ? null : (bins.get(marked) ?? null);
   /** The bin under the pointer, or the marked one. */
-  const focused = hovered !== null && tiles.has(hovered) ? hovered : from;
+  const focused = hovered !== null && tiles.has(hovered) ? hovered : markedBin;
   const tile = focused === null ? undefined : tiles.get(focused);
   const press = (event: KeyboardEvent) => {
-    if (event.key === "Enter" && from !== null) return onOpen(tiles.get(from)!.cell);
-    const next = isDirection(event.key) ? binByKey(event.key, from, tiles, layout) : null;
-    const changed = onSelect && selectByKey(event, selected, projection, from, next);
+    if (event.key === "Enter" && markedBin !== null) return onOpen(tiles.get(markedBin)!.cell);
+    const next = isDirection(event.key) ? binByKey(event.key, markedBin, tiles, layout) : null;
+    const changed = onSelect && selectByKey(event, selected, projection, markedBin, next);
     if (changed) onSelect(changed);
     if (!changed && !isDirection(event.key)) return;
     event.preventDefault();
@@ -46,12 +46,12 @@ export function useBinFocus(
     onMark(tiles.get(next)!.cell);
     onMove?.(next);
   };
-  return { hovered, setHovered, from, focused, tile, press };
+  return { hovered, setHovered, markedBin, focused, tile, press };
 }
 
 /** The bin after an arrow key; without a start, that of the best elite. */
-function binByKey(key: Direction, from: number | null, tiles: Tiles, layout: Layout) {
-  if (from !== null) return nextBin(from, key, tiles.keys(), layout);
+function binByKey(key: Direction, markedBin: number | null, tiles: Tiles, layout: Layout) {
+  if (markedBin !== null) return nextBin(markedBin, key, tiles.keys(), layout);
   return fittest([...tiles].map(([bin, { elite }]) => [bin, elite] as const))?.[0] ?? null;
 }
 

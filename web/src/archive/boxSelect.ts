@@ -2,14 +2,14 @@
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Box } from "./selection";
-import type { Spot } from "./layout";
+import type { Position } from "./layout";
 
 /** The shortest drag, in pixels; shorter movements are clicks. */
 const MIN_DISTANCE = 5;
 
 /** `onEnd` gets the box when the button is released. */
 export function useBoxSelect(enabled: boolean, onEnd: (box: Box, event: PointerEvent) => void) {
-  const started = useRef<{ event: PointerEvent; from: Spot } | null>(null);
+  const started = useRef<{ event: PointerEvent; from: Position } | null>(null);
   const [box, setBox] = useState<Box | null>(null);
   const dragged = useRef(false);
   const stop = () => {
@@ -34,18 +34,18 @@ export function useBoxSelect(enabled: boolean, onEnd: (box: Box, event: PointerE
       if (!dragged.current && far < MIN_DISTANCE) return false;
       if (!dragged.current) (event.currentTarget as Element).setPointerCapture(event.pointerId);
       dragged.current = true;
-      setBox({ from, to: spotOf(event) });
+      setBox({ from, to: positionOf(event) });
       return true;
     },
     handlers: {
       onPointerDown: (event: PointerEvent) => {
         dragged.current = false;
         if (!enabled || event.button !== 0 || event.pointerType === "touch") return;
-        started.current = { event, from: spotOf(event) };
+        started.current = { event, from: positionOf(event) };
       },
       onPointerUp: (event: PointerEvent) => {
         if (started.current && dragged.current) {
-          onEnd({ from: started.current.from, to: spotOf(event) }, event);
+          onEnd({ from: started.current.from, to: positionOf(event) }, event);
         }
         stop();
       },
@@ -55,7 +55,7 @@ export function useBoxSelect(enabled: boolean, onEnd: (box: Box, event: PointerE
 }
 
 /** The position on the element, clipped to [0, 1). */
-function spotOf(event: PointerEvent): Spot {
+function positionOf(event: PointerEvent): Position {
   const { left, top, width, height } = (event.currentTarget as Element).getBoundingClientRect();
   const bounded = (share: number) => Math.min(1 - 1e-9, Math.max(0, share));
   return [bounded((event.clientX - left) / width), bounded((event.clientY - top) / height)];

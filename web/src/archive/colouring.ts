@@ -2,7 +2,7 @@
 
 import type { Archive } from "../api/types";
 import { type Scale, positionOf } from "../charts/plot/scale";
-import { type Palette, sequential, table } from "../ui/colours";
+import { type Palette, sequential, lut } from "../ui/colours";
 import { FITNESS, type Measures, type Measure, choicesOf, measureOf } from "./axes";
 import type { Tile, Tiles } from "./projection";
 import { text } from "./text";
@@ -60,7 +60,7 @@ const SHADES = 256;
 const tables = new Map<Palette, Uint32Array>();
 
 function shadesOf(palette: Palette): Uint32Array {
-  const shades = tables.get(palette) ?? table((t) => sequential(t, palette), SHADES, [0, 1]);
+  const shades = tables.get(palette) ?? lut((t) => sequential(t, palette), SHADES, [0, 1]);
   tables.set(palette, shades);
   return shades;
 }

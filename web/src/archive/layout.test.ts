@@ -1,8 +1,8 @@
 import { describe, expect, it } from "vitest";
 import {
   type Direction,
-  cellAt,
-  cellOf,
+  binAt,
+  binFrom,
   columnAndRow,
   cornerOf,
   gridLayout,
@@ -13,10 +13,10 @@ import {
 
 const SHAPE = [4, 3] as const;
 
-describe("a cell", () => {
+describe("a bin", () => {
   it("counts in C order, the second axis fastest", () => {
-    expect(cellOf({ i: 2, j: 1 }, SHAPE)).toBe(7);
-    for (let cell = 0; cell < 12; cell++) expect(cellOf(columnAndRow(cell, SHAPE), SHAPE)).toBe(cell);
+    expect(binFrom({ i: 2, j: 1 }, SHAPE)).toBe(7);
+    for (let bin = 0; bin < 12; bin++) expect(binFrom(columnAndRow(bin, SHAPE), SHAPE)).toBe(bin);
   });
 
   it("is further right along the first axis and higher along the second", () => {
@@ -25,17 +25,17 @@ describe("a cell", () => {
   });
 
   it("is found at its own centre", () => {
-    for (let cell = 0; cell < 12; cell++) {
-      const { x, y, w, h } = rectangle(cell, SHAPE, 1, 1);
-      expect(cellAt(x + w / 2, y + h / 2, SHAPE)).toBe(cell);
+    for (let bin = 0; bin < 12; bin++) {
+      const { x, y, w, h } = rectangle(bin, SHAPE, 1, 1);
+      expect(binAt(x + w / 2, y + h / 2, SHAPE)).toBe(bin);
     }
-    expect(cellAt(1, 0.5, SHAPE)).toBeNull();
-    expect(cellAt(0.5, -0.01, SHAPE)).toBeNull();
+    expect(binAt(1, 0.5, SHAPE)).toBeNull();
+    expect(binAt(0.5, -0.01, SHAPE)).toBeNull();
   });
 });
 
 describe("the arrow keys", () => {
-  const at = (i: number, j: number) => cellOf({ i, j }, [10, 10]);
+  const at = (i: number, j: number) => binFrom({ i, j }, [10, 10]);
   const filled = [at(1, 1), at(5, 1), at(2, 4), at(1, 8)];
 
   it.each<[Direction, number | null]>([
@@ -43,7 +43,7 @@ describe("the arrow keys", () => {
     ["ArrowUp", at(2, 4)],
     ["ArrowLeft", null],
     ["ArrowDown", null],
-  ])("%s goes to the nearest filled cell, or nowhere", (direction, expected) => {
+  ])("%s goes to the nearest filled bin, or nowhere", (direction, expected) => {
     expect(nextBin(at(1, 1), direction, filled, gridLayout([10, 10]))).toBe(expected);
   });
 });

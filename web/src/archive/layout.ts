@@ -7,24 +7,24 @@ import type { Delaunay } from "d3-delaunay";
 
 export type Shape = readonly [number, number];
 
-/** The column (first axis, to the right) and the row (second axis, upwards) of a cell. */
-export const columnAndRow = (cell: number, shape: Shape) => ({
-  i: Math.floor(cell / shape[1]),
-  j: cell % shape[1],
+/** The column (first axis, to the right) and the row (second axis, upwards) of a bin. */
+export const columnAndRow = (bin: number, shape: Shape) => ({
+  i: Math.floor(bin / shape[1]),
+  j: bin % shape[1],
 });
 
-export const cellOf = ({ i, j }: { i: number; j: number }, shape: Shape) => i * shape[1] + j;
+export const binFrom = ({ i, j }: { i: number; j: number }, shape: Shape) => i * shape[1] + j;
 
-/** The cell at a point; x and y go from 0 to 1, y downwards as on a screen. */
-export function cellAt(x: number, y: number, shape: Shape): number | null {
+/** The bin at a point; x and y go from 0 to 1, y downwards as on a screen. */
+export function binAt(x: number, y: number, shape: Shape): number | null {
   if (x < 0 || x >= 1 || y < 0 || y >= 1) return null;
   const j = shape[1] - 1 - Math.floor(y * shape[1]);
-  return cellOf({ i: Math.floor(x * shape[0]), j }, shape);
+  return binFrom({ i: Math.floor(x * shape[0]), j }, shape);
 }
 
-/** Left, top, width and height of a cell, in the units of `width` and `height`. */
-export function rectangle(cell: number, shape: Shape, width: number, height: number) {
-  const { i, j } = columnAndRow(cell, shape);
+/** Left, top, width and height of a bin, in the units of `width` and `height`. */
+export function rectangle(bin: number, shape: Shape, width: number, height: number) {
+  const { i, j } = columnAndRow(bin, shape);
   const [w, h] = [width / shape[0], height / shape[1]];
   return { x: i * w, y: (shape[1] - 1 - j) * h, w, h };
 }
@@ -54,20 +54,20 @@ export function visibleBins(
   return found.sort((a, b) => a[1] - b[1]).map(([bin]) => bin);
 }
 
-export type Spot = readonly [x: number, y: number];
+export type Position = readonly [x: number, y: number];
 
 export interface Layout {
   readonly count: number;
   /** The bin at a position; null outside the map. */
   at(x: number, y: number): number | null;
-  centre(bin: number): Spot;
-  outline(bin: number): Spot[];
+  centre(bin: number): Position;
+  outline(bin: number): Position[];
 }
 
 export function gridLayout(shape: Shape): Layout {
   return {
     count: shape[0] * shape[1],
-    at: (x, y) => cellAt(x, y, shape),
+    at: (x, y) => binAt(x, y, shape),
     centre: (bin) => {
       const { x, y, w, h } = rectangle(bin, shape, 1, 1);
       return [x + w / 2, y + h / 2];
@@ -84,8 +84,8 @@ export function gridLayout(shape: Shape): Layout {
   };
 }
 
-/** Voronoi cells within the map. */
-export function voronoiLayout(points: Spot[], tessellate: typeof Delaunay): Layout {
+/** The Voronoi cells of a CVT as bins of the map. */
+export function voronoiLayout(points: Position[], tessellate: typeof Delaunay): Layout {
   const delaunay = tessellate.from(
     points,
     ([x]) => x,
@@ -100,13 +100,13 @@ export function voronoiLayout(points: Spot[], tessellate: typeof Delaunay): Layo
       return (last = delaunay.find(x, y, last));
     },
     centre: (bin) => points[bin]!,
-    outline: (bin) => (cells.cellPolygon(bin) ?? []).slice(0, -1) as unknown as Spot[],
+    outline: (bin) => (cells.cellPolygon(bin) ?? []).slice(0, -1) as unknown as Position[],
   };
 }
 
 export type Direction = "ArrowLeft" | "ArrowRight" | "ArrowUp" | "ArrowDown";
 
-const STEPS: Record<Direction, Spot> = {
+const STEPS: Record<Direction, Position> = {
   ArrowLeft: [-1, 0],
   ArrowRight: [1, 0],
   ArrowUp: [0, -1],

@@ -4,7 +4,7 @@ import type { Axis } from "../api/types";
 import type { Elite, Elites } from "../store/elites";
 import { positionOf } from "../charts/plot/scale";
 import { type MapAxis, scaleOf } from "./axes";
-import { type Layout, type Shape, cellOf, gridLayout } from "./layout";
+import { type Layout, type Shape, binFrom, gridLayout } from "./layout";
 
 export interface Tile {
   cell: number;
@@ -29,20 +29,20 @@ export interface Slice {
   to: number;
 }
 
-/** `cells` is the layout of the archive's own cells, if the map shows them. */
+/** `voronoi` is the layout of a CVT's cells; null if the map shows even bins. */
 export function project(
   elites: Elites,
   [x, y]: readonly [MapAxis, MapAxis],
   slices: readonly Slice[] = [],
-  cells: Layout | null = null,
+  voronoi: Layout | null = null,
 ): Projection {
   const shape: Shape = [x.bins, y.bins];
   const tiles = new Map<number, Tile>();
   const bins = new Map<number, number>();
   for (const [cell, elite] of elites) {
     if (!slices.every((slice) => passes(slice, cell, elite))) continue;
-    const [i, j] = [binOn(x, cell, elite), binOn(y, cell, elite)];
-    const bin = cells ? cell : i === null || j === null ? null : cellOf({ i, j }, shape);
+    const [i, j] = [binOfElite(x, cell, elite), binOfElite(y, cell, elite)];
+    const bin = voronoi ? cell : i === null || j === null ? null : binFrom({ i, j }, shape);
     if (bin === null) continue;
     bins.set(cell, bin);
     const shown = tiles.get(bin);
@@ -51,22 +51,22 @@ export function project(
       tiles.set(bin, { cell, elite, hidden: shown.hidden + 1 });
     } else shown.hidden += 1;
   }
-  return { layout: cells ?? gridLayout(shape), tiles, bins };
+  return { layout: voronoi ?? gridLayout(shape), tiles, bins };
 }
 
 function passes({ axis, from, to }: Slice, cell: number, elite: Elite): boolean {
-  const bin = binOn(axis, cell, elite);
+  const bin = binOfElite(axis, cell, elite);
   return bin !== null && bin >= from && bin <= to;
 }
 
-function binOn(axis: MapAxis, cell: number, elite: Elite): number | null {
-  if (axis.binOf) return axis.binOf(cell);
+function binOfElite(axis: MapAxis, cell: number, elite: Elite): number | null {
+  if (axis.binOfCell) return axis.binOfCell(cell);
   const value = axis.valueOf(elite);
-  return value === null ? null : binOf(axis, value);
+  return value === null ? null : binOfValue(axis, value);
 }
 
 /** The bin of a value; values beyond an end count in the last bin. */
-export function binOf(axis: Axis, value: number): number {
+export function binOfValue(axis: Axis, value: number): number {
   const share = positionOf(scaleOf(axis), Math.max(value, axis.low));
   return Math.min(axis.bins - 1, Math.floor(axis.bins * share + 1e-9));
 }

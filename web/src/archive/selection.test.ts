@@ -29,7 +29,7 @@ const mapOf = <T>(entries: Record<number, T>) =>
 
 /** A map of 4 × 4 bins with two elites in bin 5. */
 const layout = gridLayout([4, 4]);
-const elite = { fitness: 1, descriptors: [], generation: 1, creature: "c", seenAt: 1 };
+const elite = { fitness: 1, descriptors: [], generation: 1, creature: "c", reportedAt: 1 };
 const tile = (cell: number, hidden = 0) => ({ cell, elite, hidden });
 const projection: Projection = {
   layout,

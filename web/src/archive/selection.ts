@@ -1,7 +1,7 @@
 /** Selecting elites on the map or in the gallery, by bins with all of their elites. */
 
 import type { Projection, Tiles } from "./projection";
-import type { Layout, Spot } from "./layout";
+import type { Layout, Position } from "./layout";
 
 /** Cells of the archive. */
 export type CellSet = ReadonlySet<number>;
@@ -16,8 +16,8 @@ const NONE: CellSet = new Set();
 
 /** The cells of all elites in some bins. */
 export function cellsIn(bins: Iterable<number>, projection: Pick<Projection, "bins">): CellSet {
-  const wanted = new Set(bins);
-  return new Set([...projection.bins].flatMap(([cell, bin]) => (wanted.has(bin) ? [cell] : [])));
+  const included = new Set(bins);
+  return new Set([...projection.bins].flatMap(([cell, bin]) => (included.has(bin) ? [cell] : [])));
 }
 
 /** The bins with selected elites; null without a selection. */
@@ -50,15 +50,15 @@ export function selectByKey(
 }
 
 export interface Box {
-  from: Spot;
-  to: Spot;
+  from: Position;
+  to: Position;
 }
 
 /** The filled bins with their middle in a box, and those under its two corners. */
 export function binsWithin({ from, to }: Box, layout: Layout, tiles: Tiles): number[] {
   const [left, right] = [Math.min(from[0], to[0]), Math.max(from[0], to[0])];
   const [top, bottom] = [Math.min(from[1], to[1]), Math.max(from[1], to[1])];
-  const ends = [from, to].map((spot) => layout.at(...spot));
+  const ends = [from, to].map((corner) => layout.at(...corner));
   return [...tiles.keys()].filter((bin) => {
     const [x, y] = layout.centre(bin);
     return (left <= x && x <= right && top <= y && y <= bottom) || ends.includes(bin);

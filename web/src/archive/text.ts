@@ -26,7 +26,7 @@ export const text = {
   generation: "Generation",
   open: "Open",
   bestOf: "best of",
-  here: "in this cell",
+  here: "at this position",
   tileSize: "Tile size",
   galleryLabel: (select: boolean) => `Gallery. Arrow keys move between creatures, ${keyHelp(select)}`,
   galleryHint: "Point at a creature to read its measures. Click it to open it.",

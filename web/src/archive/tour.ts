@@ -56,5 +56,5 @@ export function stepsOf(run: Run, archive: Archive, { axes, elites, colouring }:
     ["time", ".time-slider", running ? text.tourLive : text.tourHistory, aboutTime],
     ["views", ".archive-head", text.tourOpen, text.tourOpenAbout],
   ] as const;
-  return steps.map(([about, selector, title, text]) => ({ about, selector, title, text }));
+  return steps.map(([part, selector, title, text]) => ({ part, selector, title, text }));
 }

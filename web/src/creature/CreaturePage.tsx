@@ -10,7 +10,7 @@ import { number, shortId, words } from "../ui/format";
 import { NotForceFree, isForceFree } from "../ui/coupling";
 import { Page, reasonOf, useTitle } from "../ui/Page";
 import { ReplayPlayer } from "../replay/ReplayPlayer";
-import { newMoment } from "../replay/moment";
+import { newPlayhead } from "../replay/playhead";
 import { AuditCard } from "./AuditCard";
 import { FactsCard } from "./FactsCard";
 import { FamilyCard } from "./FamilyCard";
@@ -57,27 +57,27 @@ export function CreaturePage({ id: sha, query }: Props) {
   );
 }
 
-/** Everything about one creature, around one moment of its replay. */
+/** All cards of a creature; they share the playhead of its replay. */
 export function CreatureView({ creature, query }: { creature: Creature; query: URLSearchParams }) {
   const { sha256: sha, identity } = creature;
-  const moment = useMemo(newMoment, []);
+  const playhead = useMemo(newPlayhead, []);
   const rendering = useReplays([sha]);
   const replay = rendering.replays?.[0] ?? null;
-  const films = useMemo(() => (replay ? [{ replay }] : []), [replay]);
+  const panels = useMemo(() => (replay ? [{ replay }] : []), [replay]);
   return (
     <>
       <div class="creature-columns">
         <div class="motion stack">
           <section class="card" aria-label={text.replay}>
             <ReplayStatus {...rendering} what={text.recording} />
-            {replay && <ReplayPlayer {...{ films, moment, query }} />}
+            {replay && <ReplayPlayer {...{ panels, playhead, query }} />}
             {replay && swims(creature) && <ReplayFitness replay={replay} task={identity.task} />}
             <Downloads sha={sha} />
           </section>
         </div>
         <div class="stack">
-          {replay && <SpaceTimeCard {...{ replay, query, moment }} />}
-          <GenomeCard {...{ creature, moment }} every={replay?.header.every ?? null} />
+          {replay && <SpaceTimeCard {...{ replay, query, playhead }} />}
+          <GenomeCard {...{ creature, playhead }} every={replay?.header.every ?? null} />
           <FamilyCard {...{ creature, query }} />
           {creature.measured && <RemeasureCard sha={sha} />}
           {swims(creature) && !sharedSlug && <AuditCard sha={sha} query={query} />}

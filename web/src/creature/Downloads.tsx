@@ -4,7 +4,7 @@ import { useEffect, useState } from "preact/hooks";
 import {
   type PictureFormat,
   renderingReady,
-  save,
+  downloadFile,
   creatureFileUrl,
   creatureH5Url,
   pictureUrl,
@@ -48,7 +48,7 @@ function Download({ url, title }: { url: string; title: string }) {
     return poll(() => renderingReady(url), {
       value: () => {
         setBusy(false);
-        save(url).catch(showFailure);
+        downloadFile(url).catch(showFailure);
       },
       note: () => {},
       error: (message) => {

@@ -7,7 +7,7 @@ import type { Creature, Relative } from "../api/types";
 import { useFetched } from "../store/fetch";
 import { setQuery } from "../store/router";
 import { FamilyTree } from "./FamilyTree";
-import { familyLayoutOf } from "./relatives";
+import { familyLayoutOf } from "./familyLayout";
 import { Card } from "../ui/Page";
 import { count } from "../ui/format";
 import { text } from "./text";

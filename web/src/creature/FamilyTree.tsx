@@ -3,7 +3,7 @@
 import type { Relative } from "../api/types";
 import { number, shortId } from "../ui/format";
 import { px } from "../ui/canvas";
-import { type PlacedRelative, type FamilyLayout, ROW_HEIGHT, COLUMN_WIDTH } from "./relatives";
+import { type PlacedRelative, type FamilyLayout, ROW_HEIGHT, COLUMN_WIDTH } from "./familyLayout";
 import { text } from "./text";
 
 interface Props {
@@ -51,7 +51,7 @@ export function FamilyTree({ tree, self, hrefOf }: Props) {
             >
               <Name
                 {...{ relative, most }}
-                own={relative.creature === self}
+                isSelf={relative.creature === self}
                 href={hrefOf(relative.creature)}
               />
             </li>
@@ -72,15 +72,15 @@ function pathOf(parent: PlacedRelative, child: PlacedRelative): string {
 interface NameProps {
   relative: Relative;
   most: number;
-  own: boolean;
+  isSelf: boolean;
   href: string | null;
 }
 
-function Name({ relative, most, own, href }: NameProps) {
+function Name({ relative, most, isSelf, href }: NameProps) {
   const { creature, stored, fitness } = relative;
   const title = aboutOf(relative);
   const common = {
-    class: `family-name ${own ? "own" : stored ? "" : "unstored"}`,
+    class: `family-name ${isSelf ? "self" : stored ? "" : "unstored"}`,
     title,
     children: (
       <>
@@ -91,7 +91,7 @@ function Name({ relative, most, own, href }: NameProps) {
       </>
     ),
   };
-  if (own || !stored || href === null) return <span {...common} />;
+  if (isSelf || !stored || href === null) return <span {...common} />;
   return <a href={href} aria-label={title} {...common} />;
 }
 

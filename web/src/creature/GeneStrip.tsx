@@ -12,9 +12,9 @@ const MAX_BARS = 400;
 export function GeneStrip({ genes }: { genes: Vector }) {
   const values = useMemo(() => decodeFloats(genes.values), [genes]);
   const bars = useMemo(() => barsOf(values), [values]);
-  const size = values.reduce((sum, value) => sum + Math.abs(value), 0) / (values.length || 1);
-  const bound = values.filter((value) => Math.abs(value) >= 1).length / (values.length || 1);
-  const summary = text.genesSummary(count(values.length), number(size));
+  const meanSize = values.reduce((sum, value) => sum + Math.abs(value), 0) / (values.length || 1);
+  const shareAtBounds = values.filter((value) => Math.abs(value) >= 1).length / (values.length || 1);
+  const summary = text.genesSummary(count(values.length), number(meanSize));
   return (
     <figure class="genes">
       <svg viewBox={`0 -1 ${bars.length} 2`} preserveAspectRatio="none" role="img" aria-label={summary}>
@@ -27,7 +27,7 @@ export function GeneStrip({ genes }: { genes: Vector }) {
         <span class="key negative">{text.negativeGenes}</span>
         <span class="quiet">
           {summary}
-          {bound > 0 && text.atBounds(percent(bound))}
+          {shareAtBounds > 0 && text.atBounds(percent(shareAtBounds))}
         </span>
       </figcaption>
     </figure>
@@ -36,10 +36,10 @@ export function GeneStrip({ genes }: { genes: Vector }) {
 
 /** At most `MAX_BARS` values, each the largest in size of those that it represents. */
 export function barsOf(values: Float32Array): number[] {
-  const each = Math.max(1, Math.ceil(values.length / MAX_BARS));
-  return Array.from({ length: Math.ceil(values.length / each) }, (_, k) =>
+  const perBar = Math.max(1, Math.ceil(values.length / MAX_BARS));
+  return Array.from({ length: Math.ceil(values.length / perBar) }, (_, k) =>
     values
-      .subarray(k * each, (k + 1) * each)
+      .subarray(k * perBar, (k + 1) * perBar)
       .reduce((most, value) => (Math.abs(value) > Math.abs(most) ? value : most), 0),
   );
 }

@@ -1,6 +1,7 @@
 /** The genome of a creature: a network, or a row of numbers. */
 
 import { useMemo, useState } from "preact/hooks";
+import * as api from "../api/client";
 import { type NetworkFormat, networkUrl } from "../api/files";
 import type { Creature, Spec, Vector } from "../api/types";
 import { layeredOf } from "../decode/layers";
@@ -8,7 +9,8 @@ import { type Network as Graph, networkOf } from "../decode/network";
 import { GeneStrip } from "./GeneStrip";
 import { NetworkGraph } from "./NetworkGraph";
 import { NetworkOutputs } from "./NetworkOutputs";
-import type { Moment } from "../replay/moment";
+import type { Playhead } from "../replay/playhead";
+import { useFetched } from "../store/fetch";
 import { Card } from "../ui/Page";
 import { FileLink } from "../ui/links";
 import { text } from "./text";
@@ -22,12 +24,12 @@ const FORMATS: [NetworkFormat, string][] = [
 
 interface Props {
   creature: Creature;
-  moment: Moment;
-  /** Steps between frames of a moment; null without a replay. */
+  playhead: Playhead;
+  /** Steps between frames of the replay; null without a replay. */
   every: number | null;
 }
 
-export function GenomeCard({ creature, ...shown }: Props) {
+export function GenomeCard({ creature, ...rest }: Props) {
   const { genome, task } = creature.identity;
   const network = useMemo(() => {
     if ("nodes" in genome) return networkOf(genome);
@@ -41,29 +43,33 @@ export function GenomeCard({ creature, ...shown }: Props) {
       </Card>
     );
   }
-  const files = "nodes" in genome ? creature.sha256 : null;
-  return <Network {...shown} {...{ network, files }} control={genome.control} steps={Number(task.steps)} />;
+  const about = { sha: creature.sha256, files: "nodes" in genome, control: genome.control };
+  return <Network {...rest} {...about} network={network} steps={Number(task.steps)} />;
 }
 
 interface NetworkProps extends Omit<Props, "creature"> {
+  sha: string;
   network: Graph;
-  /** The creature whose network can be downloaded. */
-  files: string | null;
+  /** True if the network can be downloaded. */
+  files: boolean;
   control: Spec;
   steps: number;
 }
 
-function Network({ network, files, ...rest }: NetworkProps) {
+function Network({ sha, network, files, ...rest }: NetworkProps) {
+  const { value: positions, error } = useFetched(() => api.readNetwork(sha), [sha]);
   const [selected, setSelected] = useState<number | null>(null);
   return (
     <Card id="network" title={text.network}>
-      <NetworkGraph network={network} selected={selected} onSelect={setSelected} />
+      {error && <p class="wrong-text small">{error}</p>}
+      {!positions && !error && <p class="quiet loading">{text.loadingNetwork}</p>}
+      {positions && <NetworkGraph {...{ network, positions, selected }} onSelect={setSelected} />}
       <NetworkOutputs {...rest} {...{ network, selected }} />
       {files && (
         <p class="links network-files">
           <span class="quiet small">{text.download}</span>
           {FORMATS.map(([format, title]) => (
-            <FileLink key={format} url={networkUrl(files, format)} name={title} />
+            <FileLink key={format} url={networkUrl(sha, format)} name={title} />
           ))}
         </p>
       )}

@@ -1,13 +1,13 @@
-/** A heat map over time (across) and space (up), with a cursor at a moment. */
+/** A heat map over time (across) and space (up), with a cursor at the time of the replay. */
 
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { ColourBar } from "../ui/ColourBar";
-import { css, diverging, table } from "../ui/colours";
-import type { Moment } from "../replay/moment";
+import { css, diverging, lut } from "../ui/colours";
+import type { Playhead } from "../replay/playhead";
 import { useTheme } from "../ui/canvas";
 import { text } from "./text";
 
-export interface Cells {
+export interface Matrix {
   columns: number;
   rows: number;
   /** (column, row); the first row is drawn lowest. */
@@ -15,43 +15,43 @@ export interface Cells {
 }
 
 interface Props {
-  cells: Cells;
+  matrix: Matrix;
   /** The absolute value at both ends of the colour map. */
-  most: number;
+  limit: number;
   label: string;
   /** Text below while no cell is pointed at. */
   about?: string;
   /** Text for the cell under the pointer or the arrow keys. */
   read: (column: number, row: number) => string;
-  moment: Moment;
-  /** The horizontal position of a moment, from 0 to 1; and the inverse, if a click can choose one. */
+  playhead: Playhead;
+  /** The horizontal position of a time, from 0 to 1; and the inverse, if a click can choose a time. */
   positionOf: (time: number) => number;
   timeAt?: (position: number) => number;
 }
 
-export interface Spot {
+export interface HeatCell {
   column: number;
   row: number;
 }
 
-export function HeatMap({ cells, most, label, about, read, moment, positionOf, timeAt }: Props) {
-  const { columns, rows } = cells;
+export function HeatMap({ matrix, limit, label, about, read, playhead, positionOf, timeAt }: Props) {
+  const { columns, rows } = matrix;
   const box = useRef<HTMLDivElement>(null);
-  const [spot, setSpot] = useState<Spot | null>(null);
-  const at = (event: PointerEvent) => {
+  const [cell, setCell] = useState<HeatCell | null>(null);
+  const pointAt = (event: PointerEvent) => {
     const { left, top, width, height } = box.current!.getBoundingClientRect();
     const across = Math.min(1, Math.max(0, (event.clientX - left) / width));
     const up = Math.min(1, Math.max(0, 1 - (event.clientY - top) / height));
-    setSpot({ column: cellOf(across, columns), row: cellOf(up, rows) });
-    if (timeAt && event.buttons === 1) moment.scrub(timeAt(across));
+    setCell({ column: indexAt(across, columns), row: indexAt(up, rows) });
+    if (timeAt && event.buttons === 1) playhead.scrub(timeAt(across));
   };
-  const now = () => cellOf(positionOf(moment.time), columns);
-  const walk = (event: KeyboardEvent) => {
-    const next = moveSpot(event.key, spot, now(), cells);
+  const now = () => indexAt(positionOf(playhead.time), columns);
+  const moveByKey = (event: KeyboardEvent) => {
+    const next = nextCell(event.key, cell, now(), matrix);
     if (!next) return;
     event.preventDefault();
-    setSpot(next);
-    if (timeAt && next.column !== now()) moment.scrub(timeAt((next.column + 0.5) / columns));
+    setCell(next);
+    if (timeAt && next.column !== now()) playhead.scrub(timeAt((next.column + 0.5) / columns));
   };
   return (
     <div class="heat">
@@ -61,32 +61,32 @@ export function HeatMap({ cells, most, label, about, read, moment, positionOf, t
         tabIndex={0}
         role="application"
         aria-label={text.heatMap(label)}
-        onPointerMove={at}
-        onPointerDown={at}
-        onPointerLeave={() => setSpot(null)}
-        onKeyDown={walk}
-        onBlur={() => setSpot(null)}
+        onPointerMove={pointAt}
+        onPointerDown={pointAt}
+        onPointerLeave={() => setCell(null)}
+        onKeyDown={moveByKey}
+        onBlur={() => setCell(null)}
       >
-        <Picture {...{ cells, most }} />
-        {spot && <span class="heat-spot" style={spotStyle(spot, cells)} />}
-        <Cursor {...{ moment, positionOf }} />
+        <Picture {...{ matrix, limit }} />
+        {cell && <span class="heat-spot" style={cellStyle(cell, matrix)} />}
+        <Cursor {...{ playhead, positionOf }} />
       </div>
       <p class="heat-reading small" aria-live="polite">
-        {spot ? read(spot.column, spot.row) : about}
+        {cell ? read(cell.column, cell.row) : about}
       </p>
     </div>
   );
 }
 
 /** The cell after an arrow key, from the one that is read or from the current column. */
-export function moveSpot(
+export function nextCell(
   key: string,
-  spot: Spot | null,
+  cell: HeatCell | null,
   now: number,
-  { columns, rows }: Pick<Cells, "columns" | "rows">,
-): Spot | null {
+  { columns, rows }: Pick<Matrix, "columns" | "rows">,
+): HeatCell | null {
   const within = (value: number, count: number) => Math.min(count - 1, Math.max(0, value));
-  const { column, row } = spot ?? { column: now, row: null };
+  const { column, row } = cell ?? { column: now, row: null };
   if (key === "ArrowLeft" || key === "ArrowRight") {
     const by = key === "ArrowLeft" ? -1 : 1;
     return { column: within(column + by, columns), row: row ?? 0 };
@@ -96,42 +96,42 @@ export function moveSpot(
   return null;
 }
 
-const cellOf = (share: number, count: number) => Math.min(count - 1, Math.floor(share * count));
+const indexAt = (share: number, count: number) => Math.min(count - 1, Math.floor(share * count));
 
-function spotStyle({ column, row }: Spot, { columns, rows }: Cells) {
+function cellStyle({ column, row }: HeatCell, { columns, rows }: Matrix) {
   const share = (value: number) => `${100 * value}%`;
   return { left: share((column + 0.5) / columns), bottom: share((row + 0.5) / rows) };
 }
 
-function Picture({ cells: { columns, rows, values }, most }: Pick<Props, "cells" | "most">) {
+function Picture({ matrix: { columns, rows, values }, limit }: Pick<Props, "matrix" | "limit">) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const theme = useTheme();
-  const colours = useMemo(() => table((t) => diverging(t, theme), 255, [-1, 1]), [theme]);
+  const colours = useMemo(() => lut((t) => diverging(t, theme), 255, [-1, 1]), [theme]);
   useEffect(() => {
     const image = new ImageData(columns, rows);
     const pixels = new Uint32Array(image.data.buffer);
     for (let column = 0; column < columns; column++) {
       for (let row = 0; row < rows; row++) {
-        const t = Math.min(1, Math.max(-1, values[column * rows + row]! / (most || 1)));
+        const t = Math.min(1, Math.max(-1, values[column * rows + row]! / (limit || 1)));
         pixels[(rows - 1 - row) * columns + column] = colours[Math.round(127 * t) + 127]!;
       }
     }
     canvas.current!.getContext("2d")!.putImageData(image, 0, 0);
-  }, [columns, rows, values, most, colours]);
+  }, [columns, rows, values, limit, colours]);
   return <canvas ref={canvas} width={columns} height={rows} aria-hidden="true" />;
 }
 
 /** A cursor that moves without rendering anything else. */
-function Cursor({ moment, positionOf }: Pick<Props, "moment" | "positionOf">) {
+function Cursor({ playhead, positionOf }: Pick<Props, "playhead" | "positionOf">) {
   const line = useRef<HTMLSpanElement>(null);
   useEffect(() => {
     const move = () => {
       // The clock may tick once more after the page was left.
-      line.current?.style.setProperty("left", `${100 * positionOf(moment.time)}%`);
+      line.current?.style.setProperty("left", `${100 * positionOf(playhead.time)}%`);
     };
     move();
-    return moment.listen(move);
-  }, [moment, positionOf]);
+    return playhead.listen(move);
+  }, [playhead, positionOf]);
   return <span ref={line} class="heat-cursor" />;
 }
 

@@ -1,26 +1,39 @@
 /** A creature's network: inputs at the left, outputs at the right, weights as lines. */
 
-import { useMemo } from "preact/hooks";
-import type { Link, Network } from "../decode/network";
+import type { NetworkPositions } from "../api/types";
+import type { Link, Network, Neuron } from "../decode/network";
 import { number } from "../ui/format";
-import { type Spot, layoutOf } from "./networkLayout";
 import { text } from "./text";
 import "./creature.css";
 import "./details.css";
 
 const RADIUS = 13;
+const REACH = 4 * RADIUS;
+const ROW = 58;
+/** Distances of columns; those of a deep network are close. */
+const [MIN_PITCH, MAX_PITCH] = [84, 130];
+const MARGIN = { x: 92, y: 50 };
 /** Bounds of the scale; a network that is too large scrolls. */
 const [MAX_SCALE, MIN_SCALE] = [1.2, 0.5];
 
 interface Props {
   network: Network;
+  positions: NetworkPositions;
   /** The node whose links stand out. */
   selected?: number | null;
   onSelect?: (id: number) => void;
 }
 
-export function NetworkGraph({ network, selected = null, onSelect }: Props) {
-  const { width, height, spots } = useMemo(() => layoutOf(network), [network]);
+type Point = [number, number];
+
+export function NetworkGraph({ network, positions, selected = null, onSelect }: Props) {
+  const pitch = Math.max(MIN_PITCH, Math.min(MAX_PITCH, (3.5 * MAX_PITCH) / positions.width));
+  const width = pitch * positions.width + 2 * MARGIN.x;
+  const height = ROW * positions.height + 2 * MARGIN.y;
+  const drawn = ([x, y]: Point): Point => [pitch * x + MARGIN.x, ROW * y + MARGIN.y];
+  const at = (id: number) => positions.nodes[id]!;
+  const wayOf = ({ source, target }: Link) =>
+    [at(source), ...(positions.passages[`${source}-${target}`] ?? []), at(target)].map(drawn);
   const largest = Math.max(1e-9, ...network.links.map(({ weight }) => Math.abs(weight)));
   const enabled = network.links.filter((link) => link.enabled).length;
   const summary = text.networkSummary(network.neurons.length, enabled);
@@ -35,10 +48,10 @@ export function NetworkGraph({ network, selected = null, onSelect }: Props) {
           aria-label={text.networkLabel(summary)}
         >
           {network.links.map((link, i) => (
-            <Wire key={i} {...{ link, spots, largest }} into={link.target === selected} />
+            <Wire key={i} {...{ link, largest }} way={wayOf(link)} into={link.target === selected} />
           ))}
-          {[...spots.values()].map((spot) => (
-            <Node key={spot.neuron.id} {...{ ...spot, onSelect }} selected={spot.neuron.id === selected} />
+          {network.neurons.map((neuron) => (
+            <Node key={neuron.id} {...{ neuron, onSelect, selected }} at={drawn(at(neuron.id))} />
           ))}
         </svg>
       </div>
@@ -57,18 +70,17 @@ export function NetworkGraph({ network, selected = null, onSelect }: Props) {
 
 interface WireProps {
   link: Link;
-  spots: Map<number, Spot>;
+  /** Points from the source to the target. */
+  way: Point[];
   largest: number;
   into: boolean;
 }
 
-function Wire({ link, spots, largest, into }: WireProps) {
-  const [from, to] = [spots.get(link.source), spots.get(link.target)];
-  if (!from || !to) return null;
+function Wire({ link, way, largest, into }: WireProps) {
   return (
     <path
       class={`wire ${link.weight < 0 ? "negative" : ""} ${link.enabled ? "" : "off"} ${into ? "into" : ""}`}
-      d={pathOf(from, to)}
+      d={pathOf(way)}
       stroke-width={0.75 + (4.5 * Math.abs(link.weight)) / largest}
     >
       <title>{text.weight(number(link.weight), link.enabled)}</title>
@@ -76,22 +88,26 @@ function Wire({ link, spots, largest, into }: WireProps) {
   );
 }
 
-function pathOf(from: Spot, to: Spot): string {
-  if (from === to) {
-    const [side, top] = [2.2 * RADIUS, from.y - 4 * RADIUS];
-    return `M${from.x},${from.y} C${from.x - side},${top} ${from.x + side},${top} ${to.x},${to.y}`;
-  }
-  // A wire that leads back or stays in its column bends to the left.
-  const bend = to.x > from.x ? (to.x - from.x) / 2 : -4 * RADIUS;
-  const [a, b] = [from.x + bend, to.x - Math.abs(bend)];
-  return `M${from.x},${from.y} C${a},${from.y} ${b},${to.y} ${to.x},${to.y}`;
+/** A curve level at each point; within a column it bends to the left, back or in a loop it rises. */
+function pathOf([first, ...rest]: Point[]): string {
+  let [x, y] = first!;
+  const curves = rest.map(([toX, toY]) => {
+    const within = toX === x && toY !== y;
+    const [out, lift] = toX > x ? [(toX - x) / 2, 0] : within ? [-REACH, 0] : [REACH, REACH];
+    const curve = `C${x + out},${y - lift} ${toX - Math.abs(out)},${toY - lift} ${toX},${toY}`;
+    [x, y] = [toX, toY];
+    return curve;
+  });
+  return `M${first} ${curves.join(" ")}`;
 }
 
-interface NodeProps extends Spot, Pick<Props, "onSelect"> {
-  selected: boolean;
+interface NodeProps extends Pick<Props, "selected" | "onSelect"> {
+  neuron: Neuron;
+  at: Point;
 }
 
-function Node({ neuron, x, y, selected, onSelect }: NodeProps) {
+function Node({ neuron, at, onSelect, ...graph }: NodeProps) {
+  const selected = neuron.id === graph.selected;
   const select = () => onSelect?.(neuron.id);
   const name = neuron.label || text.node(neuron.id);
   const widget = onSelect && {
@@ -107,7 +123,7 @@ function Node({ neuron, x, y, selected, onSelect }: NodeProps) {
   return (
     <g
       class={`neuron ${neuron.role} ${selected ? "selected" : ""}`}
-      transform={`translate(${x},${y})`}
+      transform={`translate(${at})`}
       {...widget}
     >
       <title>{text.nodeAbout(name, neuron.activation, number(neuron.bias))}</title>

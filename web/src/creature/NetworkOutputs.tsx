@@ -5,7 +5,7 @@ import type { Spec } from "../api/types";
 import type { Network, Neuron } from "../decode/network";
 import { COLUMNS, type Activations, ROWS, activationsOf, inputsOf, phaseOf } from "../decode/activations";
 import { number } from "../ui/format";
-import type { Moment } from "../replay/moment";
+import type { Playhead } from "../replay/playhead";
 import { DivergingLegend, HeatMap } from "./HeatMap";
 import { text } from "./text";
 
@@ -14,27 +14,27 @@ interface Props {
   selected: number | null;
   control: Spec;
   steps: number;
-  moment: Moment;
+  playhead: Playhead;
   every: number | null;
 }
 
-export function NetworkOutputs({ network, selected, control, steps, moment, every }: Props) {
+export function NetworkOutputs({ network, selected, control, steps, playhead, every }: Props) {
   const [energy, setEnergy] = useState(0);
   const inputs = useMemo(() => inputsOf(control), [control]);
-  const pictures = useMemo(
+  const activations = useMemo(
     () => activationsOf(network, control, steps, energy),
     [network, control, steps, energy],
   );
   const outputs = network.neurons.filter(({ role }) => role === "output");
-  const other = network.neurons.find(({ id, role }) => id === selected && role !== "output");
-  const shared = { pictures, inputs, moment, every };
+  const selectedNode = network.neurons.find(({ id, role }) => id === selected && role !== "output");
+  const shared = { activations, inputs, playhead, every };
   return (
     <div class="outputs">
       <h3>{text.outputs}</h3>
       <p class="quiet small">
         {text.outputAxes(
           inputs.recurrent
-            ? text.settledSteps(pictures.from, pictures.to)
+            ? text.settledSteps(activations.from, activations.to)
             : inputs.timer === "linear"
               ? text.wholeLife
               : text.onePeriod(number(inputs.period)),
@@ -56,18 +56,18 @@ export function NetworkOutputs({ network, selected, control, steps, moment, ever
       )}
       <div class="output-pictures">
         {outputs.map((neuron) => (
-          <Picture key={neuron.id} {...{ neuron, ...shared }} selected={neuron.id === selected} />
+          <OutputMap key={neuron.id} {...{ neuron, ...shared }} selected={neuron.id === selected} />
         ))}
-        {other && <Picture key="other" {...{ neuron: other, ...shared }} selected />}
+        {selectedNode && <OutputMap key="other" {...{ neuron: selectedNode, ...shared }} selected />}
       </div>
       <DivergingLegend title={text.tanhOutputs} end="1" />
     </div>
   );
 }
 
-interface PictureProps extends Pick<Props, "moment" | "every"> {
+interface OutputMapProps extends Pick<Props, "playhead" | "every"> {
   neuron: Neuron;
-  pictures: Activations;
+  activations: Activations;
   inputs: ReturnType<typeof inputsOf>;
   selected: boolean;
 }
@@ -75,12 +75,12 @@ interface PictureProps extends Pick<Props, "moment" | "every"> {
 /** Outputs act through tanh, except growth, of which only the sign counts. */
 const squashed = ({ role, label }: Neuron) => role === "output" && label !== "growth";
 
-function Picture({ neuron, pictures, inputs, moment, every, selected }: PictureProps) {
-  const raw = pictures.values.get(neuron.id)!;
+function OutputMap({ neuron, activations, inputs, playhead, every, selected }: OutputMapProps) {
+  const raw = activations.values.get(neuron.id)!;
   const values = useMemo(() => (squashed(neuron) ? raw.map(Math.tanh) : raw), [neuron, raw]);
-  const most = squashed(neuron) ? 1 : values.reduce((top, value) => Math.max(top, Math.abs(value)), 0);
+  const limit = squashed(neuron) ? 1 : values.reduce((top, value) => Math.max(top, Math.abs(value)), 0);
   const name = neuron.label || text.node(neuron.id);
-  const { from, to } = pictures;
+  const { from, to } = activations;
   const positionOf = useCallback(
     (time: number) => phaseOf(time * (every ?? 0), { from, to }, inputs),
     [every, inputs, from, to],
@@ -90,15 +90,15 @@ function Picture({ neuron, pictures, inputs, moment, every, selected }: PictureP
     const step = Math.round(from + ((to - from) * column) / COLUMNS);
     return text.outputAt(value, Math.round((100 * row) / (ROWS - 1)), step);
   };
-  const range = squashed(neuron) ? "" : text.upTo(number(most, 2));
+  const range = squashed(neuron) ? "" : text.upTo(number(limit, 2));
   return (
     <figure class={selected ? "selected" : ""}>
       <figcaption>{name.charAt(0).toUpperCase() + name.slice(1)}</figcaption>
       <HeatMap
-        cells={{ columns: COLUMNS, rows: ROWS, values }}
+        matrix={{ columns: COLUMNS, rows: ROWS, values }}
         label={text.outputOf(name)}
         about={`${neuron.activation}${range}`}
-        {...{ most, read, moment, positionOf }}
+        {...{ limit, read, playhead, positionOf }}
       />
     </figure>
   );

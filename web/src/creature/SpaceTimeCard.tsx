@@ -3,7 +3,7 @@
 import { useCallback, useMemo } from "preact/hooks";
 import type { Replay } from "../decode/replay";
 import { anglesOf, lengthsOf, colourLimit } from "../decode/shape";
-import type { Moment } from "../replay/moment";
+import type { Playhead } from "../replay/playhead";
 import { setQuery } from "../store/router";
 import { number, percent } from "../ui/format";
 import { Card } from "../ui/Page";
@@ -13,12 +13,12 @@ import { text } from "./text";
 
 const QUANTITIES = {
   angles: {
-    ...{ of: anglesOf, item: "joint", unit: text.angleUnit },
+    ...{ shapeOf: anglesOf, item: "joint", unit: text.angleUnit },
     ...{ rest: text.restAngles, actual: text.bodyAngles },
     format: (value: number) => `${number(value)} rad`,
   },
   lengths: {
-    ...{ of: lengthsOf, item: "edge", unit: text.lengthUnit },
+    ...{ shapeOf: lengthsOf, item: "edge", unit: text.lengthUnit },
     ...{ rest: text.restLengths, actual: text.bodyLengths },
     format: (value: number) => percent(value),
   },
@@ -34,10 +34,10 @@ const TITLES: [Quantity, string][] = [
 interface Props {
   replay: Replay;
   query: URLSearchParams;
-  moment: Moment;
+  playhead: Playhead;
 }
 
-export function SpaceTimeCard({ replay, query, moment }: Props) {
+export function SpaceTimeCard({ replay, query, playhead }: Props) {
   const quantity = query.get("shape") === "lengths" ? "lengths" : "angles";
   const view = (
     <Segments
@@ -49,15 +49,15 @@ export function SpaceTimeCard({ replay, query, moment }: Props) {
   );
   return (
     <Card id="shape" title={text.shape} actions={view}>
-      <SpaceTime {...{ replay, quantity, moment }} />
+      <SpaceTime {...{ replay, quantity, playhead }} />
     </Card>
   );
 }
 
-function SpaceTime({ replay, quantity, moment }: Omit<Props, "query"> & { quantity: Quantity }) {
-  const { of, item, unit, format, ...titles } = QUANTITIES[quantity];
-  const shape = useMemo(() => of(replay), [replay, of]);
-  const most = useMemo(() => colourLimit(shape.rest, shape.actual), [shape]);
+function SpaceTime({ replay, quantity, playhead }: Omit<Props, "query"> & { quantity: Quantity }) {
+  const { shapeOf, item, unit, format, ...titles } = QUANTITIES[quantity];
+  const shape = useMemo(() => shapeOf(replay), [replay, shapeOf]);
+  const limit = useMemo(() => colourLimit(shape.rest, shape.actual), [shape]);
   const { frames, every, steps } = replay.header;
   const positionOf = useCallback((time: number) => (time + 0.5) / frames, [frames]);
   const timeAt = (share: number) => Math.min(frames - 1, Math.max(0, share * frames - 0.5));
@@ -81,9 +81,9 @@ function SpaceTime({ replay, quantity, moment }: Omit<Props, "query"> & { quanti
               <span>1</span>
             </span>
             <HeatMap
-              cells={{ columns: frames, rows: items, values: shape[part].values }}
+              matrix={{ columns: frames, rows: items, values: shape[part].values }}
               label={text.shapeMap(titles[part], steps, items, item)}
-              {...{ most, read, moment, positionOf, timeAt }}
+              {...{ limit, read, playhead, positionOf, timeAt }}
             />
           </div>
         </figure>
@@ -92,7 +92,7 @@ function SpaceTime({ replay, quantity, moment }: Omit<Props, "query"> & { quanti
         <span>{text.step(0)}</span>
         <span>{text.step(steps)}</span>
       </p>
-      <DivergingLegend title={unit} end={format(most)} />
+      <DivergingLegend title={unit} end={format(limit)} />
     </div>
   );
 }

@@ -1,27 +1,25 @@
 import { describe, expect, it, test } from "vitest";
 import type { Ancestors, Creature, Relative } from "../api/types";
-import type { Neuron } from "../decode/network";
-import { familyLayoutOf } from "./relatives";
+import { familyLayoutOf } from "./familyLayout";
 import { couplingRows, groupsOf } from "./facts";
 import { barsOf } from "./GeneStrip";
-import { moveSpot } from "./HeatMap";
-import { layoutOf } from "./networkLayout";
+import { nextCell } from "./HeatMap";
 
 describe("a heat map", () => {
-  const cells = { columns: 5, rows: 3 };
+  const matrix = { columns: 5, rows: 3 };
 
-  it("is read with arrow keys, from the current moment, up to its edges", () => {
-    expect(moveSpot("ArrowUp", null, 2, cells)).toEqual({ column: 2, row: 0 });
-    expect(moveSpot("ArrowDown", null, 2, cells)).toEqual({ column: 2, row: 2 });
-    expect(moveSpot("ArrowRight", null, 2, cells)).toEqual({ column: 3, row: 0 });
-    expect(moveSpot("ArrowLeft", { column: 0, row: 1 }, 4, cells)).toEqual({ column: 0, row: 1 });
-    expect(moveSpot("ArrowUp", { column: 4, row: 2 }, 0, cells)).toEqual({ column: 4, row: 2 });
-    expect(moveSpot("Home", { column: 4, row: 2 }, 0, cells)).toBeNull();
+  it("is read with arrow keys, from the current time, up to its edges", () => {
+    expect(nextCell("ArrowUp", null, 2, matrix)).toEqual({ column: 2, row: 0 });
+    expect(nextCell("ArrowDown", null, 2, matrix)).toEqual({ column: 2, row: 2 });
+    expect(nextCell("ArrowRight", null, 2, matrix)).toEqual({ column: 3, row: 0 });
+    expect(nextCell("ArrowLeft", { column: 0, row: 1 }, 4, matrix)).toEqual({ column: 0, row: 1 });
+    expect(nextCell("ArrowUp", { column: 4, row: 2 }, 0, matrix)).toEqual({ column: 4, row: 2 });
+    expect(nextCell("Home", { column: 4, row: 2 }, 0, matrix)).toBeNull();
   });
 });
 
 describe("a family tree", () => {
-  const person = (creature: string, distance: number, parents: string[] = [], fitness = 1): Relative => ({
+  const relative = (creature: string, distance: number, parents: string[] = [], fitness = 1): Relative => ({
     creature,
     distance,
     parents,
@@ -31,15 +29,15 @@ describe("a family tree", () => {
     generation: 1,
     credit: [],
   });
-  const me = person("me", 0, ["a", "b"]);
+  const me = relative("me", 0, ["a", "b"]);
   const ancestors: Ancestors = {
     parents: ["a", "b"],
-    items: [person("a", 1, ["old"]), person("b", 1, ["old"]), person("old", 2)],
+    items: [relative("a", 1, ["old"]), relative("b", 1, ["old"]), relative("old", 2)],
     more: false,
   };
 
   it("has columns, the oldest first, and lines from parents to children", () => {
-    const tree = familyLayoutOf(me, ancestors, { total: 1, items: [person("child", 1, ["me"])] });
+    const tree = familyLayoutOf(me, ancestors, { total: 1, items: [relative("child", 1, ["me"])] });
     expect(tree.columns.map(({ title }) => title)).toEqual([
       "Grandparents",
       "Parents",
@@ -53,7 +51,7 @@ describe("a family tree", () => {
   });
 
   it("draws the fittest children, and counts the others", () => {
-    const items = Array.from({ length: 12 }, (_, i) => person(`c${i}`, 1, ["me"], 11 - i));
+    const items = Array.from({ length: 12 }, (_, i) => relative(`c${i}`, 1, ["me"], 11 - i));
     const tree = familyLayoutOf(me, ancestors, { total: 30, items });
     const drawn = tree.relatives.filter(({ relative }) => relative.creature.startsWith("c"));
     expect(drawn.map(({ relative }) => relative.fitness)).toEqual([11, 10, 9, 8, 7, 6, 5, 4]);
@@ -88,28 +86,4 @@ test("a strip of genes has a bar for each, or for the largest of several where t
   const many = Float32Array.from({ length: 4000 }, (_, i) => (i === 13 ? -1 : 0.25));
   const bars = barsOf(many);
   expect([bars.length, bars[1], bars[0]]).toEqual([400, -1, 0.25]);
-});
-
-test("nodes of a column are apart, close to connected nodes, inputs and outputs in their order", () => {
-  const role = (id: number): Neuron["role"] => (id < 3 ? "input" : id < 5 ? "output" : "hidden");
-  const neurons = Array.from({ length: 8 }, (_, id): Neuron => {
-    const depth = { input: 0, hidden: 1, output: 2 }[role(id)];
-    return { id, role: role(id), label: "", activation: "tanh", bias: 0, depth };
-  });
-  const pairs = ["2 5", "5 4", "0 6", "6 3", "1 7", "7 7"].map((pair) => pair.split(" ").map(Number));
-  const links = pairs.map(([source, target]) => ({
-    source: source!,
-    target: target!,
-    weight: 1,
-    enabled: true,
-  }));
-  const { height, spots } = layoutOf({ neurons, links, depth: 2 });
-  const order = (...ids: number[]) => ids.sort((a, b) => spots.get(a)!.y - spots.get(b)!.y);
-  expect(order(2, 1, 0)).toEqual([0, 1, 2]);
-  expect(order(4, 3)).toEqual([3, 4]);
-  expect(order(5, 6, 7)).toEqual([6, 7, 5]);
-  const [high, middle, low] = [6, 7, 5].map((id) => spots.get(id)!.y);
-  expect(Math.min(middle! - high!, low! - middle!)).toBeGreaterThanOrEqual(58);
-  expect(high).toBeGreaterThan(0);
-  expect(low).toBeLessThan(height);
 });

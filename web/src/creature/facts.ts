@@ -32,8 +32,8 @@ export function groupsOf(creature: Creature): Group[] {
   if (!measured) return [{ title: text.resultGroup, rows: [[text.fitness, text.notMeasured]] }];
   const plugins = measuringPlugins(creature);
   const measures = Object.entries({ ...measured.descriptors, ...measured.measures });
-  const rowsOf = (wanted: (name: string) => boolean) =>
-    measures.filter(([name]) => wanted(name)).map(([name, value]) => measureRow(name, value, plugins[name]));
+  const rowsOf = (belongs: (name: string) => boolean) =>
+    measures.filter(([name]) => belongs(name)).map(([name, value]) => measureRow(name, value, plugins[name]));
   const grouped = GROUPS.flatMap(([, names]) => names);
   const fitness: Row = [text.fitness, number(measured.fitness, 6)];
   const result = [

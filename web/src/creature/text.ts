@@ -12,7 +12,7 @@ export const text = {
   fails: "does not survive",
   auditVerdict: (survives: boolean, reasons: string) =>
     `The swimming ${survives ? "survives" : "does not survive"} refinement${survives && reasons ? ", with reservations" : ""}${reasons && `: ${reasons}`}.`,
-  figure: "Figure",
+  figure: "Quantity",
   value: "Value",
   limit: "Limit",
   result: "Result",
@@ -57,6 +57,7 @@ export const text = {
   negativeGenes: "negative, down to −1",
   atBounds: (share: string) => `, ${share} at the bounds`,
   network: "Network",
+  loadingNetwork: "Loading network …",
   genes: "Genes",
   divergingLegend: (title: string, end: string) => `${title}: from −${end} to ${end}`,
   heatMap: (label: string) => `${label}. Arrow keys move along the body and through time.`,

@@ -1,4 +1,4 @@
-/** The values of every node of a controller's network, along the body and over time. */
+/** The values of every node of a CPPN or layered controller, along the body and over time; the engine turns outputs into rest angles. */
 
 import type { Spec } from "../api/types";
 import { type Values, advance, evaluate, incomingLinks } from "./evaluate";

@@ -76,21 +76,6 @@ describe("a network", () => {
     },
   };
 
-  it("puts each node one layer after its last source, also with cycles", () => {
-    const { neurons } = networkOf({
-      ...genome,
-      connections: { ...genome.connections, source: [0, 4, 5, 1, 0], target: [4, 5, 2, 3, 5] },
-    });
-    expect(neurons.map(({ depth }) => depth)).toEqual([0, 0, 3, 3, 1, 2]);
-    expect(networkOf(genome).depth).toBeLessThan(genome.nodes.id.length);
-  });
-
-  it("has no more layers than its longest path without a cycle", () => {
-    const ring = { ...genome.connections, source: [0, 4, 5, 4, 1], target: [4, 5, 4, 4, 3] };
-    const { neurons } = networkOf({ ...genome, connections: ring });
-    expect(neurons.map(({ depth }) => depth)).toEqual([0, 0, 2, 2, 1, 2]);
-  });
-
   it("keeps weights, biases, names and disabled links", () => {
     const { neurons, links } = networkOf(genome);
     expect(neurons[2]).toMatchObject({ role: "output", label: "rest angle", bias: 0.5 });

@@ -19,7 +19,7 @@ function graph(sizes: number[], genes: Float32Array, control: Spec, inputs: stri
   const ids = numbersOf(sizes);
   const last = sizes.length - 1;
   const neurons = ids[0]!.map((id): Neuron => {
-    return { id, role: "input", label: labelOf(inputs[id]!), activation: "identity", bias: 0, depth: 0 };
+    return { id, role: "input", label: labelOf(inputs[id]!), activation: "identity", bias: 0 };
   });
   const links: Link[] = [];
   let used = 0;
@@ -31,13 +31,13 @@ function graph(sizes: number[], genes: Float32Array, control: Spec, inputs: stri
         (gene) => gene * Number(control.scale),
       );
       const label = role === "output" ? labelOf(outputs[place]!) : "";
-      neurons.push({ id, role, label, activation, bias: row[0]!, depth: layer });
+      neurons.push({ id, role, label, activation, bias: row[0]! });
       ids[layer - 1]!.forEach((source, i) =>
         links.push({ source, target: id, weight: row[i + 1]!, enabled: true }),
       );
     });
   }
-  return { neurons, links, depth: last };
+  return { neurons, links };
 }
 
 /** Inputs are numbered first, then outputs, as in NEAT. */

@@ -1,4 +1,4 @@
-/** The shape of a body over time: rest shape and actual shape of joints and edges. */
+/** The rest shape and the actual shape of a replayed body over time, by joints and edges. */
 
 import type { Replay } from "./replay";
 

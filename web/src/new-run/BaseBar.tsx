@@ -86,6 +86,6 @@ const PAGES = { run: "runs", creature: "creatures" };
 
 function BaseName({ base }: { base: Base }) {
   const page = PAGES[base.kind as keyof typeof PAGES];
-  if (!page || base.foreign) return <b>{titleOfBase(base)}</b>;
+  if (!page || base.fromDocument) return <b>{titleOfBase(base)}</b>;
   return <a href={`/${page}/${base.name}`}>{titleOfBase(base)}</a>;
 }

@@ -57,7 +57,7 @@ function World({ body, drawing }: { body: DrawnBody; drawing: Drawing }) {
         {/* In the world y points upwards, on the screen downwards. */}
         <g clip-path={`url(#${clip})`}>
           <g transform={`matrix(1 0 0 -1 0 ${height})`}>
-            {tilesOf(body, width, height).map(([x, y]) => (
+            {periodicShifts(body, width, height).map(([x, y]) => (
               <Filaments key={`${x} ${y}`} {...{ body, x, y, thin }} />
             ))}
           </g>
@@ -127,7 +127,7 @@ function distance([ax, ay]: number[], [bx, by]: number[]): number {
 }
 
 /** Shifts by whole worlds that show a part of the body, because the world is periodic. */
-export function tilesOf({ positions }: DrawnBody, width: number, height: number): [number, number][] {
+export function periodicShifts({ positions }: DrawnBody, width: number, height: number): [number, number][] {
   const [columns, rows] = [width, height].map((side, axis) =>
     shiftsOf(
       positions.map((at) => at[axis]!),

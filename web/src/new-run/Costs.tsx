@@ -10,7 +10,7 @@ import { Card } from "../ui/Page";
 import { Term } from "../ui/Term";
 import { bytes, count, number, words } from "../ui/format";
 
-const SETTLED_MS = 350;
+const TYPING_PAUSE_MS = 350;
 
 /** An error of the server: its fields, and a sentence. */
 export function serverErrors(error: unknown): { errors: FieldError[]; problem: string } {
@@ -33,16 +33,16 @@ export function useEstimate<Requested, T>(
   const [check, setCheck] = useState<Check<T>>(unchecked);
   useEffect(() => {
     if (requested === null) return setCheck(unchecked);
-    let wanted = true;
-    const show = (next: Partial<Check<T>>) => wanted && setCheck({ ...unchecked, ...next });
+    let current = true;
+    const show = (next: Partial<Check<T>>) => current && setCheck({ ...unchecked, ...next });
     const timer = setTimeout(() => {
       estimateOf(requested).then(
         (estimate) => show({ estimate }),
         (error) => show(serverErrors(error)),
       );
-    }, SETTLED_MS);
+    }, TYPING_PAUSE_MS);
     return () => {
-      wanted = false;
+      current = false;
       clearTimeout(timer);
     };
   }, [requested]);
@@ -117,13 +117,13 @@ export function CostDetails({ estimate }: { estimate: Estimate }) {
   const { memory_bytes, memory_limit_bytes, evaluations, cell_steps, speed } = estimate;
   const fits = memory_bytes <= memory_limit_bytes;
   const memory = text.memoryNeeded(bytes(memory_limit_bytes), fits);
-  const pace = speed ? text.pace(number(speed.cell_steps_per_second)) : "";
+  const rate = speed ? text.rate(number(speed.cell_steps_per_second)) : "";
   return (
     <Card id="cost" kind="cost-details" title={text.cost}>
       <Detail value={words(timeText(estimate) ?? text.time)} about={`${estimateBasis(estimate)}.`} />
       <Detail value={bytes(memory_bytes)} about={memory} wrong={!fits} />
       <Detail value={count(evaluations)} about={text.evaluationsAbout} />
-      <Detail value={number(cell_steps)} about={`${text.cellSteps}${pace}`} />
+      <Detail value={number(cell_steps)} about={`${text.cellSteps}${rate}`} />
       <p class="quiet">{waitText(estimate)}</p>
     </Card>
   );
@@ -155,10 +155,10 @@ export function timeText({ seconds }: Pick<Estimate, "seconds">): string | null 
 const MIN_RATIO = 1.5;
 
 export function estimateBasis({ speed }: Estimate): string {
-  if (!speed) return text.noPace;
+  if (!speed) return text.unknownTime;
   const [low, high] = [roughDuration(speed.low), roughDuration(speed.high)];
   const wide = speed.high > MIN_RATIO * speed.low && low !== high;
-  const range = wide ? text.paceRange(low, high) : "";
+  const range = wide ? text.timeRange(low, high) : "";
   return text.basis(speed.device, text.basedOn(speed.runs), range);
 }
 

@@ -61,7 +61,7 @@ export function Editor(props: Props) {
             <ForkCard fork={editor.fork} errors={[...editor.refused, ...check.errors]} />
           ) : (
             <SweepCard
-              sweeping={sweep}
+              sweep={sweep}
               errors={[...editor.refused, ...editor.sweepErrors]}
               spec={current.spec as Json}
             />
@@ -121,7 +121,7 @@ interface SubmitProps {
 
 function SubmitBar({ editor, illegible, refusal }: SubmitProps) {
   const { estimate, runs, problem, submission, sweep, forking } = editor;
-  const wanted = !forking && isSweep(sweep) ? sweep.total : 1;
+  const total = !forking && isSweep(sweep) ? sweep.total : 1;
   return (
     <div class="submit-bar">
       <div class="row">
@@ -133,7 +133,7 @@ function SubmitBar({ editor, illegible, refusal }: SubmitProps) {
           <kbd class="quiet small wide-only">{text.submitKey}</kbd>
         )}
         <button class="primary" type="submit" disabled={submission.busy || refusal !== null}>
-          {submission.busy ? text.starting : startLabel(wanted)}
+          {submission.busy ? text.starting : startLabel(total)}
         </button>
       </div>
     </div>

@@ -14,17 +14,17 @@ export interface Fork {
   name: string | null;
   onName: (name: string) => void;
   /** The request; null if the spec says everything. */
-  sent: Alternative | null;
+  request: Alternative | null;
 }
 
 export function useFork({ base, spec }: Draft): Fork {
   const [name, onName] = useState("");
   useEffect(() => onName(""), [base]);
-  const sent = useMemo(() => forkOf({ base, spec }, name), [base, spec, name]);
-  return { name: sent && name, onName, sent };
+  const request = useMemo(() => forkRequest({ base, spec }, name), [base, spec, name]);
+  return { name: request && name, onName, request };
 }
 
-export function forkOf({ base, spec }: Draft, name: string): Alternative | null {
+export function forkRequest({ base, spec }: Draft, name: string): Alternative | null {
   const { run = null, at = null } = base.fork ?? {};
   if (run === null) return null;
   // The server ignores initial creatures in the spec of a fork.

@@ -26,10 +26,10 @@ function NewRunForm({ experiments, query }: { experiments: Experiment[]; query: 
   const { current } = draft;
   const [picked, setPicked] = useState<Experiment | null>(null);
   const [replacing, setReplacing] = useState(false);
-  const own = experiments.find(({ experiment }) => experiment === current?.spec.experiment);
-  const selected = picked ?? own ?? experiments[0]!;
+  const experiment = experiments.find((one) => one.experiment === current?.spec.experiment);
+  const selected = picked ?? experiment ?? experiments[0]!;
   useEffect(() => setPicked(null), [draft.revision]);
-  const { take, file } = useDocument(draft, experiments, selected, own);
+  const { take, file } = useDocument(draft, experiments, selected, experiment);
   const costs = usePresetCosts(selected);
   const view = query.get("view") === "json" ? "json" : "form";
   const show = (next: "form" | "json", replace = false) => {
@@ -55,10 +55,10 @@ function NewRunForm({ experiments, query }: { experiments: Experiment[]; query: 
         }
       />
       {!current && <Loading />}
-      {current && own && (
+      {current && experiment && (
         <>
           <BaseBar {...{ draft, current, experiments, file }} />
-          <Editor {...{ draft, current, view, show, take, replacing }} experiment={own} />
+          <Editor {...{ draft, current, view, show, take, replacing }} experiment={experiment} />
         </>
       )}
     </Page>

@@ -19,19 +19,19 @@ export function useDocument(
   draft: DraftState,
   experiments: Experiment[],
   selected: Experiment,
-  own: Experiment | undefined,
+  current: Experiment | undefined,
 ): { take: Take; file: CreatureFile | null } {
   const [file, setFile] = useState<CreatureFile | null>(null);
   const take: Take = (text, name, typed = false) => {
     try {
-      const found = readText(text, selected.experiment === "refinement");
-      const same = typed && found.kind === "spec" && found.spec.experiment === own?.experiment;
+      const read = readText(text, selected.experiment === "refinement");
+      const same = typed && read.kind === "spec" && read.spec.experiment === current?.experiment;
       if (same) {
-        const spec = completeSpec(found.spec, experiments);
+        const spec = completeSpec(read.spec, experiments);
         draft.change(() => spec);
       } else {
-        draft.startFrom(baseOfDocument(found, name, experiments));
-        setFile(found.kind === "creature" ? { sha: found.creature.sha256, text } : null);
+        draft.startFrom(baseOfDocument(read, name, experiments));
+        setFile(read.kind === "creature" ? { sha: read.creature.sha256, text } : null);
       }
       return null;
     } catch (error) {

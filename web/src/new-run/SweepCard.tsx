@@ -12,13 +12,13 @@ import { type Axis, type SweepForm, nameOf, isSweep, errorsAt } from "./sweep";
 import { text } from "./text";
 
 interface Props {
-  sweeping: SweepForm;
+  sweep: SweepForm;
   errors: readonly FieldError[];
   spec: Json;
 }
 
-export function SweepCard({ sweeping, errors, spec }: Props) {
-  const { axes, fields, problems, total, change } = sweeping;
+export function SweepCard({ sweep, errors, spec }: Props) {
+  const { axes, fields, problems, total, change } = sweep;
   const add = () => {
     const free = fields.find(({ path }) => !axes.some((axis) => axis.path === path));
     const preferred = fields.find(({ path }) => path === "world.viscosity") ?? free;
@@ -28,7 +28,7 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
   return (
     <Card id="sweep" kind="sweep-card" title={text.sweep}>
       <p class="help">{text.sweepAbout}</p>
-      <Entries sweeping={sweeping} />
+      <Entries sweep={sweep} />
       <Messages messages={[problems.seeds, ...errorsAt(errors, "seeds")]} />
       {axes.map((axis, i) => (
         <Row
@@ -46,7 +46,7 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
         <button type="button" onClick={add} disabled={axes.length >= fields.length}>
           {text.addAxis(axes.length === 0)}
         </button>
-        {isSweep(sweeping) && (
+        {isSweep(sweep) && (
           <span role="status" class="quiet">
             {text.totalRuns(total)}
           </span>
@@ -56,8 +56,8 @@ export function SweepCard({ sweeping, errors, spec }: Props) {
   );
 }
 
-function Entries({ sweeping }: { sweeping: SweepForm }) {
-  const { seeded, seeds, name, problems, change } = sweeping;
+function Entries({ sweep }: { sweep: SweepForm }) {
+  const { seeded, seeds, name, problems, change } = sweep;
   return (
     <div class="sweep-entries row">
       {seeded && (
@@ -72,7 +72,7 @@ function Entries({ sweeping }: { sweeping: SweepForm }) {
           />
         </label>
       )}
-      {isSweep(sweeping) && (
+      {isSweep(sweep) && (
         <NameEntry title={text.sweepName} value={name} onChange={(name) => change({ name })} />
       )}
     </div>

@@ -21,24 +21,24 @@ import { sourceAddress, load, baseOfPreset } from "./sources";
 import { text } from "./text";
 
 const SOURCE_PARAMETERS = ["preset", "from", "fork", "initial", ...FORK_PARAMETERS];
-const NO_SOURCE = Object.fromEntries(SOURCE_PARAMETERS.map((word) => [word, null]));
+const NO_SOURCE = Object.fromEntries(SOURCE_PARAMETERS.map((name) => [name, null]));
 
 const NONE: ReadonlySet<string> = new Set();
 
 export function useDraft(query: URLSearchParams, experiments: Experiment[]) {
-  const wanted = sourceAddress(query);
-  const [current, setCurrent] = useState(() => loadDraft(wanted));
+  const requested = sourceAddress(query);
+  const [current, setCurrent] = useState(() => loadDraft(requested));
   const [restored, setRestored] = useState(current !== null);
   const [revision, setRevision] = useState(0);
   const [problem, setProblem] = useState<string | null>(null);
-  const shown = useRef(current ? String(wanted) : null);
+  const shownAddress = useRef(current ? String(requested) : null);
   const changed = useMemo(
     () => (current ? new Set(changedPaths(current.spec, current.base.spec)) : NONE),
     [current],
   );
-  const put = (next: Draft) => {
+  const setDraft = (next: Draft) => {
     const address = addressOf(next.base);
-    shown.current = String(address);
+    shownAddress.current = String(address);
     setQuery({ ...NO_SOURCE, ...(address && Object.fromEntries(address)) });
     setCurrent(next);
     setRestored(false);
@@ -46,11 +46,11 @@ export function useDraft(query: URLSearchParams, experiments: Experiment[]) {
     setProblem(null);
   };
   const replace = (next: Draft, note: string) => {
-    if (current && (changed.size > 0 || current.base.fork)) replaceUndo(note, () => put(current));
-    put(next);
+    if (current && (changed.size > 0 || current.base.fork)) replaceUndo(note, () => setDraft(current));
+    setDraft(next);
   };
   const startFrom = (base: Base) => replace({ base, spec: base.spec }, text.replaced);
-  useBase(wanted, shown, current !== null, experiments, startFrom, setProblem);
+  useBase(requested, shownAddress, current !== null, experiments, startFrom, setProblem);
   useStoredDraft(current, changed);
   return {
     current,
@@ -73,10 +73,10 @@ function withoutFork({ base: { fork: _, ...base }, spec }: Draft): Draft {
   return { base: { ...base, spec: withInitial(base.spec, []) }, spec: withInitial(spec, []) };
 }
 
-/** Start from the source in the address, or from the first preset, unless it is shown already. */
+/** Start from the source in the address, or from the first preset, unless the draft shows it already. */
 function useBase(
-  wanted: Address | null,
-  shown: { current: string | null },
+  requested: Address | null,
+  shownAddress: { current: string | null },
   hasDraft: boolean,
   experiments: Experiment[],
   startFrom: (base: Base) => void,
@@ -84,22 +84,22 @@ function useBase(
 ): void {
   useEffect(() => {
     // An address without a source keeps the current draft.
-    if (shown.current === String(wanted) || (hasDraft && !wanted)) return;
-    let wanting = true;
+    if (shownAddress.current === String(requested) || (hasDraft && !requested)) return;
+    let isCurrent = true;
     const firstPreset = baseOfPreset(experiments[0]!.presets[0]!, experiments[0]!);
-    const requested = wanted ? load(wanted, experiments) : Promise.resolve(firstPreset);
+    const loading = requested ? load(requested, experiments) : Promise.resolve(firstPreset);
     const fail = (error: unknown) => {
       if (!hasDraft) startFrom(firstPreset);
       onProblem(messageOf(error));
     };
-    requested.then(
-      (base) => wanting && startFrom(base),
-      (error) => wanting && fail(error),
+    loading.then(
+      (base) => isCurrent && startFrom(base),
+      (error) => isCurrent && fail(error),
     );
     return () => {
-      wanting = false;
+      isCurrent = false;
     };
-  }, [String(wanted)]);
+  }, [String(requested)]);
 }
 
 /** Keep changes in this tab; remove the undo note when the page is left. */
@@ -107,7 +107,7 @@ function useStoredDraft(current: Draft | null, changed: ReadonlySet<string>): vo
   useEffect(() => () => dismissToast(undoToast), []);
   useEffect(() => {
     if (!current) return;
-    if (changed.size > 0 || current.base.foreign) saveDraft(current);
+    if (changed.size > 0 || current.base.fromDocument) saveDraft(current);
     else discardDraft();
   }, [current, changed]);
 }

@@ -30,10 +30,10 @@ export function useEditor(draft: DraftState, current: Draft, experiment: Experim
   if (check.estimate) drawing.current = check.estimate.drawing;
   const sweep = useSweepForm(form, spec, experiment);
   const fork = useFork(current);
-  const sweepRequest = forking ? null : sweep.sent;
+  const sweepRequest = forking ? null : sweep.request;
   const sweepCheck = useEstimate(localErrors.length === 0 ? sweepRequest : null, api.estimateSweep);
-  const sent = useMemo(() => sweepRequest && { sweep: sweepRequest }, [sweepRequest]);
-  const submission = useSubmission(spec, fork.sent ?? sent);
+  const alternative = useMemo(() => sweepRequest && { sweep: sweepRequest }, [sweepRequest]);
+  const submission = useSubmission(spec, fork.request ?? alternative);
   const refused = (submission.refusal?.errors ?? []).map(fieldError);
   const errors = [...localErrors, ...(sweepRequest ? specErrors(refused) : refused), ...check.errors].filter(
     ({ field }) => !forking || !isForkField(field),
@@ -93,8 +93,8 @@ export type Alternative = { sweep: SweepRequest } | { fork: ForkRequest };
 type Refusal = ReturnType<typeof serverErrors> & { requested: Spec | Alternative };
 
 /** Send the spec, or another request; the same request sent again after a lost answer has the same key. */
-export function useSubmission(spec: Spec, instead: Alternative | null) {
-  const requested = instead ?? spec;
+export function useSubmission(spec: Spec, alternative: Alternative | null) {
+  const requested = alternative ?? spec;
   const [busy, setBusy] = useState(false);
   const [refusal, setRefusal] = useState<Refusal | null>(null);
   const sent = useRef<{ requested: Spec | Alternative; key: string } | null>(null);
@@ -103,7 +103,7 @@ export function useSubmission(spec: Spec, instead: Alternative | null) {
     if (sent.current?.requested !== requested) sent.current = { requested, key: newIdempotencyKey() };
     setBusy(true);
     try {
-      const page = await submit(spec, instead, sent.current.key);
+      const page = await submit(spec, alternative, sent.current.key);
       discardDraft();
       navigate(page);
     } catch (error) {
@@ -115,9 +115,9 @@ export function useSubmission(spec: Spec, instead: Alternative | null) {
   return { start, busy, refusal: refusal?.requested === requested ? refusal : null };
 }
 
-async function submit(spec: Spec, instead: Alternative | null, key: string): Promise<string> {
-  if (instead && "sweep" in instead) return `/sweeps/${(await api.createSweep(instead.sweep, key)).id}`;
-  const made = instead ? api.forkRun(instead.fork, key) : api.createRun(spec, key);
+async function submit(spec: Spec, request: Alternative | null, key: string): Promise<string> {
+  if (request && "sweep" in request) return `/sweeps/${(await api.createSweep(request.sweep, key)).id}`;
+  const made = request ? api.forkRun(request.fork, key) : api.createRun(spec, key);
   return `/runs/${(await applyResponse("change", made)).id}`;
 }
 

@@ -3,7 +3,7 @@
 import { describe, expect, it, vi } from "vitest";
 import type { Json, Spec } from "../api/types";
 import { addressOf } from "../store/draft";
-import { forkOf, isForkField } from "./ForkCard";
+import { forkRequest, isForkField } from "./ForkCard";
 import { MAX_CREATURES, sourceAddress, load } from "./sources";
 import { EXPERIMENTS, experiment } from "./form/form.fixture";
 import { type Section, formOf } from "./form/fields";
@@ -61,15 +61,15 @@ describe("a merge patch", () => {
     ["names differing fields", { a: { b: 1, c: 2 }, d: 3 }, { a: { b: 1, c: 4 }, d: 3 }, { a: { c: 4 } }],
     ["removes by null", { a: { b: 1, c: 2 }, d: 3 }, { a: { b: 1 } }, { a: { c: null }, d: null }],
     ["replaces lists whole", { a: [1, { b: 2 }] }, { a: [1, { b: 2 }, 3] }, { a: [1, { b: 2 }, 3] }],
-    ["makes values parts", { a: null, b: [1] }, { a: { c: 1 }, b: { d: 2 } }, { a: { c: 1 }, b: { d: 2 } }],
-    ["empties a part", { a: { b: 1 } }, { a: {} }, { a: { b: null } }],
-    ["puts an empty part in place of a value", { a: 1 }, { a: {} }, { a: {} }],
+    ["objects for values", { a: null, b: [1] }, { a: { c: 1 }, b: { d: 2 } }, { a: { c: 1 }, b: { d: 2 } }],
+    ["empties an object", { a: { b: 1 } }, { a: {} }, { a: { b: null } }],
+    ["replaces a value by an empty object", { a: 1 }, { a: {} }, { a: {} }],
   ])("%s", (_, from, to, patch) => {
     expect(mergePatch(from, to)).toEqual(patch);
     expect(patched(from, patch)).toEqual(to);
   });
 
-  it("leads from each preset of a search to each other", () => {
+  it("turns each preset of a search into each other one", () => {
     const specs = EXPERIMENTS.filter(({ experiment }) => /quality|neuro/.test(experiment)).flatMap(
       ({ presets }) => presets.map(({ spec }) => spec),
     );
@@ -85,26 +85,26 @@ describe("a fork", () => {
   const base = { kind: "run" as const, name: RUN, spec: withInitial(SPEC, []) };
   const spec = { ...base.spec, world: { ...(SPEC.world as Spec), viscosity: 0.3 } };
 
-  it("is sent as what differs, with whom it begins from", () => {
+  it("is sent as the changed fields and its initial creatures", () => {
     const all = { ...base, fork: ALL };
-    expect(forkOf({ base: all, spec }, "  thick ")).toEqual({
+    expect(forkRequest({ base: all, spec }, "  thick ")).toEqual({
       fork: { run: RUN, from: { archive: true }, spec: { world: { viscosity: 0.3 } }, name: "thick" },
     });
     const one = { ...base, fork: ONE };
-    expect(forkOf({ base: one, spec: base.spec }, "")).toEqual({
+    expect(forkRequest({ base: one, spec: base.spec }, "")).toEqual({
       fork: { run: RUN, from: { creatures: [SHA] }, spec: {}, name: null },
     });
   });
 
-  it("names the cells, and the generation after which they lived there", () => {
+  it("names the cells and the generation of their elites", () => {
     const some = { ...base, fork: { ...ALL, cells: [2, 3, 9], at: 4 } };
-    expect(forkOf({ base: some, spec: base.spec }, "")).toEqual({
+    expect(forkRequest({ base: some, spec: base.spec }, "")).toEqual({
       fork: { run: RUN, from: { cells: [2, 3, 9] }, generation: 4, spec: {}, name: null },
     });
   });
 
-  it("takes no other names of creatures, typed as JSON or into a field", () => {
-    const sent = forkOf({ base: { ...base, fork: ALL }, spec: withInitial(spec, [SHA]) }, "");
+  it("ignores initial creatures typed into its spec, and has no field for them", () => {
+    const sent = forkRequest({ base: { ...base, fork: ALL }, spec: withInitial(spec, [SHA]) }, "");
     expect(sent).toMatchObject({ fork: { spec: { world: { viscosity: 0.3 } } } });
     const form = formOf(SEARCH.schema);
     const places = messagePaths(form, spec).filter((path) => path !== "search.initial");
@@ -112,10 +112,10 @@ describe("a fork", () => {
     expect(messagePaths(withoutInitial(form), spec)).toEqual(places);
   });
 
-  it("is a run as any other where no run is known, or nobody to begin from", () => {
+  it("is an ordinary run if the run or the initial creatures are unknown", () => {
     const alone = { ...base, fork: { ...ONE, run: null } };
-    expect(forkOf({ base: alone, spec }, "")).toBeNull();
-    expect(forkOf({ base, spec }, "")).toBeNull();
+    expect(forkRequest({ base: alone, spec }, "")).toBeNull();
+    expect(forkRequest({ base, spec }, "")).toBeNull();
   });
 
   it.each([
@@ -130,21 +130,21 @@ describe("a fork", () => {
     expect(addressOf({ ...base, fork })).toEqual([...query]);
   });
 
-  it("shows errors about its creatures and its name itself, others in the form", () => {
+  it("shows errors about its creatures and its name; the form shows the others", () => {
     const own = ["from", "from.region.speed", "search.initial", "name", "generation"];
     const others = ["search.batch", "genome.max_nodes", "control", "search.generations"];
     expect([...own, ...others].filter(isForkField)).toEqual(own);
   });
 });
 
-describe("what an address of a fork names", () => {
-  it("is the run's spec, with how many creatures live there", async () => {
+describe("the address of a fork", () => {
+  it("gives the spec of the run and the number of its elites", async () => {
     const base = await load([["fork", RUN]], EXPERIMENTS);
     expect(base.fork).toEqual(ALL);
     expect((base.spec.search as Spec).initial).toEqual([]);
   });
 
-  it("is whoever lives in the cells, each once, and not later than there are generations", async () => {
+  it("selects the elites of its cells once each, at the newest generation at most", async () => {
     const some = async (...words: [string, string][]) =>
       (await load([["fork", RUN], ...words], EXPERIMENTS)).fork;
     expect(await some(["cells", "0-2,8-9"])).toEqual({ ...ALL, cells: [2, 9], creatures: 1 });
@@ -154,14 +154,14 @@ describe("what an address of a fork names", () => {
     await expect(some(["at", "then"])).rejects.toThrow("“at” must be a generation; got then.");
   });
 
-  it("is of no more creatures than the schema has room for", () => {
+  it("selects at most as many creatures as the schema allows", () => {
     const { fields } = formOf(SEARCH.schema).fields.find(({ path }) => path === "search") as Section;
     expect(JSON.stringify(fields.find(({ path }) => path === "search.initial"))).toContain(
       `${MAX_CREATURES}`,
     );
   });
 
-  it("is the creature's own world where its run was no search", async () => {
+  it("gives the world of the creature if its run was no search", async () => {
     const address = [...new URLSearchParams(`fork=table&creature=${SHA}`)];
     const base = await load(address, EXPERIMENTS);
     expect(base).toMatchObject({ kind: "creature", fork: { run: null, creature: SHA } });

@@ -3,7 +3,7 @@ import type { DrawnBody, Estimate } from "../api/types";
 import { type Draft, addressOf, discardDraft, loadDraft, saveDraft } from "../store/draft";
 import { EXPERIMENTS, experiment } from "./form/form.fixture";
 import { load, baseOfPreset, titleOfBase } from "./sources";
-import { branchesOf, dotsOf, linesOf, tilesOf } from "./BodyDrawing";
+import { branchesOf, dotsOf, linesOf, periodicShifts } from "./BodyDrawing";
 import { timeText, estimateBasis, roughDuration, waitText } from "./Costs";
 
 describe("a draft", () => {
@@ -19,32 +19,32 @@ describe("a draft", () => {
     });
   });
 
-  it("is there again until it is discarded", () => {
+  it("is restored until it is discarded", () => {
     saveDraft(work);
     expect(loadDraft(null)).toEqual(work);
     discardDraft();
     expect(loadDraft(null)).toBeNull();
   });
 
-  it("gives way where the address names something else", () => {
+  it("is ignored if the address names another source", () => {
     saveDraft(work);
     expect(loadDraft([["preset", "gaits/demo"]])).toEqual(work);
     expect(loadDraft([["preset", "gaits/paper"]])).toBeNull();
     expect(loadDraft([["from", "a run"]])).toBeNull();
   });
 
-  it("that cannot be read is none", () => {
+  it("is ignored if it cannot be read", () => {
     stored.set("microcosmos:draft", "{");
     expect(loadDraft(null)).toBeNull();
     stored.set("microcosmos:draft", "{}");
     expect(loadDraft(null)).toBeNull();
   });
 
-  it("has an address where it was begun from something with a name", async () => {
+  it("has an address if its source has a name", async () => {
     expect(addressOf(base)).toEqual([["preset", "gaits/demo"]]);
     expect(addressOf({ kind: "run", name: "a" })).toEqual([["from", "a"]]);
     expect(addressOf({ kind: "pasted", name: "spec.json" })).toBeNull();
-    expect(addressOf({ kind: "run", name: "a", foreign: true })).toBeNull();
+    expect(addressOf({ kind: "run", name: "a", fromDocument: true })).toBeNull();
     expect(await load([["preset", "gaits/demo"]], EXPERIMENTS)).toEqual(base);
     await expect(load([["preset", "gaits/none"]], EXPERIMENTS)).rejects.toThrow(
       /gaits\/paper.*got gaits\/none/,
@@ -65,9 +65,9 @@ describe("costs in words", () => {
     [9000, "2.5 h"],
     [200000, "2 days"],
     [1e9, "more than a year"],
-  ])("has %f s as %s", (seconds, text) => expect(roughDuration(seconds)).toBe(text));
+  ])("write %f s as %s", (seconds, text) => expect(roughDuration(seconds)).toBe(text));
 
-  it("tells what a time rests on, and a range where it is wide", () => {
+  it("name the basis of a time, and a wide range", () => {
     expect(timeText(estimate({}))).toBe("about 11 min");
     expect(timeText(estimate({ seconds: 2 }))).toBe("a few seconds");
     expect(estimateBasis(estimate({}))).toBe("on a CPU, based on 3 earlier runs");
@@ -83,14 +83,14 @@ describe("costs in words", () => {
     [{ runs_ahead: 2 }, /2 queued runs are ahead/],
     [{}, /immediately/],
     [{ idle_workers: 0 }, /when a worker is free/],
-  ])("says what a run waits for with %j", (changes, words) =>
+  ])("name the reason to wait with %j", (changes, words) =>
     expect(waitText(estimate({ queue: { ...queue, ...changes } }))).toMatch(words),
   );
 });
 
 const pairs = (text: string) => text.split(", ").map((pair) => pair.split(" ").map(Number));
 
-describe("a body that is drawn", () => {
+describe("the drawing of a body", () => {
   const fork: DrawnBody = {
     name: "fork",
     nodes: 4,
@@ -99,21 +99,21 @@ describe("a body that is drawn", () => {
     whole: true,
   };
 
-  it("has a line for every edge, a dot at every node, and marks where it branches", () => {
+  it("has a line for every edge, a dot at every node, and a mark at every branch", () => {
     expect(linesOf(fork)).toBe("M0 0L2 0M2 0L4 1M2 0L4 -1");
     expect(dotsOf(fork, 1)).toBe("M0 0h0M2 0h0M4 1h0M4 -1h0");
     expect(branchesOf(fork)).toBe("M2 0h0");
   });
 
-  it("has no dots where they would touch, or where nodes were left out", () => {
+  it("has no dots if they would touch or nodes are left out", () => {
     expect(dotsOf(fork, 2.1)).toBe("");
     expect(dotsOf({ ...fork, nodes: 9 }, 1)).toBe("");
   });
 
-  it("is seen again on the other side of its periodic world", () => {
+  it("is repeated on the other side of its periodic world", () => {
     const within = { ...fork, positions: pairs("1 1, 3 3") };
-    expect(tilesOf(within, 10, 10).map(String)).toEqual(["0,0"]);
+    expect(periodicShifts(within, 10, 10).map(String)).toEqual(["0,0"]);
     const across = { ...fork, positions: pairs("8 1, 12 -1") };
-    expect(tilesOf(across, 10, 10).map(String).sort()).toEqual(["-10,0", "-10,10", "0,0", "0,10"]);
+    expect(periodicShifts(across, 10, 10).map(String).sort()).toEqual(["-10,0", "-10,10", "0,0", "0,10"]);
   });
 });

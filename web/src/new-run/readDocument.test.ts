@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import type { Creature, Json, Spec } from "../api/types";
 import { baseOfDocument, completeSpec, readDocument, readText } from "./sources";
 import { EXPERIMENTS, PRESETS, experiment } from "./form/form.fixture";
-import { completed } from "./form/schema";
+import { withDefaults } from "./form/schema";
 import { schemaErrors } from "./form/document";
 import { formOf } from "./form/fields";
 
@@ -19,7 +19,7 @@ const creature = (genome: Spec, extra: Spec = {}) =>
     ...extra,
   }) as unknown as Creature;
 
-describe("what is pasted or dropped", () => {
+describe("a pasted or dropped document", () => {
   it("is a spec, a run, or a creature", () => {
     const spec = { experiment: "gaits" };
     expect(readText(JSON.stringify(spec))).toEqual({ kind: "spec", spec });
@@ -36,7 +36,7 @@ describe("what is pasted or dropped", () => {
     ['{"spec": {"experiment": 3}}', /“spec.experiment” .* got number 3/],
     ["\u0089HDF", /HDF5/],
     ["\ufffdHDF", /HDF5/],
-  ])("is refused as %j, told what was needed", (text, words) => {
+  ])("is refused as %j with the accepted documents", (text, words) => {
     expect(() => readText(text)).toThrow(words);
     expect(() => readText(text)).toThrow(/a spec, a run from the API, or a creature file/);
   });
@@ -45,8 +45,8 @@ describe("what is pasted or dropped", () => {
 describe("a creature", () => {
   it("gives its world, body, coupling, controller, room and task to a search", () => {
     const file = creature({ encoding: "cppn", control: { period: 50 } }, { measured: { room: [30, 80] } });
-    const found = readDocument(file as unknown as Json);
-    const spec = completeSpec(found.spec, EXPERIMENTS) as { [part: string]: Spec };
+    const read = readDocument(file as unknown as Json);
+    const spec = completeSpec(read.spec, EXPERIMENTS) as { [part: string]: Spec };
     expect(spec.experiment).toBe("quality-diversity");
     expect(spec.world).toMatchObject({ width: 96, height: 64, viscosity: 0.2, fluid: true });
     expect(spec.world).not.toHaveProperty("coupling");
@@ -57,7 +57,7 @@ describe("a creature", () => {
     expect(schemaErrors(formOf(experiment("quality-diversity").schema), spec)).toEqual([]);
   });
 
-  it("whose genes are numbers is searched by what varies numbers", () => {
+  it("with numeric genes is searched with an emitter for numbers", () => {
     const { spec } = readDocument(creature({ encoding: "direct", control: {} }) as unknown as Json);
     const full = completeSpec(spec, EXPERIMENTS) as { search: { emitters: Spec[] }; control: Spec };
     expect(full.control.encoding).toBe("direct");
@@ -73,12 +73,12 @@ describe("a creature", () => {
     expect(completeSpec(fold.spec, EXPERIMENTS).control).toEqual({ encoding: "fold", lengths: "raw" });
   });
 
-  it("is refined where that was selected", () => {
+  it("is refined if refinement is selected", () => {
     const file = creature({ encoding: "cppn", control: {} }) as unknown as Json;
     const base = baseOfDocument(readDocument(file, true), "", EXPERIMENTS);
     expect(base).toMatchObject({
       kind: "creature",
-      foreign: true,
+      fromDocument: true,
       spec: { experiment: "refinement", creature: file },
     });
     expect(base.spec.steps).toBe(20);
@@ -86,23 +86,23 @@ describe("a creature", () => {
 });
 
 describe("a spec", () => {
-  it.each(PRESETS)("of %s needs nothing, and from its name alone gets defaults", (_, one, preset) => {
-    expect(completed(one.schema, preset.spec)).toEqual(preset.spec);
-    const bare = completed(one.schema, { experiment: one.experiment });
+  it.each(PRESETS)("of %s is complete, and its experiment alone gets defaults", (_, one, preset) => {
+    expect(withDefaults(one.schema, preset.spec)).toEqual(preset.spec);
+    const bare = withDefaults(one.schema, { experiment: one.experiment });
     expect(schemaErrors(formOf(one.schema), bare)).toEqual([]);
   });
 
-  it("keeps what it says in parts of which it says not all", () => {
+  it("keeps its values in sections that are incomplete", () => {
     const { schema } = experiment("quality-diversity");
     const given = { experiment: "quality-diversity", body: { nodes: 12 }, world: { steric: { limit: 0.2 } } };
-    const full = completed(schema, given) as { [part: string]: Spec };
+    const full = withDefaults(schema, given) as { [part: string]: Spec };
     expect(full.body).toEqual({ builder: "chain", nodes: 12, spacing: 1, stretch: 1, shear: 1, bend: 1 });
     expect(full.world!.steric).toEqual({ strength: 4, limit: 0.2, smoothing: "gaussian" });
-    const odd = completed(schema, { ...given, surprise: 1, body: { builder: "dragon" } });
+    const odd = withDefaults(schema, { ...given, surprise: 1, body: { builder: "dragon" } });
     expect(odd).toMatchObject({ surprise: 1, body: { builder: "dragon" } });
   });
 
-  it("of an unknown experiment is refused with those that there are", () => {
+  it("of an unknown experiment is refused with the known ones", () => {
     expect(() => completeSpec({ experiment: "astrology" }, EXPERIMENTS)).toThrow(
       /quality-diversity.*got astrology/,
     );

@@ -11,7 +11,7 @@ import {
   FORK_PARAMETERS,
   forkAddress,
 } from "../store/draft";
-import { completed } from "./form/schema";
+import { withDefaults } from "./form/schema";
 import { isSearch, withInitial } from "./initialCreatures";
 import { count, shortId } from "../ui/format";
 import { text } from "./text";
@@ -21,10 +21,10 @@ import { isObject } from "../run/spec/difference";
 export const MAX_CREATURES = 4096;
 
 export function sourceAddress(query: URLSearchParams): Address | null {
-  const word = ["fork", "initial", "from", "creature", "preset"].find((name) => query.get(name));
-  if (!word) return null;
-  const name = query.get(word)!;
-  if (word !== "fork") return [[word, name]];
+  const parameter = ["fork", "initial", "from", "creature", "preset"].find((name) => query.get(name));
+  if (!parameter) return null;
+  const name = query.get(parameter)!;
+  if (parameter !== "fork") return [[parameter, name]];
   return forkAddress(name, Object.fromEntries(FORK_PARAMETERS.map((each) => [each, query.get(each)])));
 }
 
@@ -34,24 +34,24 @@ export function baseOfPreset(preset: Preset, { experiment }: Experiment): Base {
 
 /** Load the source that the address names; throw a readable error if there is none. */
 export async function load(address: Address, experiments: Experiment[]): Promise<Base> {
-  const [word, name] = address[0]!;
-  if (word === "preset") return presetBase(name, experiments);
+  const [parameter, name] = address[0]!;
+  if (parameter === "preset") return presetBase(name, experiments);
   try {
-    if (word === "initial") return await searchFromCreature(name, experiments);
-    if (word === "fork") return await forkOf(name, Object.fromEntries(address), experiments);
-    if (word === "creature") {
+    if (parameter === "initial") return await creatureBase(name, experiments);
+    if (parameter === "fork") return await forkBase(name, Object.fromEntries(address), experiments);
+    if (parameter === "creature") {
       const spec = specOf(await api.readCreature(name));
       return { kind: "creature", name, spec: completeSpec(spec, experiments) };
     }
     const run = await api.readRun(name);
     return { kind: "run", name, spec: completeSpec(run.spec, experiments) };
   } catch (error) {
-    throw new Error(text.badAddress(word, name, messageOf(error)));
+    throw new Error(text.badAddress(parameter, name, messageOf(error)));
   }
 }
 
 /** A search that starts from one creature, in its world. */
-async function searchFromCreature(sha: string, experiments: Experiment[]): Promise<Base> {
+async function creatureBase(sha: string, experiments: Experiment[]): Promise<Base> {
   const spec = completeSpec(specOf(await api.readCreature(sha)), experiments);
   if (!isSearch(spec)) throw new Error(text.notEvolvable);
   const fork = { run: null, creature: sha, cells: null, at: null, creatures: 1 };
@@ -59,32 +59,32 @@ async function searchFromCreature(sha: string, experiments: Experiment[]): Promi
 }
 
 /** The spec of a run, starting from one creature or from elites: all, or those of some cells. */
-async function forkOf(
+async function forkBase(
   id: string,
   { creature, cells, at }: Record<string, string>,
   experiments: Experiment[],
 ): Promise<Base> {
   const run = await api.readRun(id);
   if (!isSearch(run.spec)) {
-    if (creature) return searchFromCreature(creature, experiments);
+    if (creature) return creatureBase(creature, experiments);
     throw new Error(text.noArchive);
   }
   const spec = withInitial(completeSpec(run.spec, experiments), []);
   const one = { run: id, creature: creature ?? null, cells: null, at: null, creatures: 1 };
-  const fork = creature ? one : await elitesOf(id, cells ?? null, generationOf(at));
+  const fork = creature ? one : await forkSource(id, cells ?? null, generationOf(at));
   return { kind: "run", name: id, spec, fork };
 }
 
-async function elitesOf(run: string, cells: string | null, at: number | null): Promise<ForkSource> {
+async function forkSource(run: string, cells: string | null, at: number | null): Promise<ForkSource> {
   const { cell, creature, generation } = await api.readArchive(run, [], { generation: at ?? undefined });
   const selected = cells === null ? () => true : parseCells(cells);
-  const places = [...cell.keys()].filter((i) => selected(cell[i]!));
-  if (places.length === 0) throw new Error(text.noElites);
-  const creatures = new Set(places.map((i) => creature[i]!)).size;
+  const indices = [...cell.keys()].filter((i) => selected(cell[i]!));
+  if (indices.length === 0) throw new Error(text.noElites);
+  const creatures = new Set(indices.map((i) => creature[i]!)).size;
   if (creatures > MAX_CREATURES) {
     throw new Error(text.tooMany(count(MAX_CREATURES), count(creatures)));
   }
-  const named = cells === null ? null : places.map((i) => cell[i]!);
+  const named = cells === null ? null : indices.map((i) => cell[i]!);
   return { run, creature: null, cells: named, at: at === null ? null : generation, creatures };
 }
 
@@ -96,23 +96,23 @@ function generationOf(at: string | undefined): number | null {
 
 function presetBase(name: string, experiments: Experiment[]): Base {
   const all = experiments.flatMap((one) => one.presets.map((preset) => baseOfPreset(preset, one)));
-  const found = all.find((base) => base.name === name);
-  if (found) return found;
+  const base = all.find((one) => one.name === name);
+  if (base) return base;
   const known = all.map((base) => base.name).join(", ");
   throw new Error(text.badPreset(known, name));
 }
 
 export function completeSpec(spec: Spec, experiments: Experiment[]): Spec {
-  const own = experiments.find(({ experiment }) => experiment === spec.experiment);
-  if (own) return completed(own.schema, spec);
+  const experiment = experiments.find((one) => one.experiment === spec.experiment);
+  if (experiment) return withDefaults(experiment.schema, spec);
   const known = experiments.map(({ experiment }) => experiment).join(", ");
   throw new Error(text.badExperiment(known, String(spec.experiment)));
 }
 
-export function baseOfDocument(found: ReadDocument, file: string, experiments: Experiment[]): Base {
-  const given = { spec: completeSpec(found.spec, experiments), foreign: true };
-  if (found.kind === "creature") return { ...given, kind: "creature", name: found.creature.sha256 };
-  if (found.kind === "run" && found.id) return { ...given, kind: "run", name: found.id };
+export function baseOfDocument(read: ReadDocument, file: string, experiments: Experiment[]): Base {
+  const given = { spec: completeSpec(read.spec, experiments), fromDocument: true };
+  if (read.kind === "creature") return { ...given, kind: "creature", name: read.creature.sha256 };
+  if (read.kind === "run" && read.id) return { ...given, kind: "run", name: read.id };
   return { ...given, kind: "pasted", name: file };
 }
 

@@ -36,12 +36,12 @@ function readAll(form: Section, spec: Spec, seeded: boolean, typed: Typed) {
   const total = parsed.reduce((product, { values }) => product * values.length, seeds);
   const many = total > MAX_RUNS ? text.tooManyRuns(MAX_RUNS.toLocaleString("en"), total) : null;
   const problems = { seeds: problem, axes: parsed.map((one) => one.problem), total: many };
-  const right = !problem && !many && parsed.every((one) => one.problem === null);
+  const valid = !problem && !many && parsed.every((one) => one.problem === null);
   const grid = Object.fromEntries(typed.axes.map(({ path }, i) => [path, parsed[i]!.values]));
-  const wanted = right && (total > 1 || typed.axes.length > 0);
+  const isGrid = valid && (total > 1 || typed.axes.length > 0);
   // A single run is no sweep.
-  const sent: SweepRequest | null = wanted ? { spec, seeds, grid, name: typed.name.trim() || null } : null;
-  return { seeded, fields, problems, total, sent };
+  const request: SweepRequest | null = isGrid ? { spec, seeds, grid, name: typed.name.trim() || null } : null;
+  return { seeded, fields, problems, total, request };
 }
 
 /** True if more than one run is asked for, even with invalid values. */
@@ -49,8 +49,8 @@ export const isSweep = ({ seeds, axes }: SweepForm) => axes.length > 0 || seeds.
 
 /** Errors of the server for one field of the grid, or for the seeds. */
 export function errorsAt(errors: readonly FieldError[], path: string): string[] {
-  const mine = errors.filter(({ field }) => field === path || field.startsWith(`${path}[`));
-  return mine.map(({ message }) => message);
+  const matching = errors.filter(({ field }) => field === path || field.startsWith(`${path}[`));
+  return matching.map(({ message }) => message);
 }
 
 export interface Axis {
@@ -79,10 +79,10 @@ export function readValues(field: Leaf, input: string): ParsedValues {
   const values = valuesOf(field, input.trim());
   if (values === null) return { values: [], problem: text.needsList };
   if (values.length === 0) return { values, problem: text.needsValues };
-  const wrong = values.map((value) => valueError(field, value)).find((message) => message !== null);
-  const twice = values.find((value, i) => values.findIndex((one) => same(one, value)) < i);
-  const repeated = twice === undefined ? null : text.repeated(JSON.stringify(twice));
-  return { values, problem: wrong ?? repeated };
+  const error = values.map((value) => valueError(field, value)).find((message) => message !== null);
+  const duplicate = values.find((value, i) => values.findIndex((one) => same(one, value)) < i);
+  const repeated = duplicate === undefined ? null : text.repeated(JSON.stringify(duplicate));
+  return { values, problem: error ?? repeated };
 }
 
 const COMPOUND = ["list", "several", "nested"];
@@ -125,8 +125,8 @@ const same = (one: Json, other: Json) => JSON.stringify(one) === JSON.stringify(
 
 export function readSeeds(input: string): { seeds: number; problem: string | null } {
   const seeds = typed(input);
-  const whole = typeof seeds === "number" && Number.isInteger(seeds);
-  if (whole && seeds >= 1 && seeds <= MAX_RUNS) return { seeds, problem: null };
+  const isWhole = typeof seeds === "number" && Number.isInteger(seeds);
+  if (isWhole && seeds >= 1 && seeds <= MAX_RUNS) return { seeds, problem: null };
   return { seeds: 1, problem: text.needsSeeds(MAX_RUNS.toLocaleString("en")) };
 }
 

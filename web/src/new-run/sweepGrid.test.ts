@@ -28,7 +28,7 @@ const fields = sweepable(FORM, SPEC);
 const field = (path: string): Leaf => fields.find((one) => one.path === path)!;
 
 describe("the fields of a grid", () => {
-  it("are all values of the spec but its seed and what is fixed", () => {
+  it("are all values of the spec except its seed and constants", () => {
     const inside = ["viscosity", "width", "limit", "fluid", "magic"].map((name) => `world.${name}`);
     expect(fields.map(({ path }) => path)).toEqual([...inside, "targets"]);
     expect(nameOf(field("world.viscosity"))).toBe("World: viscosity");
@@ -68,8 +68,8 @@ describe("the fields of a grid", () => {
     ["1001", 1, false],
     ["2.5", 1, false],
     ["", 1, false],
-  ])("read %j as so many seeds", (text, seeds, right) => {
-    const found = readSeeds(text);
-    expect([found.seeds, found.problem === null]).toEqual([seeds, right]);
+  ])("read %j as a number of seeds", (text, seeds, right) => {
+    const read = readSeeds(text);
+    expect([read.seeds, read.problem === null]).toEqual([seeds, right]);
   });
 });

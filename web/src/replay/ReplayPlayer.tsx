@@ -10,10 +10,10 @@ import { useClock, useKeys } from "./clock";
 import { type Field, fieldOf, fieldsOf } from "./fields";
 import { FluidPainter } from "./fluid";
 import { type ReplayView, FieldLegend, SPEEDS, ViewOptions, changeView, replayViewOf } from "./replayView";
-import { type Moment, useMoment } from "./moment";
+import { type Playhead, usePlayhead } from "./playhead";
 import { drawScene, sceneOf } from "./scene";
 import { Tracers } from "./tracers";
-import { IconButton, StepRange } from "./Transport";
+import { IconButton, StepRange } from "./timeControls";
 import { text } from "./text";
 import "./replay.css";
 
@@ -22,35 +22,35 @@ const STEPS_PER_SECOND = 40;
 
 const SPEED_CHOICES = SPEEDS.map((speed) => [String(speed), `${speed} ×`] as const);
 
-/** A replay, with a name if there are several. */
-interface Film {
+/** One replay of the player, with a name if there are several. */
+interface Panel {
   replay: Replay;
   name?: ComponentChildren;
 }
 
 interface Props {
-  films: Film[];
-  moment: Moment;
+  panels: Panel[];
+  playhead: Playhead;
   /** Of the address, which holds the view. */
   query: URLSearchParams;
 }
 
-/** The films have the same length, and share a clock and a colour scale. */
-export function ReplayPlayer({ films, moment, query }: Props) {
+/** The panels have the same length, and share a clock and a colour scale. */
+export function ReplayPlayer({ panels, playhead, query }: Props) {
   const theme = useTheme();
   const view = replayViewOf(query);
-  const replays = useMemo(() => films.map(({ replay }) => replay), [films]);
+  const replays = useMemo(() => panels.map(({ replay }) => replay), [panels]);
   const names = useMemo(() => fieldsOf(replays), [replays]);
   const name = names.includes(view.field!) ? view.field! : names[0]!;
   const field = useMemo(() => fieldOf(name, replays, theme), [replays, name, theme]);
   const player = useRef<HTMLDivElement>(null);
-  const playback = usePlayback(replays[0]!, view.speed, moment, player);
+  const playback = usePlayback(replays[0]!, view.speed, playhead, player);
   return (
     <div ref={player} class="player" role="group" aria-label={text.player} tabIndex={-1}>
       <div class="stages">
-        {films.map(({ replay, name }, i) => (
+        {panels.map(({ replay, name }, i) => (
           <figure key={i}>
-            <Stage {...{ replay, theme, field, view }} time={moment.time} onClick={playback.toggle} />
+            <Stage {...{ replay, theme, field, view }} time={playhead.time} onClick={playback.toggle} />
             {name && <figcaption>{name}</figcaption>}
           </figure>
         ))}
@@ -72,35 +72,35 @@ export function ReplayPlayer({ films, moment, query }: Props) {
 
 type Playback = ReturnType<typeof usePlayback>;
 
-/** Move the moment by the clock and by keys. */
+/** Move the playhead by the clock and by keys. */
 function usePlayback(
   { header: { frames, every } }: Replay,
   speed: number,
-  moment: Moment,
+  playhead: Playhead,
   player: RefObject<HTMLElement | null>,
 ) {
   const last = frames - 1;
-  useMoment(moment);
-  useClock(moment.playing, (seconds) => {
-    moment.move((moment.time + (seconds * speed * STEPS_PER_SECOND) / every) % Math.max(1, last));
+  usePlayhead(playhead);
+  useClock(playhead.playing, (seconds) => {
+    playhead.move((playhead.time + (seconds * speed * STEPS_PER_SECOND) / every) % Math.max(1, last));
   });
-  const toggle = () => moment.play(!moment.playing);
-  const step = (by: 1 | -1) => moment.step(by, last);
+  const toggle = () => playhead.play(!playhead.playing);
+  const step = (by: 1 | -1) => playhead.step(by, last);
   useKeys(player, {
     " ": toggle,
     ",": () => step(-1),
     ".": () => step(1),
     ArrowLeft: () => step(-1),
     ArrowRight: () => step(1),
-    Home: () => moment.scrub(0),
-    End: () => moment.scrub(last),
+    Home: () => playhead.scrub(0),
+    End: () => playhead.scrub(last),
   });
-  return { moment, toggle, step };
+  return { playhead, toggle, step };
 }
 
-function Transport({ moment, toggle, step, header }: Playback & { header: Replay["header"] }) {
+function Transport({ playhead, toggle, step, header }: Playback & { header: Replay["header"] }) {
   const { frames, every, steps } = header;
-  const { playing, time } = moment;
+  const { playing, time } = playhead;
   return (
     <>
       <IconButton icon="back" label={text.frameBack} keys=", ArrowLeft" onClick={() => step(-1)} />
@@ -116,7 +116,7 @@ function Transport({ moment, toggle, step, header }: Playback & { header: Replay
         last={frames - 1}
         keys="Home End"
         title={text.homeEnd}
-        onScrub={(time) => moment.scrub(time)}
+        onScrub={(time) => playhead.scrub(time)}
       />
     </>
   );
@@ -136,7 +136,7 @@ function Stage({ replay, theme, field, view, time, onClick }: StageProps) {
   const tracers = useMemo(() => (tracing ? new Tracers(replay) : null), [replay, tracing]);
   const scene = useMemo(() => {
     const painter = field && new FluidPainter(replay, field);
-    return sceneOf(replay, { painter, follow, theme: field?.ground ?? theme });
+    return sceneOf(replay, { painter, follow, theme: field?.background ?? theme });
   }, [replay, theme, field, follow]);
   return (
     <CanvasStage

@@ -40,7 +40,7 @@ const FIELDS = "select, textarea, [contenteditable], input:not([type=range], [ty
 const BUTTONS = "button, a, summary, input:not([type=range])";
 
 /** True if a player handles a key: the space bar from anywhere on the page, others within it. */
-export function keyAction(key: string, target: Element, player: Element | null): boolean {
+export function handlesKey(key: string, target: Element, player: Element | null): boolean {
   if (target.closest(FIELDS)) return false;
   return key === " " ? !target.closest(BUTTONS) : player?.contains(target) === true;
 }
@@ -52,7 +52,7 @@ export function useKeys(player: RefObject<Element | null>, keys: Record<string, 
     const press = (event: KeyboardEvent) => {
       if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
       const action = latest.current[event.key];
-      if (!action || !keyAction(event.key, event.target as Element, player.current)) return;
+      if (!action || !handlesKey(event.key, event.target as Element, player.current)) return;
       event.preventDefault();
       action();
     };

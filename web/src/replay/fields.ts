@@ -1,7 +1,7 @@
 /** Fields of the fluid: integer planes, units and colours. */
 
 import type { Replay } from "../decode/replay";
-import { type Rgb, diverging, table, viridis } from "../ui/colours";
+import { type Rgb, diverging, lut, viridis } from "../ui/colours";
 import type { Theme } from "../ui/canvas";
 import { text } from "./text";
 
@@ -14,9 +14,9 @@ export interface Field {
   /** Values at the ends of the colour map. */
   range: [number, number];
   colour: (t: number) => Rgb;
-  /** Brightness of the field; ink has the other one. */
-  ground: Theme;
-  /** Levels (width, height) of a frame; level + `zero` is the index in the colour table. */
+  /** Theme of the field as a background; ink has the contrasting colour. */
+  background: Theme;
+  /** Levels (width, height) of a frame; level + `zero` is the index in the colour lut. */
   plane: (replay: Replay, frame: number) => ArrayLike<number>;
   zero: number;
   /** The value of one level in this replay. */
@@ -26,7 +26,7 @@ export interface Field {
 /** The fields that all replays contain. */
 export function fieldsOf(replays: Replay[]): FieldName[] {
   const energy = replays.every(({ header }) => header.energy.frames);
-  const fluid = replays.some((replay) => strongest(replay) > 0);
+  const fluid = replays.some((replay) => vorticityLimit(replay) > 0);
   return [
     ...(fluid ? (["vorticity", "speed"] as const) : []),
     ...(energy ? (["energy"] as const) : []),
@@ -42,14 +42,14 @@ export function fieldOf(name: FieldName, replays: Replay[], theme: Theme): Field
 }
 
 function vorticityOf(replays: Replay[], theme: Theme): Field {
-  const most = Math.max(...replays.map(strongest));
+  const limit = Math.max(...replays.map(vorticityLimit));
   return {
     name: "vorticity",
     title: text.fields.vorticity,
     unit: "1/step",
-    range: [-most, most],
+    range: [-limit, limit],
     colour: (t) => diverging(2 * t - 1, theme),
-    ground: theme,
+    background: theme,
     plane: ({ vorticity, header }, frame) => planeOf(vorticity, header, frame),
     zero: 127,
     quantum: ({ header }) => header.vorticity.scale / 127,
@@ -58,14 +58,14 @@ function vorticityOf(replays: Replay[], theme: Theme): Field {
 
 function speedOf(replays: Replay[]): Field {
   const planes = new Map(replays.map((replay) => [replay, speedPlanes(replay)]));
-  const strongest = replays.map((replay) => strongestSpeed(replay, planes.get(replay)!));
+  const limits = replays.map((replay) => speedLimit(replay, planes.get(replay)!));
   return {
     name: "speed",
     title: text.fields.speed,
     unit: "cells/step",
-    range: [0, Math.max(...strongest)],
+    range: [0, Math.max(...limits)],
     colour: viridis,
-    ground: "dark",
+    background: "dark",
     plane: (replay, frame) => planes.get(replay)!(frame),
     zero: 0,
     quantum: quantumOfSpeed,
@@ -79,7 +79,7 @@ function energyOf(replays: Replay[], theme: Theme): Field {
     unit: text.density,
     range: [0, Math.max(...replays.map(({ header }) => header.energy.scale))],
     colour: (t) => diverging(0.85 * t, theme),
-    ground: theme,
+    background: theme,
     plane: ({ energy, header }, frame) => planeOf(energy, header, Math.min(frame, header.energy.frames - 1)),
     zero: 0,
     quantum: ({ header }) => header.energy.scale / 255,
@@ -111,7 +111,7 @@ function speedPlanes(replay: Replay): (frame: number) => Uint8Array {
 }
 
 /** The 99th percentile of speed, over a few frames. */
-function strongestSpeed(replay: Replay, plane: (frame: number) => Uint8Array): number {
+function speedLimit(replay: Replay, plane: (frame: number) => Uint8Array): number {
   const last = replay.header.frames - 1;
   const samples = [0.25, 0.5, 0.75, 1].map((share) => plane(Math.round(share * last)));
   const values = Uint8Array.from(samples.flatMap((plane) => [...plane])).sort();
@@ -119,7 +119,7 @@ function strongestSpeed(replay: Replay, plane: (frame: number) => Uint8Array): n
 }
 
 /** The 99th percentile of nonzero absolute vorticity; 0 if there is none. */
-export function strongest({ vorticity, header }: Replay): number {
+export function vorticityLimit({ vorticity, header }: Replay): number {
   const counts = new Array<number>(129).fill(0);
   for (const value of vorticity) counts[Math.abs(value)]!++;
   const moving = vorticity.length - counts[0]!;
@@ -138,5 +138,5 @@ export function coloursOf(field: Field, replay: Replay): Uint32Array {
   const quantum = field.quantum(replay);
   const count = field.zero ? 2 * field.zero + 1 : 256;
   const at = (level: number) => ((level - field.zero) * quantum - low) / (high - low);
-  return table(field.colour, count, [at(0), at(count - 1)]);
+  return lut(field.colour, count, [at(0), at(count - 1)]);
 }

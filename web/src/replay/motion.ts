@@ -32,31 +32,31 @@ export function meanOf(points: Point[]): Point {
 
 /** The body's edges as long chains of nodes, which end at tips and branches. */
 export function chainsOf(edges: readonly (readonly [number, number])[]): number[][] {
-  const around = new Map<number, Set<number>>();
-  const touch = (node: number) => around.get(node) ?? around.set(node, new Set()).get(node)!;
+  const neighbours = new Map<number, Set<number>>();
+  const neighboursOf = (node: number) => neighbours.get(node) ?? neighbours.set(node, new Set()).get(node)!;
   for (const [a, b] of edges) {
-    touch(a).add(b);
-    touch(b).add(a);
+    neighboursOf(a).add(b);
+    neighboursOf(b).add(a);
   }
-  const through = new Set([...around].filter(([, to]) => to.size === 2).map(([node]) => node));
+  const through = new Set([...neighbours].filter(([, to]) => to.size === 2).map(([node]) => node));
   const used = new Set<string>();
   const chains: number[][] = [];
-  const walk = (from: number) => {
-    for (const first of around.get(from)!) {
+  const trace = (from: number) => {
+    for (const first of neighbours.get(from)!) {
       const chain = [from];
       let [last, next] = [from, first];
       while (!used.has(key(last, next))) {
         used.add(key(last, next));
         chain.push(next);
         if (!through.has(next)) break;
-        const onward = [...around.get(next)!].find((node) => node !== last)!;
+        const onward = [...neighbours.get(next)!].find((node) => node !== last)!;
         [last, next] = [next, onward];
       }
       if (chain.length > 1) chains.push(chain);
     }
   };
-  for (const node of around.keys()) if (!through.has(node)) walk(node);
-  for (const node of through) walk(node); // Rings have no tip.
+  for (const node of neighbours.keys()) if (!through.has(node)) trace(node);
+  for (const node of through) trace(node); // Rings have no tip.
   return chains;
 }
 

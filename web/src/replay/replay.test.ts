@@ -1,10 +1,10 @@
 import { describe, expect, it } from "vitest";
 import { type Replay, decodeReplay } from "../decode/replay";
 import { replayBytes } from "../decode/replay.fixture";
-import { keyAction } from "./clock";
+import { handlesKey } from "./clock";
 import { coloursOf, fieldOf, fieldsOf } from "./fields";
 import { replayViewOf, queryOf } from "./replayView";
-import { Moment } from "./moment";
+import { Playhead } from "./playhead";
 import { Tracers, velocityAt } from "./tracers";
 
 const replay = decodeReplay(replayBytes());
@@ -66,18 +66,18 @@ describe("tracers", () => {
   });
 });
 
-describe("the moment of a replay", () => {
+describe("the playhead of a replay", () => {
   it("steps to the next whole frame and stops there", () => {
-    const moment = new Moment(true);
-    moment.move(2.4);
-    moment.step(1, 10);
-    expect([moment.time, moment.playing]).toEqual([3, false]);
-    moment.step(-1, 10);
-    expect(moment.time).toBe(2);
-    moment.scrub(9.5);
-    moment.step(1, 10);
-    moment.step(1, 10);
-    expect(moment.time).toBe(10);
+    const playhead = new Playhead(true);
+    playhead.move(2.4);
+    playhead.step(1, 10);
+    expect([playhead.time, playhead.playing]).toEqual([3, false]);
+    playhead.step(-1, 10);
+    expect(playhead.time).toBe(2);
+    playhead.scrub(9.5);
+    playhead.step(1, 10);
+    playhead.step(1, 10);
+    expect(playhead.time).toBe(10);
   });
 
   it("has its view in the address", () => {
@@ -102,16 +102,16 @@ describe("the keys of a replay", () => {
   it("work within the player; the space bar works everywhere", () => {
     const [inside, outside] = [element([], [player]), element([])];
     for (const key of [",", ".", "Home", "End", "ArrowLeft", "ArrowRight"]) {
-      expect([keyAction(key, inside, player), keyAction(key, outside, player)]).toEqual([true, false]);
+      expect([handlesKey(key, inside, player), handlesKey(key, outside, player)]).toEqual([true, false]);
     }
-    expect(keyAction(" ", outside, player)).toBe(true);
-    expect(keyAction("Home", inside, null)).toBe(false);
+    expect(handlesKey(" ", outside, player)).toBe(true);
+    expect(handlesKey("Home", inside, null)).toBe(false);
   });
 
   it("are left to elements that use them", () => {
     const button = element(["button"], [player]);
-    expect([keyAction(" ", button, player), keyAction("Home", button, player)]).toEqual([false, true]);
+    expect([handlesKey(" ", button, player), handlesKey("Home", button, player)]).toEqual([false, true]);
     const choice = element(["select"], [player]);
-    expect([keyAction(" ", choice, player), keyAction("End", choice, player)]).toEqual([false, false]);
+    expect([handlesKey(" ", choice, player), handlesKey("End", choice, player)]).toEqual([false, false]);
   });
 });

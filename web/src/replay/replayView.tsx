@@ -32,12 +32,12 @@ export function replayViewOf(query: URLSearchParams): ReplayView {
 
 /** Changes of the address for changes of the view; defaults have no parameter. */
 export function queryOf(change: Partial<ReplayView>): Record<string, string | null> {
-  const words: Record<string, string | null> = {};
-  if (change.field !== undefined) words.field = change.field;
-  if (change.tracers !== undefined) words.tracers = change.tracers ? "" : null;
-  if (change.follow !== undefined) words.camera = change.follow ? null : "still";
-  if (change.speed !== undefined) words.speed = change.speed === 1 ? null : String(change.speed);
-  return words;
+  const parameters: Record<string, string | null> = {};
+  if (change.field !== undefined) parameters.field = change.field;
+  if (change.tracers !== undefined) parameters.tracers = change.tracers ? "" : null;
+  if (change.follow !== undefined) parameters.camera = change.follow ? null : "still";
+  if (change.speed !== undefined) parameters.speed = change.speed === 1 ? null : String(change.speed);
+  return parameters;
 }
 
 export const changeView = (change: Partial<ReplayView>) => setQuery(queryOf(change));

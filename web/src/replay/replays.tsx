@@ -1,4 +1,4 @@
-/** Replays, which workers render on request. */
+/** Load replays, which workers render on request. */
 
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
@@ -19,12 +19,12 @@ const cache = new Map<string, Replay>();
 
 interface State {
   requested: string;
-  found: ReadonlyMap<string, Replay>;
+  loaded: ReadonlyMap<string, Replay>;
   note: string | null;
   error: string | null;
 }
 
-const NOTHING: Omit<State, "requested"> = { found: new Map(), note: null, error: null };
+const NOTHING: Omit<State, "requested"> = { loaded: new Map(), note: null, error: null };
 
 /** Replays of creatures; requests are repeated until they are rendered. */
 export function useReplays(shas: string[]): Rendered {
@@ -34,10 +34,10 @@ export function useReplays(shas: string[]): Rendered {
     const change = (part: Partial<State>) => setState((old) => ({ ...old, ...part }));
     const add = (sha: string, replay: Replay) => {
       setNewest(cache, sha, replay);
-      setState((old) => ({ ...old, found: new Map(old.found).set(sha, replay) }));
+      setState((old) => ({ ...old, loaded: new Map(old.loaded).set(sha, replay) }));
     };
     setState({ ...NOTHING, requested });
-    const ends = shas.map((sha) => {
+    const stops = shas.map((sha) => {
       const known = cache.get(sha);
       if (known) return add(sha, known);
       return poll(async () => decoded(await api.readReplay(sha)), {
@@ -46,10 +46,10 @@ export function useReplays(shas: string[]): Rendered {
         error: (error) => change({ error }),
       });
     });
-    return () => ends.forEach((end) => end?.());
+    return () => stops.forEach((stop) => stop?.());
   }, [requested]);
-  const { found, note, error } = state.requested === requested ? state : NOTHING;
-  const replays = shas.flatMap((sha) => found.get(sha) ?? []);
+  const { loaded, note, error } = state.requested === requested ? state : NOTHING;
+  const replays = shas.flatMap((sha) => loaded.get(sha) ?? []);
   return { replays: replays.length === shas.length ? replays : null, note, error };
 }
 

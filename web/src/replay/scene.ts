@@ -1,4 +1,4 @@
-/** Draw one moment of a replay: flow, path, body, and the copies of the body in other tiles. */
+/** Draw a replay at one time: flow, path, body, and the copies of the body in neighbouring periods. */
 
 import type { Replay } from "../decode/replay";
 import { type Size, type Theme, prepare } from "../ui/canvas";
@@ -49,7 +49,7 @@ export function drawScene(canvas: HTMLCanvasElement, size: Size, scene: Scene, t
   if (scene.tracers) {
     drawTracers(context, scene.tracers, { time, camera, scale, colour: INK[scene.theme].body });
   }
-  for (const shift of tiles(mean, camera, [width, height])) {
+  for (const shift of periodicShifts(mean, camera, [width, height])) {
     const place = (point: Point) => screen([point[0] + shift[0], point[1] + shift[1]]);
     drawPath(context, [...scene.path.slice(0, Math.floor(time) + 1), mean].map(place), scene.theme);
     const lines = scene.chains.map((chain) => chain.map((node) => place(points[node]!)));
@@ -58,7 +58,7 @@ export function drawScene(canvas: HTMLCanvasElement, size: Size, scene: Scene, t
 }
 
 /** Shifts by whole worlds that bring the body near the view, and their neighbours. */
-function tiles(mean: Point, camera: Point, [width, height]: [number, number]): Point[] {
+function periodicShifts(mean: Point, camera: Point, [width, height]: [number, number]): Point[] {
   const i = Math.round((camera[0] - mean[0]) / width);
   const j = Math.round((camera[1] - mean[1]) / height);
   return [-1, 0, 1].flatMap((di) => [-1, 0, 1].map((dj): Point => [(i + di) * width, (j + dj) * height]));

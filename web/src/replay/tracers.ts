@@ -22,7 +22,7 @@ export class Tracers {
   constructor(readonly replay: Replay) {
     const [width, height] = replay.header.size;
     this.count = Math.min(MAX_COUNT, Math.round((width * height) / CELLS_PER_PARTICLE));
-    this.tracks = [spread(this.count, width, height)];
+    this.tracks = [initialPositions(this.count, width, height)];
   }
 
   /** Positions at a frame. */
@@ -54,7 +54,7 @@ export class Tracers {
 }
 
 /** Quasirandom positions: the additive recurrence of the plastic number (M. Roberts, 2018). */
-function spread(count: number, width: number, height: number): Float32Array {
+function initialPositions(count: number, width: number, height: number): Float32Array {
   const plastic = 1.324717957244746;
   return Float32Array.from({ length: 2 * count }, (_, i) => {
     const share = (0.5 + ((i >> 1) + 1) / plastic ** (1 + (i & 1))) % 1;
@@ -98,7 +98,7 @@ export function drawTracers(context: CanvasRenderingContext2D, tracers: Tracers,
   const first = Math.max(0, now - TRAIL_FRAMES);
   const share = view.time - now;
   const frames = [...Array(now - first + 1).keys()].map((k) => tracers.at(first + k));
-  if (share > 0) frames.push(mixed(tracers.at(now), tracers.at(now + 1), share));
+  if (share > 0) frames.push(interpolated(tracers.at(now), tracers.at(now + 1), share));
   const shifts = shiftsOf(frames.at(-1)!, tracers, view);
   context.strokeStyle = context.fillStyle = view.colour;
   context.lineWidth = 1;
@@ -147,6 +147,6 @@ function screen(frame: Float32Array, i: number, shifts: Float32Array, { scale }:
   return [frame[i]! * scale + shifts[i]!, shifts[i + 1]! - frame[i + 1]! * scale];
 }
 
-function mixed(a: Float32Array, b: Float32Array, t: number): Float32Array {
+function interpolated(a: Float32Array, b: Float32Array, t: number): Float32Array {
   return a.map((value, i) => (1 - t) * value + t * b[i]!);
 }

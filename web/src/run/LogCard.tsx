@@ -16,14 +16,14 @@ type Level = LogEntry["level"];
 const LEVELS = Object.keys(text.levels) as Level[];
 
 export function LogCard({ run, query }: { run: Run; query: URLSearchParams }) {
-  const { value: entries, error, earlier } = useLog(run);
+  const { value: entries, error, loadEarlier } = useLog(run);
   const level = LEVELS.find((name) => name === query.get("level")) ?? "info";
   const shown = atLeast(entries ?? [], level);
-  const note = shown.length > 0 && text.entries(count(shown.length), earlier !== null);
+  const note = shown.length > 0 && text.entries(count(shown.length), loadEarlier !== null);
   const actions = (
     <>
-      {earlier && (
-        <button class="slim" onClick={earlier}>
+      {loadEarlier && (
+        <button class="slim" onClick={loadEarlier}>
           {text.showEarlier}
         </button>
       )}

@@ -8,18 +8,18 @@ import { text } from "./text";
 interface NameProps {
   of: { name: string | null };
   title: string;
-  fixed: boolean;
+  readOnly: boolean;
   onName: (name: string | null) => void;
   children: ComponentChildren;
 }
 
-export function NameField({ of, title, fixed, onName, children }: NameProps) {
+export function NameField({ of, title, readOnly, onName, children }: NameProps) {
   const { open, setOpen, button } = useDisclosure();
   const done = (name: string | null) => {
     setOpen(false);
     if (name !== null && name !== (of.name ?? "") && name !== title) onName(name || null);
   };
-  if (fixed) return <>{children}</>;
+  if (readOnly) return <>{children}</>;
   if (open) return <InlineText label={text.nameOf(title)} value={title} limit={200} onDone={done} />;
   return (
     <>

@@ -60,7 +60,7 @@ function Header({ run, title }: { run: Run; title: string }) {
       <NameField
         of={run}
         title={title}
-        fixed={!!refusal || !!run.deleted_at}
+        readOnly={!!refusal || !!run.deleted_at}
         onName={(name) => void editRun(run.id, { name })}
       >
         <h1>

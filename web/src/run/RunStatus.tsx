@@ -43,8 +43,8 @@ interface CommandProps {
 
 export function CommandButtons({ run, title, name }: CommandProps) {
   const { id, status, requested_state } = run;
-  const alive = ["queued", "running", "paused"].includes(status);
-  if (!alive || requested_state === "cancelled") return null;
+  const active = ["queued", "running", "paused"].includes(status);
+  if (!active || requested_state === "cancelled") return null;
   const command = status === "paused" ? "resume" : requested_state === "paused" ? null : "pause";
   return (
     <span class="actions">

@@ -27,7 +27,7 @@ export function RunRow({ id, experiments, selected, knownTags, onSelect }: Props
   const run = useStore((state) => state.runs.get(id)!);
   const title = titleOf(run, experiments);
   const name = `${title} ${shortId(run.id)}`;
-  const fixed = useRefusal(run) !== null || run.deleted_at !== null;
+  const readOnly = useRefusal(run) !== null || run.deleted_at !== null;
   const time = timeOf(run);
   const [figureName, figure] = keyFigureOf(run);
   return (
@@ -38,11 +38,11 @@ export function RunRow({ id, experiments, selected, knownTags, onSelect }: Props
         )}
       </td>
       <th scope="row">
-        <RowTitle {...{ run, title, name, fixed }} />
+        <RowTitle {...{ run, title, name, readOnly }} />
         <RowNotes run={run} />
         <span class="labels row">
-          <TagList {...{ run, name, fixed }} known={knownTags} />
-          <NoteField {...{ run, name, fixed }} />
+          <TagList {...{ run, name, readOnly }} known={knownTags} />
+          <NoteField {...{ run, name, readOnly }} />
         </span>
       </th>
       <td data-label={text.state}>
@@ -75,13 +75,13 @@ interface PartProps {
   title: string;
   /** The title with the run's id. */
   name: string;
-  fixed: boolean;
+  readOnly: boolean;
 }
 
-function RowTitle({ run, title, name, fixed }: PartProps) {
+function RowTitle({ run, title, name, readOnly }: PartProps) {
   return (
     <>
-      <NameField of={run} {...{ title, fixed }} onName={(name) => void editRun(run.id, { name })}>
+      <NameField of={run} {...{ title, readOnly }} onName={(name) => void editRun(run.id, { name })}>
         <a class="run-name" href={`/runs/${run.id}`}>
           {title} <code>{shortId(run.id)}</code>
         </a>
@@ -111,7 +111,7 @@ function RowNotes({ run }: { run: Run }) {
   );
 }
 
-function RowActions({ run, title, name }: Omit<PartProps, "fixed">) {
+function RowActions({ run, title, name }: Omit<PartProps, "readOnly">) {
   const mayCreate = useRefusal() === null;
   const mayChange = useRefusal(run) === null;
   return (
@@ -140,12 +140,12 @@ function lastLine(traceback: string): string {
 interface LabelProps {
   run: Run;
   name: string;
-  fixed: boolean;
+  readOnly: boolean;
 }
 
 const MAX_TAGS = 20;
 
-export function TagList({ run, name, fixed, known }: LabelProps & { known: string }) {
+export function TagList({ run, name, readOnly, known }: LabelProps & { known: string }) {
   const { open, setOpen, button } = useDisclosure();
   const done = (tag: string | null) => {
     setOpen(false);
@@ -158,7 +158,7 @@ export function TagList({ run, name, fixed, known }: LabelProps & { known: strin
           <button title={text.runsTagged(tag)} onClick={() => setQuery({ tag })}>
             {tag}
           </button>
-          {!fixed && (
+          {!readOnly && (
             <button aria-label={text.removeTag(tag, name)} onClick={() => removeTag(run, tag)}>
               ✕
             </button>
@@ -166,7 +166,7 @@ export function TagList({ run, name, fixed, known }: LabelProps & { known: strin
         </span>
       ))}
       {open && <InlineText label={text.newTag(name)} value="" limit={50} list={known} onDone={done} />}
-      {!open && !fixed && run.tags.length < MAX_TAGS && (
+      {!open && !readOnly && run.tags.length < MAX_TAGS && (
         <button
           ref={button}
           class="plain small-button"
@@ -180,7 +180,7 @@ export function TagList({ run, name, fixed, known }: LabelProps & { known: strin
   );
 }
 
-export function NoteField({ run, name, fixed }: LabelProps) {
+export function NoteField({ run, name, readOnly }: LabelProps) {
   const { open, setOpen, button } = useDisclosure();
   const done = (note: string | null) => {
     setOpen(false);
@@ -188,7 +188,7 @@ export function NoteField({ run, name, fixed }: LabelProps) {
     if (note) void editRun(run.id, { note });
     else removeNote(run);
   };
-  if (fixed) return run.note ? <span class="note quiet small">{run.note}</span> : null;
+  if (readOnly) return run.note ? <span class="note quiet small">{run.note}</span> : null;
   if (open) {
     return <InlineText label={text.noteOn(name)} value={run.note ?? ""} limit={10_000} long onDone={done} />;
   }

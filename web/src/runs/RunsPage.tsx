@@ -5,7 +5,7 @@ import { MAX_LINES } from "../charts/lineStyle";
 import type { Experiment, RunQuery } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { useExperiments } from "../store/fetch";
-import { moreRuns, useRunList, useTags } from "../store/runList";
+import { loadMoreRuns, useRunList, useTags } from "../store/runList";
 import { useStore } from "../store/store";
 import { useSweeps } from "../store/sweeps";
 import { showFailure } from "../store/toasts";
@@ -211,7 +211,7 @@ function LoadMore({ query }: { query: RunQuery }) {
   const [busy, setBusy] = useState(false);
   const load = async () => {
     setBusy(true);
-    await moreRuns(query).catch(showFailure);
+    await loadMoreRuns(query).catch(showFailure);
     setBusy(false);
   };
   return (

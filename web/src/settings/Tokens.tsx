@@ -4,7 +4,7 @@ import { useState } from "preact/hooks";
 import { createToken, readTokens, revokeToken } from "../api/client";
 import type { Token, CreatedToken, TokenScope } from "../api/types";
 import { useFetched } from "../store/fetch";
-import { attempt, showToast } from "../store/toasts";
+import { orShowError, showToast } from "../store/toasts";
 import { ConfirmButton } from "../ui/ConfirmButton";
 import { Card } from "../ui/Page";
 import { Select } from "../ui/Select";
@@ -130,7 +130,7 @@ function TokenTable({ tokens, own, onRevoked }: TableProps) {
 }
 
 async function revoke({ id, name }: Token, onRevoked: () => void): Promise<void> {
-  if ((await attempt(revokeToken(id))) === null) return;
+  if ((await orShowError(revokeToken(id))) === null) return;
   showToast({ kind: "note", text: text.revoked(name) });
   onRevoked();
 }

@@ -22,7 +22,7 @@ describe("a token", () => {
     [{ expires_at: "2026-07-01T12:00:00Z" }, "Until 1 Jul 2026", false],
     [{ expires_at: "2026-06-15T11:59:00Z" }, "Expired on 15 Jun 2026", true],
     [{ revoked_at: "2026-05-02T12:00:00Z" }, "Revoked on 2 May 2026", true],
-  ])("stands as %o says", (changes, status, expired) => {
+  ])("with %o has its status", (changes, status, expired) => {
     expect(tokenStatus(token(changes), NOW)).toBe(status);
     expect(isExpired(token(changes), NOW)).toBe(expired);
   });
@@ -33,10 +33,10 @@ describe("a token", () => {
   });
 });
 
-describe("an answer that nobody is signed in", () => {
+describe("the event of a missing sign-in", () => {
   afterEach(() => vi.unstubAllGlobals());
 
-  it("is dispatched once, whichever request got it", async () => {
+  it("is dispatched once", async () => {
     vi.resetModules();
     const dispatched = vi.fn();
     vi.stubGlobal("dispatchEvent", dispatched);

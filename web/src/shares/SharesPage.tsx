@@ -4,7 +4,7 @@ import * as api from "../api/client";
 import type { Share } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { usePages } from "../store/paging";
-import { attempt, showToast } from "../store/toasts";
+import { orShowError, showToast } from "../store/toasts";
 import { dateTime } from "../ui/format";
 import { ConfirmButton } from "../ui/ConfirmButton";
 import { Empty, Page } from "../ui/Page";
@@ -78,7 +78,7 @@ function Actions({ share, onChange }: { share: Share; onChange: (share: Share) =
 }
 
 async function revoke(share: Share, onChange: (share: Share) => void): Promise<void> {
-  const revoked = await attempt(api.revoke(share.slug));
+  const revoked = await orShowError(api.revoke(share.slug));
   if (!revoked) return;
   onChange(revoked);
   showToast({ kind: "note", text: text.revoked(share.title) });

@@ -63,7 +63,7 @@ describe("the heading of a share", () => {
     [share("Creature 0123abcd"), false, ["Creature 0123abcd", null]],
     [share("Eel"), false, ["Eel", "0123abcd"]],
     [share("Archive", "run"), true, ["Creature", "0123abcd"]],
-  ])("says the id once", (shared, inside, heading) => {
+  ])("contains the id once", (shared, inside, heading) => {
     expect(headingOf(shared, "0123abcd".padEnd(64, "0"), inside)).toEqual(heading);
   });
 });

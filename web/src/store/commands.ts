@@ -4,11 +4,11 @@ import * as api from "../api/client";
 import type { Run, RunChange } from "../api/types";
 import { applyEdit } from "./reconcile";
 import { applyResponse, currentState, update } from "./store";
-import { attempt, delayWithUndo, offerUndo } from "./toasts";
+import { orShowError, delayWithUndo, offerUndo } from "./toasts";
 import { text } from "./text";
 
 /** Apply the answer of the server, or show its error; return true on success. */
-const apply = async (request: Promise<Run>) => (await attempt(applyResponse("change", request))) !== null;
+const apply = async (request: Promise<Run>) => (await orShowError(applyResponse("change", request))) !== null;
 
 export const sendCommand = (id: string, verb: api.RunCommand) => apply(api.commandRun(id, verb));
 

@@ -30,8 +30,8 @@ export function appendCurves(curves: Curves, event: GenerationEvent): Curves {
   const last = curves.generation.at(-1);
   if (last !== undefined && event.generation <= last) return curves;
   const full = curves.generation.length >= MAX_POINTS;
-  const kept = full ? columns((name) => curves[name].filter((_, i) => i % 2 === 0)) : curves;
-  const next = columns((name) => [...kept[name], event[name]]);
+  const thinned = full ? columns((name) => curves[name].filter((_, i) => i % 2 === 0)) : curves;
+  const next = columns((name) => [...thinned[name], event[name]]);
   const numbers = mapValues(numbersOf(event.summary), (value): Column => [value]);
   const summary = concatenate(curves.summary, curves.generation.length, numbers, 1);
   return { ...next, summary: full ? thinOut(summary) : summary };
@@ -58,17 +58,17 @@ export function cutCurves(curves: Curves, generation: number): Curves {
 }
 
 function filterRows(curves: Curves, keep: (i: number) => boolean): Curves {
-  const kept = (column: Column) => column.filter((_, i) => keep(i));
-  return { ...columns((name) => kept(curves[name])), summary: mapValues(curves.summary, kept) };
+  const filtered = (column: Column) => column.filter((_, i) => keep(i));
+  return { ...columns((name) => filtered(curves[name])), summary: mapValues(curves.summary, filtered) };
 }
 
 /** Every second value and the last one: the newest value, or the sum of counts, since the one before. */
 function thinOut(summary: NumberColumns): NumberColumns {
   const columns = Object.entries(summary).map(([name, column]) => {
     const last = column.length - 1;
-    const kept = [...Array.from({ length: Math.ceil(last / 2) }, (_, k) => 2 * k), last];
+    const indices = [...Array.from({ length: Math.ceil(last / 2) }, (_, k) => 2 * k), last];
     const join = name.startsWith(DIVERGED) ? sumOf : newestOf;
-    return [name, kept.map((i, k) => join(column.slice((kept[k - 1] ?? -1) + 1, i + 1)))];
+    return [name, indices.map((i, k) => join(column.slice((indices[k - 1] ?? -1) + 1, i + 1)))];
   });
   return Object.fromEntries(columns);
 }

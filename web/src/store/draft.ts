@@ -7,8 +7,8 @@ export interface Base {
   /** `experiment/name` of a preset, id of a run, hash of a creature, or name of a file. */
   name: string;
   spec: Spec;
-  /** True for a file; the server may not know its name. */
-  foreign?: boolean;
+  /** True for a document; the server may not know its name. */
+  fromDocument?: boolean;
   /** The initial creatures, in place of random ones. */
   fork?: ForkSource;
 }
@@ -25,8 +25,8 @@ export interface ForkSource {
   creatures: number;
 }
 
-/** The parameters of an address that name the origin of a draft. */
-export type Address = (readonly [word: string, value: string])[];
+/** The parameters of an address that name the source of a draft. */
+export type Address = (readonly [parameter: string, value: string])[];
 
 export interface Draft {
   base: Base;
@@ -36,10 +36,10 @@ export interface Draft {
 const KEY = "microcosmos:draft";
 const QUERIES = { preset: "preset", run: "from", creature: "creature", pasted: null };
 
-export function addressOf({ kind, name, foreign, fork }: Omit<Base, "spec">): Address | null {
+export function addressOf({ kind, name, fromDocument, fork }: Omit<Base, "spec">): Address | null {
   if (fork) return addressOfFork(fork);
   const parameter = QUERIES[kind];
-  return parameter && !foreign ? [[parameter, name]] : null;
+  return parameter && !fromDocument ? [[parameter, name]] : null;
 }
 
 function addressOfFork({ run, creature, cells, at }: ForkSource): Address {
@@ -75,11 +75,11 @@ export function discardDraft(): void {
   sessionStorage.removeItem(KEY);
 }
 
-/** The stored draft, if its origin is the wanted one or none is wanted. */
-export function loadDraft(wanted: Address | null): Draft | null {
+/** The stored draft, if its source is the requested one or none is requested. */
+export function loadDraft(requested: Address | null): Draft | null {
   const draft = storedDraft();
-  if (!draft || !wanted) return draft;
-  return String(addressOf(draft.base)) === String(wanted) ? draft : null;
+  if (!draft || !requested) return draft;
+  return String(addressOf(draft.base)) === String(requested) ? draft : null;
 }
 
 function storedDraft(): Draft | null {
@@ -92,20 +92,20 @@ function storedDraft(): Draft | null {
 }
 
 export function formatCells(cells: Iterable<number>): string {
-  const runs: [first: number, last: number][] = [];
+  const ranges: [first: number, last: number][] = [];
   for (const cell of [...cells].sort((a, b) => a - b)) {
-    const run = runs.at(-1);
-    if (run && cell <= run[1] + 1) run[1] = cell;
-    else runs.push([cell, cell]);
+    const range = ranges.at(-1);
+    if (range && cell <= range[1] + 1) range[1] = cell;
+    else ranges.push([cell, cell]);
   }
-  return runs.map(([first, last]) => (first === last ? first : `${first}-${last}`)).join();
+  return ranges.map(([first, last]) => (first === last ? first : `${first}-${last}`)).join();
 }
 
 /** A test for the cells in a text; malformed ranges are ignored. */
 export function parseCells(text: string): (cell: number) => boolean {
-  const runs = text.split(",").flatMap((run): [number, number][] => {
-    const [, first, last] = /^(\d+)(?:-(\d+))?$/.exec(run) ?? [];
+  const ranges = text.split(",").flatMap((range): [number, number][] => {
+    const [, first, last] = /^(\d+)(?:-(\d+))?$/.exec(range) ?? [];
     return first === undefined ? [] : [[Number(first), Number(last ?? first)]];
   });
-  return (cell) => runs.some(([first, last]) => first <= cell && cell <= last);
+  return (cell) => ranges.some(([first, last]) => first <= cell && cell <= last);
 }

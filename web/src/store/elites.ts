@@ -8,7 +8,7 @@ export interface Elite {
   generation: number;
   creature: string;
   /** The generation whose event reported it. */
-  seenAt: number;
+  reportedAt: number;
 }
 
 export type Elites = ReadonlyMap<number, Elite>;
@@ -30,17 +30,17 @@ export function mergeElites(archive: Archive, known: Elites): Elites {
     next.set(cell, eliteAt(archive, i, archive.elite_generation[i]!));
   });
   for (const [cell, elite] of known) {
-    if (elite.seenAt > archive.generation) next.set(cell, elite);
+    if (elite.reportedAt > archive.generation) next.set(cell, elite);
   }
   return next;
 }
 
 export function truncateElites(elites: Elites, generation: number): Elites {
-  return new Map([...elites].filter(([, elite]) => elite.seenAt <= generation));
+  return new Map([...elites].filter(([, elite]) => elite.reportedAt <= generation));
 }
 
 /** A function from a generation to its elites; it is fastest if generations increase. */
-export function walkThrough(history: History): (generation: number) => Elites {
+export function elitesByGeneration(history: History): (generation: number) => Elites {
   const { elite_generation: entered } = history;
   let elites: Elites = new Map();
   let [next, shown] = [0, 0];
@@ -55,13 +55,13 @@ export function walkThrough(history: History): (generation: number) => Elites {
   };
 }
 
-function eliteAt(columns: ArchiveColumns, i: number, seenAt: number): Elite {
+function eliteAt(columns: ArchiveColumns, i: number, reportedAt: number): Elite {
   return {
     fitness: columns.fitness[i]!,
     descriptors: columns.descriptors[i]!,
     generation: columns.elite_generation[i]!,
     creature: columns.creature[i]!,
-    seenAt,
+    reportedAt,
   };
 }
 

@@ -30,12 +30,12 @@ export interface Loaded<T> {
 export function useFetched<T>(fetch: () => Promise<T>, inputs: unknown[]): Loaded<T> {
   const [loaded, setLoaded] = useState<Loaded<T>>({ value: null, error: null });
   useEffect(() => {
-    let wanted = true;
+    let current = true;
     fetch()
-      .then((value) => wanted && setLoaded({ value, error: null }))
-      .catch((error) => wanted && setLoaded((old) => ({ ...old, error: messageOf(error) })));
+      .then((value) => current && setLoaded({ value, error: null }))
+      .catch((error) => current && setLoaded((old) => ({ ...old, error: messageOf(error) })));
     return () => {
-      wanted = false;
+      current = false;
     };
   }, inputs);
   return loaded;
@@ -91,22 +91,23 @@ async function readDetail(id: string, withArchive: boolean): Promise<true> {
 export function useMeasures(id: string, names: string[], elites: Elites): Measures {
   const epoch = useEpoch(id);
   const joined = names.join(",");
-  const present = useThrottled(joined ? elites : null);
-  const of = `${id} ${epoch} ${joined}`;
-  const known = useRef<{ of: string; after?: number; measures: Measures }>({ of, measures: NO_MEASURES });
+  const throttled = useThrottled(joined ? elites : null);
+  const key = `${id} ${epoch} ${joined}`;
+  const known = useRef<{ key: string; after?: number; measures: Measures }>({ key, measures: NONE });
   const { value } = useFetched(async () => {
-    if (!joined) return NO_MEASURES;
-    const { after, measures } = known.current.of === of ? known.current : { measures: NO_MEASURES };
+    if (!joined) return NONE;
+    const { after, measures } = known.current.key === key ? known.current : { measures: NONE };
     const archive = await api.readArchive(id, joined.split(","), { after });
-    known.current = { of, after: archive.generation, measures: mergeMeasures(measures, measuresOf(archive)) };
-    return known.current.measures;
-  }, [of, present]);
-  return value ?? NO_MEASURES;
+    const merged = mergeMeasures(measures, measuresOf(archive));
+    known.current = { key, after: archive.generation, measures: merged };
+    return merged;
+  }, [key, throttled]);
+  return value ?? NONE;
 }
 
 type Measures = ReadonlyMap<string, ReadonlyMap<string, number>>;
 
-const NO_MEASURES: Measures = new Map();
+const NONE: Measures = new Map();
 
 function mergeMeasures(known: Measures, added: Measures): Measures {
   const column = ([name, values]: [string, ReadonlyMap<string, number>]) =>
@@ -129,18 +130,18 @@ interface Past {
   measures: Measures;
 }
 
-/** The history of an archive, if a past generation is wanted; read again for a newer one. */
+/** The history of an archive, if a past generation is shown; read again for a newer one. */
 export function useHistory(id: string, names: string[], at: number | null): Loaded<Past | null> {
   const epoch = useEpoch(id);
   const [retries, setRetries] = useState(0);
   const joined = names.join(",");
-  const wanted = at !== null;
+  const isPast = at !== null;
   const loaded = useFetched(async () => {
-    if (!wanted) return null;
+    if (!isPast) return null;
     const history = await api.readHistory(id, joined ? joined.split(",") : []);
     return { history, measures: measuresOf(history) };
-  }, [id, epoch, joined, wanted, retries]);
-  const outdated = wanted && loaded.value !== null && at > loaded.value.history.generation;
+  }, [id, epoch, joined, isPast, retries]);
+  const outdated = isPast && loaded.value !== null && at > loaded.value.history.generation;
   useEffect(() => {
     if (outdated) setRetries((count) => count + 1);
   }, [outdated]);
@@ -148,8 +149,8 @@ export function useHistory(id: string, names: string[], at: number | null): Load
 }
 
 /** Centroids of the cells of a CVT; null before the first checkpoint, when the map shows even bins. */
-export const useCentroids = (id: string, wanted: boolean) =>
-  usePolled(wanted ? () => api.readCentroids(id) : null, [id, wanted]).value;
+export const useCentroids = (id: string, enabled: boolean) =>
+  usePolled(enabled ? () => api.readCentroids(id) : null, [id, enabled]).value;
 
 /** The results table of a run, updated by events. */
 export function useResults(id: string): Loaded<Results> {
@@ -182,8 +183,8 @@ export function useWorkers() {
 }
 
 /** Update reasons to wait, rates and remaining times, which change without events. */
-export function useRunRefresh(id: string, wanted: boolean): void {
-  const tick = useTick(REFRESH_MS, wanted);
+export function useRunRefresh(id: string, enabled: boolean): void {
+  const tick = useTick(REFRESH_MS, enabled);
   useEffect(() => {
     if (tick === 0) return;
     applyResponse("response", api.readRun(id)).catch(() => {}); // The next request may succeed.

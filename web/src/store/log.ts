@@ -13,7 +13,7 @@ const PAGE = 500;
 
 interface LoadedLog extends Loaded<LogEntry[]> {
   /** Read all older entries; null if there are none. */
-  earlier: (() => void) | null;
+  loadEarlier: (() => void) | null;
 }
 
 /** Read when the state of the run changes, and regularly while it continues. */
@@ -27,12 +27,12 @@ export function useLog({ id, ...run }: Run): LoadedLog {
     known.current = await extendLog(id, known.current, readAll);
     return known.current;
   }, [id, epoch, status, requested_state, attempt, warning, error, device, slow, readAll]);
-  const earlier = () => {
+  const loadEarlier = () => {
     known.current = [];
     setReadAll(true);
   };
-  const more = !readAll && (loaded.value?.length ?? 0) >= PAGE;
-  return { ...loaded, earlier: more ? earlier : null };
+  const hasEarlier = !readAll && (loaded.value?.length ?? 0) >= PAGE;
+  return { ...loaded, loadEarlier: hasEarlier ? loadEarlier : null };
 }
 
 /** Add the newest entries to known ones; without known ones, read all or the last page. */

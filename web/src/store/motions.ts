@@ -10,6 +10,8 @@ import { poll } from "./polling";
 const MAX_REQUESTS = 8;
 /** A gallery requests nothing while it is scrolled. */
 const DEBOUNCE_MS = 150;
+/** Motions that stay when the gallery closes. */
+const MAX_HIDDEN = 100;
 
 const cache = new Map<string, Motion>();
 /** Functions that stop the requests of creatures. */
@@ -38,7 +40,10 @@ export function useMotions(shas: readonly string[]): ReadonlyMap<string, Motion>
 function request(shas: readonly string[]): void {
   for (const sha of shas) {
     const motion = cache.get(sha);
-    if (motion) setNewest(cache, sha, motion);
+    if (motion) {
+      cache.delete(sha);
+      cache.set(sha, motion); // Now the newest.
+    }
   }
   pending = shas.filter((sha) => !cache.has(sha) && !requests.has(sha));
   startRequests();
@@ -71,4 +76,5 @@ function stop(): void {
   pending = [];
   for (const end of requests.values()) end();
   requests.clear();
+  for (const sha of [...cache.keys()].slice(0, -MAX_HIDDEN)) cache.delete(sha);
 }

@@ -37,10 +37,10 @@ export function useListener<E extends Event>(type: string, listener: (event: E) 
 }
 
 /** A counter that increases in every interval while the tab is visible. */
-export function useTick(interval: number, wanted = true): number {
+export function useTick(interval: number, enabled = true): number {
   const [tick, setTick] = useState(0);
   useEffect(() => {
-    if (!wanted) return;
+    if (!enabled) return;
     const count = () => document.visibilityState === "visible" && setTick((old) => old + 1);
     const timer = setInterval(count, interval);
     document.addEventListener("visibilitychange", count);
@@ -48,7 +48,7 @@ export function useTick(interval: number, wanted = true): number {
       clearInterval(timer);
       document.removeEventListener("visibilitychange", count);
     };
-  }, [interval, wanted]);
+  }, [interval, enabled]);
   return tick;
 }
 
@@ -64,7 +64,7 @@ interface PollHandlers<T> {
 /** Repeat `ask` until it returns a value or fails permanently; return a function that stops it. */
 export function poll<T>(ask: () => Promise<T | null>, handlers: PollHandlers<T>): () => void {
   let timer: ReturnType<typeof setTimeout> | undefined;
-  let wanted = true;
+  let active = true;
   const repeat = () => {
     timer = setTimeout(request, POLL_MS);
   };
@@ -80,12 +80,12 @@ export function poll<T>(ask: () => Promise<T | null>, handlers: PollHandlers<T>)
   };
   const request = () =>
     ask().then(
-      (value) => wanted && answer(value),
-      (reason) => wanted && fail(reason),
+      (value) => active && answer(value),
+      (reason) => active && fail(reason),
     );
   void request();
   return () => {
-    wanted = false;
+    active = false;
     clearTimeout(timer);
   };
 }
@@ -100,7 +100,7 @@ interface Polled<T> {
 
 const NOTHING = { value: null, answered: false, note: null, error: null };
 
-/** The value of a resource that is polled; `ask` is null while it is not wanted. */
+/** The value of a resource that is polled; `ask` is null while it is not polled. */
 export function usePolled<T>(ask: (() => Promise<T | null>) | null, inputs: unknown[]): Polled<T> {
   const [state, setState] = useState<Polled<T>>(NOTHING);
   useEffect(() => {

@@ -4,13 +4,13 @@ import type { Run, RunChange, RunEvent } from "../api/types";
 import type { State } from "./state";
 
 /** Count an event of a run; answers that were requested before it are late. */
-export function noteEvent(state: State, id: string): State {
+export function countEvent(state: State, id: string): State {
   const eventCount = state.eventCount + 1;
   return { ...state, eventCount, lastEvent: new Map(state.lastEvent).set(id, eventCount) };
 }
 
 export function applyEvent(state: State, event: RunEvent): State {
-  const next = noteEvent(state, event.id);
+  const next = countEvent(state, event.id);
   const known = state.runs.get(event.id);
   const spec = known?.spec ?? event.spec;
   if (!spec) return { ...next, eventsWithoutSpec: new Map(state.eventsWithoutSpec).set(event.id, event) };
@@ -25,22 +25,22 @@ const LIST_FIELDS = ["status", "name", "tags", "note", "deleted_at"] as const;
 
 const isDifferent = (one: unknown, other: unknown) => JSON.stringify(one) !== JSON.stringify(other);
 
-/** Apply answers that were requested after `sent` events. */
-export function applyResponses(state: State, answers: readonly Run[], sent: number): State {
+/** Apply answers that were requested at the event count `sentAt`. */
+export function applyResponses(state: State, answers: readonly Run[], sentAt: number): State {
   const [runs, lastEvent] = [new Map(state.runs), new Map(state.lastEvent)];
   const eventsWithoutSpec = new Map(state.eventsWithoutSpec);
   for (const answer of answers) {
-    runs.set(answer.id, newerOf(state, answer, sent));
-    lastEvent.set(answer.id, Math.max(sent, lastEvent.get(answer.id) ?? 0));
+    runs.set(answer.id, newerOf(state, answer, sentAt));
+    lastEvent.set(answer.id, Math.max(sentAt, lastEvent.get(answer.id) ?? 0));
     eventsWithoutSpec.delete(answer.id);
   }
   return { ...state, runs, lastEvent, eventsWithoutSpec };
 }
 
 /** The newer state of a run; its spec stays the same object. */
-function newerOf(state: State, answer: Run, sent: number): Run {
+function newerOf(state: State, answer: Run, sentAt: number): Run {
   const known = state.runs.get(answer.id);
-  const late = sent < Math.max(state.lastEvent.get(answer.id) ?? 0, state.trustedSince);
+  const late = sentAt < Math.max(state.lastEvent.get(answer.id) ?? 0, state.lastReset);
   if (!late) return { ...answer, spec: known?.spec ?? answer.spec };
   if (!known) return { ...answer, ...state.eventsWithoutSpec.get(answer.id), spec: answer.spec };
   // Events carry no rates: those of a late answer are the newest.
@@ -49,8 +49,8 @@ function newerOf(state: State, answer: Run, sent: number): Run {
 }
 
 /** Apply the answer to a change, after which lists may have other members. */
-export function applyChange(state: State, answer: Run, sent: number): State {
-  const next = noteEvent(applyResponses(state, [answer], sent), answer.id);
+export function applyChange(state: State, answer: Run, sentAt: number): State {
+  const next = countEvent(applyResponses(state, [answer], sentAt), answer.id);
   return { ...next, listVersion: state.listVersion + 1 };
 }
 
@@ -58,5 +58,5 @@ export function applyChange(state: State, answer: Run, sent: number): State {
 export function applyEdit(state: State, id: string, change: RunChange): State {
   const run = state.runs.get(id);
   if (!run) return state;
-  return { ...noteEvent(state, id), runs: new Map(state.runs).set(id, { ...run, ...change }) };
+  return { ...countEvent(state, id), runs: new Map(state.runs).set(id, { ...run, ...change }) };
 }

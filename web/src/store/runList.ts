@@ -20,13 +20,13 @@ const useListVersion = () => useThrottled(useStore((state) => `${state.epoch} ${
 export function useRunList(filters: RunQuery): Loaded<true> {
   const query = JSON.stringify(filters);
   const version = useListVersion();
-  const waits = useStore((state) => state.listed.some((id) => changesSilently(state.runs.get(id))));
-  const moves = !STABLE_ORDERS.includes((filters.sort ?? "created").replace("-", ""));
-  const tick = useTick(REFRESH_MS, waits || moves);
+  const hasActiveRuns = useStore((state) => state.listed.some((id) => changesSilently(state.runs.get(id))));
+  const orderChanges = !STABLE_ORDERS.includes((filters.sort ?? "created").replace("-", ""));
+  const tick = useTick(REFRESH_MS, hasActiveRuns || orderChanges);
   const { value, error } = useFetched(async () => {
-    const { query: before, listed, eventCount: sent } = currentState();
+    const { query: before, listed, eventCount: sentAt } = currentState();
     const known = before === query ? listed.length : 0;
-    return { query, known, sent, page: await readUpTo(filters, known) };
+    return { query, known, sentAt, page: await readUpTo(filters, known) };
   }, [query, version, tick]);
   useEffect(() => {
     if (value) update((state) => withList(state, value));
@@ -48,10 +48,10 @@ export async function readUpTo(query: RunQuery, known: number): Promise<RunPage>
   return { ...rest, items: [...page.items, ...rest.items] };
 }
 
-export async function moreRuns(query: RunQuery): Promise<void> {
-  const { next: cursor, eventCount: sent } = currentState();
+export async function loadMoreRuns(query: RunQuery): Promise<void> {
+  const { next: cursor, eventCount: sentAt } = currentState();
   const page = await api.readRuns({ ...query, limit: PAGE, ...(cursor && { cursor }) });
-  update((state) => withMore(state, { query: JSON.stringify(query), page, cursor, sent }));
+  update((state) => withMore(state, { query: JSON.stringify(query), page, cursor, sentAt }));
 }
 
 export function useTags(): string[] {

@@ -4,7 +4,7 @@ import type * as wire from "../api/types";
 import * as details from "./detail";
 import { withPoint } from "./curves";
 import type { Toast } from "./toasts";
-import { applyEvent, applyResponses, noteEvent } from "./reconcile";
+import { applyEvent, applyResponses, countEvent } from "./reconcile";
 
 export type Connection = "connecting" | "live" | "lost";
 
@@ -26,7 +26,7 @@ export interface State {
   /** Counts events; the counts at the last event of each run and at the last reset. */
   eventCount: number;
   lastEvent: ReadonlyMap<string, number>;
-  trustedSince: number;
+  lastReset: number;
   /** The last event of each run whose spec is unknown. */
   eventsWithoutSpec: ReadonlyMap<string, wire.RunEvent>;
   /** Increases if the members or the order of the list may have changed. */
@@ -50,7 +50,7 @@ export const INITIAL_STATE: State = {
   next: null,
   eventCount: 0,
   lastEvent: new Map(),
-  trustedSince: 0,
+  lastReset: 0,
   eventsWithoutSpec: new Map(),
   listVersion: 0,
   epoch: 0,
@@ -80,13 +80,13 @@ function raiseSweepVersion(state: State, sweep?: string | null): State {
 interface Answer {
   query: string;
   page: wire.RunPage;
-  /** The number of events before the request. */
-  sent: number;
+  /** The event count at the request. */
+  sentAt: number;
 }
 
 /** The start of a list, requested when `known` of its runs were loaded; no event changes which runs a list has. */
-export function withList(state: State, { query, page, known, sent }: Answer & { known: number }): State {
-  const next = applyResponses(state, page.items, sent);
+export function withList(state: State, { query, page, known, sentAt }: Answer & { known: number }): State {
+  const next = applyResponses(state, page.items, sentAt);
   const extended = query === state.query && state.listed.length > known;
   // More pages were loaded since the request.
   if (extended) return { ...next, listVersion: state.listVersion + 1 };
@@ -95,14 +95,14 @@ export function withList(state: State, { query, page, known, sent }: Answer & { 
 
 export function withMore(
   state: State,
-  { query, page, cursor, sent }: Answer & { cursor: string | null },
+  { query, page, cursor, sentAt }: Answer & { cursor: string | null },
 ): State {
   if (query !== state.query) return state;
   const ids = page.items.map((run) => run.id);
   const listed = [...state.listed.filter((id) => !ids.includes(id)), ...ids];
   // If the list ended elsewhere by now, runs may be missing.
   const listVersion = state.listVersion + Number(cursor !== state.next);
-  return { ...applyResponses(state, page.items, sent), listVersion, listed, next: page.next };
+  return { ...applyResponses(state, page.items, sentAt), listVersion, listed, next: page.next };
 }
 
 /** Add or remove a viewer of a run; its detail exists while it has one. */
@@ -167,7 +167,7 @@ export function withoutRun(state: State, { run: id }: { run: string }): State {
   const runs = new Map(state.runs);
   runs.delete(id);
   return {
-    ...raiseSweepVersion(noteEvent(state, id), state.runs.get(id)?.sweep),
+    ...raiseSweepVersion(countEvent(state, id), state.runs.get(id)?.sweep),
     runs,
     listed: state.listed.filter((listed) => listed !== id),
     epochs: raised(state.epochs, id),
@@ -181,7 +181,7 @@ export function reset(state: State): State {
   return {
     ...state,
     eventCount,
-    trustedSince: eventCount,
+    lastReset: eventCount,
     eventsWithoutSpec: new Map(),
     details: new Map([...state.details].map(([run, detail]) => [run, details.withoutRecent(detail)])),
     epoch: state.epoch + 1,
@@ -190,7 +190,7 @@ export function reset(state: State): State {
 
 /** The state with figures of a run from an event. */
 const withRun = (state: State, run: wire.Run): State => ({
-  ...noteEvent(state, run.id),
+  ...countEvent(state, run.id),
   runs: new Map(state.runs).set(run.id, run),
 });
 

@@ -71,13 +71,13 @@ describe("events", () => {
 
   it("keep pages that were loaded while the list was read again", () => {
     const extended = more(first, "b");
-    const again = withList(extended, { query: "{}", page: page("a"), known: 1, sent: 0 });
+    const again = withList(extended, { query: "{}", page: page("a"), known: 1, sentAt: 0 });
     expect([again.listed, again.listVersion]).toEqual([["a", "b"], extended.listVersion + 1]);
   });
 
   it("read a list again that was replaced while more of it was loaded", () => {
     const next = { ...page("b"), next: "other place" };
-    const replaced = withList(first, { query: "{}", page: next, known: 1, sent: 0 });
+    const replaced = withList(first, { query: "{}", page: next, known: 1, sentAt: 0 });
     const extended = more(replaced, "c");
     expect([extended.listed, extended.listVersion]).toEqual([["b", "c"], replaced.listVersion + 1]);
   });
@@ -85,10 +85,10 @@ describe("events", () => {
 
 const page = (id: string) => ({ items: [{ ...RUN, id }], next: null });
 
-const first = withList(INITIAL_STATE, { query: "{}", page: page("a"), known: 0, sent: 0 });
+const first = withList(INITIAL_STATE, { query: "{}", page: page("a"), known: 0, sentAt: 0 });
 
 const more = (state: State, id: string, query = "{}") =>
-  withMore(state, { query, page: page(id), cursor: null, sent: 0 });
+  withMore(state, { query, page: page(id), cursor: null, sentAt: 0 });
 
 describe("an answer", () => {
   const { spec: _, ...withoutSpec } = { ...RUN, status: "finished", generation: 10 } as Run;
@@ -96,10 +96,10 @@ describe("an answer", () => {
   const late = { ...RUN, status: "running", generation: 5, name: "old" } as Run;
   const known = applyResponses(INITIAL_STATE, [late], 0);
   const list = { query: "", page: { items: [late], next: null } };
-  const answers: [string, (state: State, sent: number) => State][] = [
-    ["to a read of a run", (state, sent) => applyResponses(state, [late], sent)],
-    ["to a read of a list", (state, sent) => withList(state, { ...list, known: 0, sent })],
-    ["to a read of more", (state, sent) => withMore(state, { ...list, cursor: null, sent })],
+  const answers: [string, (state: State, sentAt: number) => State][] = [
+    ["to a read of a run", (state, sentAt) => applyResponses(state, [late], sentAt)],
+    ["to a read of a list", (state, sentAt) => withList(state, { ...list, known: 0, sentAt })],
+    ["to a read of more", (state, sentAt) => withMore(state, { ...list, cursor: null, sentAt })],
   ];
 
   it.each(answers)("%s does not overwrite a later event", (_, answer) => {
@@ -146,12 +146,12 @@ describe("an edit of a run", () => {
 
   it("outlives lists that were read before the server confirmed it", () => {
     const list = { query: "", page: { items: [{ ...RUN, name: "old" }], next: null }, known: 0 };
-    expect(withList(edited, { ...list, sent: known.eventCount }).runs.get("a")!.name).toBe("new");
-    expect(withList(done, { ...list, sent: edited.eventCount }).runs.get("a")!.name).toBe("new");
+    expect(withList(edited, { ...list, sentAt: known.eventCount }).runs.get("a")!.name).toBe("new");
+    expect(withList(done, { ...list, sentAt: edited.eventCount }).runs.get("a")!.name).toBe("new");
   });
 });
 
-describe("a run that somebody moves to the bin", () => {
+describe("a run that is moved to the bin", () => {
   it("raises the version of the list", () => {
     const known = withRunEvent(INITIAL_STATE, RUN);
     const binned = withRunEvent(known, { ...RUN, deleted_at: "2026-01-03T00:00:00Z" });
@@ -162,7 +162,7 @@ describe("a run that somebody moves to the bin", () => {
 
 describe("a purged run", () => {
   const page = { items: [RUN, { ...RUN, id: "b" }], next: null };
-  const listed = withList(INITIAL_STATE, { query: "", page, known: 0, sent: 0 });
+  const listed = withList(INITIAL_STATE, { query: "", page, known: 0, sentAt: 0 });
   const gone = withoutRun(listed, { run: "a" });
 
   it("leaves the list at once, which is read again", () => {

@@ -17,9 +17,9 @@ export function update(change: (state: State) => State): void {
 
 /** Store the answer to a read or to a change of a run. */
 export async function applyResponse(type: "response" | "change", request: Promise<Run>): Promise<Run> {
-  const sent = state.eventCount;
+  const sentAt = state.eventCount;
   const run = await request;
-  update((now) => (type === "change" ? applyChange(now, run, sent) : applyResponses(now, [run], sent)));
+  update((now) => (type === "change" ? applyChange(now, run, sentAt) : applyResponses(now, [run], sentAt)));
   return run;
 }
 

@@ -27,7 +27,7 @@ let source: EventSource | null = null;
 let reconnecting: Timer | undefined;
 let closing: Timer | undefined;
 
-/** Open the stream; wait until it is open, has failed or takes long, because opening it fetches all data again. */
+/** Open the stream; resolve when it is open, has failed or takes long, because opening it fetches all data again. */
 export function connect(): Promise<unknown> {
   document.addEventListener("visibilitychange", followVisibility);
   const opened = open();
@@ -48,11 +48,11 @@ function followVisibility(): void {
 function open(): EventSource {
   const opened = new EventSource(EVENTS_URL);
   source = opened;
-  let fresh = true;
+  let isFirst = true;
   opened.onopen = () => {
     setConnection("live");
-    if (fresh) update(changes.reset);
-    fresh = false;
+    if (isFirst) update(changes.reset);
+    isFirst = false;
   };
   opened.onerror = () => {
     setConnection("lost");

@@ -5,16 +5,16 @@ import type { Sweep, SweepChanged, SweepCurves, SweepPage, SweepSummary } from "
 import { type Loaded, useFetched } from "./fetch";
 import { useStore } from "./store";
 import { useThrottled } from "./polling";
-import { attempt, delayWithUndo, showToast, offerUndo } from "./toasts";
+import { orShowError, delayWithUndo, showToast, offerUndo } from "./toasts";
 import { text } from "./text";
 
 /** Points per curve, as many as a screen resolves. */
 const POINTS = 300;
 
-export function useSweeps(limit: number, wanted: boolean): Loaded<SweepPage | null> {
-  const version = useStore((state) => (wanted ? `${state.epoch} ${totalOf(state.sweepVersions)}` : ""));
+export function useSweeps(limit: number, enabled: boolean): Loaded<SweepPage | null> {
+  const version = useStore((state) => (enabled ? `${state.epoch} ${totalOf(state.sweepVersions)}` : ""));
   const throttled = useThrottled(version);
-  return useFetched(async () => (wanted ? await api.readSweeps(limit) : null), [throttled, limit, wanted]);
+  return useFetched(async () => (enabled ? await api.readSweeps(limit) : null), [throttled, limit, enabled]);
 }
 
 const totalOf = (counts: ReadonlyMap<string, number>) =>
@@ -26,33 +26,33 @@ export interface SweepDetail {
   curves: SweepCurves | null;
 }
 
-export function useSweep(id: string, each: boolean): Loaded<SweepDetail> {
+export function useSweep(id: string, withRuns: boolean): Loaded<SweepDetail> {
   const throttled = useThrottled(useStore((state) => `${state.epoch} ${state.sweepVersions.get(id) ?? 0}`));
   return useFetched(async () => {
     const [sweep, summary, curves] = await Promise.all([
       api.readSweep(id),
       api.readSweepSummary(id, POINTS),
-      each ? api.readSweepCurves(id, POINTS) : null,
+      withRuns ? api.readSweepCurves(id, POINTS) : null,
     ]);
     return { sweep, summary, curves };
-  }, [id, throttled, each]);
+  }, [id, throttled, withRuns]);
 }
 
 const outcome = ({ changed, skipped }: SweepChanged, done: string) =>
   text.outcome(text.runs(changed.length), done, skipped.length > 0 ? text.runs(skipped.length) : null);
 
 export async function sendSweepCommand(id: string, verb: api.RunCommand): Promise<void> {
-  const answer = await attempt(api.commandSweep(id, verb));
+  const answer = await orShowError(api.commandSweep(id, verb));
   if (answer) showToast({ kind: "note", text: outcome(answer, text.outcomes[verb]) });
 }
 
-export const renameSweep = (id: string, name: string | null) => attempt(api.renameSweep(id, name));
+export const renameSweep = (id: string, name: string | null) => orShowError(api.renameSweep(id, name));
 
-export const restoreSweep = (id: string) => attempt(api.restoreSweep(id));
+export const restoreSweep = (id: string) => orShowError(api.restoreSweep(id));
 
 /** Move all runs to the bin. */
 export async function removeSweep(id: string): Promise<void> {
-  const answer = await attempt(api.deleteSweep(id));
+  const answer = await orShowError(api.deleteSweep(id));
   if (answer) offerUndo(outcome(answer, text.deleted), () => void restoreSweep(id));
 }
 

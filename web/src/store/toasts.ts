@@ -31,7 +31,7 @@ export function showFailure(error: unknown): void {
 }
 
 /** Await a request; after an error, show it and return null. */
-export async function attempt<T>(request: Promise<T>): Promise<T | null> {
+export async function orShowError<T>(request: Promise<T>): Promise<T | null> {
   try {
     return await request;
   } catch (error) {

@@ -98,12 +98,12 @@ function CaseCurves({ shown, query, curves }: CurvesProps) {
 function Head({ sweep }: { sweep: Sweep }) {
   const experiments = useExperiments().value ?? [];
   const title = sweepTitle(sweep);
-  const fixed = useRefusal(sweep) !== null || sweep.total === 0;
+  const readOnly = useRefusal(sweep) !== null || sweep.total === 0;
   const kind = experiments.find(({ experiment }) => experiment === sweep.experiment)?.title;
   return (
     <>
       <header class="page-head">
-        <NameField of={sweep} title={title} fixed={fixed} onName={(name) => void renameSweep(sweep.id, name)}>
+        <NameField of={sweep} {...{ title, readOnly }} onName={(name) => void renameSweep(sweep.id, name)}>
           <h1>{title}</h1>
         </NameField>
         <span class="spring" />

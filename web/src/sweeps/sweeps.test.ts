@@ -1,4 +1,4 @@
-/** Values of a grid as they are typed, and what is drawn of a sweep. */
+/** Plots and names of the cases of a sweep. */
 
 import { describe, expect, it } from "vitest";
 import type { CaseSummary } from "../api/types";
@@ -36,7 +36,7 @@ describe("the bands of a sweep", () => {
     expect(plot!.series.filter(({ edge }) => !edge).map(({ name }) => name)).toEqual(["case 0", "case 1"]);
   });
 
-  it("have their own runs behind them where those are asked for", () => {
+  it("have the runs of their case behind them on request", () => {
     const line = { qd_score: [4, 5], coverage: [null, null], best: [null, null] };
     const lines = [
       { run: "a", ...line },

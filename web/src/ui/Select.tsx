@@ -1,10 +1,10 @@
 /** Inputs for choices: a list, a row of buttons, a checkbox. */
 
-type Option<T extends string = string> = readonly (readonly [name: T, title: string])[];
+type OptionList<T extends string = string> = readonly (readonly [name: T, title: string])[];
 
 interface Props {
   title: string;
-  choices: Option;
+  choices: OptionList;
   value: string;
   onChange: (name: string) => void;
 }
@@ -20,7 +20,7 @@ export function Select({ title, choices, value, onChange }: Props) {
   );
 }
 
-export const Options = ({ of }: { of: Option }) => (
+export const Options = ({ of }: { of: OptionList }) => (
   <>
     {of.map(([name, words]) => (
       <option key={name} value={name}>
@@ -47,7 +47,7 @@ export function Check({ title, on, onChange }: CheckProps) {
 
 interface SegmentsProps<T extends string> {
   label: string;
-  choices: Option<T>;
+  choices: OptionList<T>;
   value: T;
   onSelect: (name: T) => void;
 }

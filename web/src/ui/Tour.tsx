@@ -10,7 +10,7 @@ export interface Step {
   title: string;
   text: string;
   /** Name of the part that the step explains, which is highlighted. */
-  about: string;
+  part: string;
   /** CSS selector of that part, which is scrolled into view. */
   selector: string;
 }

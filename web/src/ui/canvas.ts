@@ -36,14 +36,14 @@ export function prepare(canvas: HTMLCanvasElement, size: Size): CanvasRenderingC
   return context;
 }
 
-const query = () => window.matchMedia("(prefers-color-scheme: dark)");
+const darkScheme = () => window.matchMedia("(prefers-color-scheme: dark)");
 
 export type Theme = "light" | "dark";
 
 export function useTheme(): Theme {
-  const [dark, setDark] = useState(() => query().matches);
+  const [dark, setDark] = useState(() => darkScheme().matches);
   useEffect(() => {
-    const media = query();
+    const media = darkScheme();
     const listener = () => setDark(media.matches);
     media.addEventListener("change", listener);
     return () => media.removeEventListener("change", listener);

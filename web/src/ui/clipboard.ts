@@ -1,10 +1,10 @@
 /** Copy text to the clipboard, with a note on success or failure. */
 
-import { attempt, showToast } from "../store/toasts";
+import { orShowError, showToast } from "../store/toasts";
 import { text } from "./text";
 
 export async function copyText(content: string, note: string): Promise<void> {
-  const copied = await attempt(writeClipboard(content).then(() => true));
+  const copied = await orShowError(writeClipboard(content).then(() => true));
   if (copied) showToast({ kind: "note", text: note });
 }
 

@@ -53,17 +53,15 @@ function between(anchors: Rgb[], t: number): Rgb {
   const place = Math.min(1, Math.max(0, t)) * (anchors.length - 1);
   const i = Math.min(anchors.length - 2, Math.floor(place));
   const [a, b] = [anchors[i]!, anchors[i + 1]!];
-  return a.map((value, channel) => {
-    return Math.round(value + (b[channel]! - value) * (place - i));
-  }) as Rgb;
+  return a.map((value, channel) => Math.round(value + (b[channel]! - value) * (place - i))) as Rgb;
 }
 
 export function css([red, green, blue]: Rgb): string {
   return `rgb(${red} ${green} ${blue})`;
 }
 
-/** `colour(t)` for `count` values of t over [low, high], packed as canvas pixels. */
-export function table(colour: (t: number) => Rgb, count: number, [low, high]: [number, number]): Uint32Array {
+/** A colour lookup table: `colour(t)` for `count` values of t over [low, high], packed as canvas pixels. */
+export function lut(colour: (t: number) => Rgb, count: number, [low, high]: [number, number]): Uint32Array {
   return Uint32Array.from({ length: count }, (_, i) => pixel(colour(low + ((high - low) * i) / (count - 1))));
 }
 

@@ -1,6 +1,6 @@
 /** Links to files and to new runs that start from creatures. */
 
-import { checkFile, save } from "../api/files";
+import { checkFile, downloadFile } from "../api/files";
 import { showFailure } from "../store/toasts";
 import { sharedSlug } from "../api/address";
 import { useRefusal } from "../store/principal";
@@ -11,7 +11,7 @@ export function FileLink({ url, name, title }: { url: string; name: string; titl
   const download = (event: MouseEvent) => {
     event.preventDefault();
     checkFile(url)
-      .then(() => save(url))
+      .then(() => downloadFile(url))
       .catch(showFailure);
   };
   return (

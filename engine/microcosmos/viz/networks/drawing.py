@@ -99,7 +99,7 @@ def svg(network: Network) -> str:
 
     Inside a page, `currentColor` is the page's; alone, it follows the reader's scheme.
     """
-    drawn = layout(network)
+    drawn = layout(network.keys, network.inputs, network.outputs, network.pairs)
     left, top, width, height = _frame(network, drawn)
     title = escape(described(network))
     # No thick link hides a thin one.

@@ -4,11 +4,11 @@ Columns, places held for long connections and ordering by means of neighbours fo
 Sugiyama, Tagawa and Toda, IEEE Trans. Syst. Man Cybern. 11, 109 (1981).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from .graph import depths
-from .network import Network
+from .graph import Pairs, depths
 
 Item = int | tuple[int, int, int]
 """A node's key, or the place in a column that a long connection passes through."""
@@ -27,12 +27,15 @@ class Layout:
     ways: dict[tuple[int, int], tuple[tuple[float, float], ...]]
 
 
-def layout(network: Network) -> Layout:
-    """Place inputs left, outputs right, hidden nodes by the longest path to them."""
-    column = _columns(network)
-    chains = {pair: _chain(pair, column) for pair in network.pairs}
+def layout(keys: Sequence[int], inputs: int, outputs: Sequence[int], pairs: Pairs) -> Layout:
+    """Place inputs left, outputs right, hidden nodes by the longest path to them.
+
+    Inputs are the keys below `inputs`; connections may close cycles.
+    """
+    column = _columns(keys, inputs, outputs, pairs)
+    chains = {pair: _chain(pair, column) for pair in pairs}
     columns: list[list[Item]] = [[] for _ in range(max(column.values()) + 1)]
-    for key in network.keys:
+    for key in keys:
         columns[column[key]].append(key)
     for (source, _), chain in chains.items():
         for level, passage in enumerate(chain[1:-1], column[source] + 1):
@@ -41,17 +44,20 @@ def layout(network: Network) -> Layout:
     rows = enumerate(columns)
     places = {item: (COLUMN * n, height[item]) for n, items in rows for item in items}
     return Layout(
-        {key: places[key] for key in network.keys},
+        {key: places[key] for key in keys},
         {pair: tuple(places[item] for item in chain) for pair, chain in chains.items()},
     )
 
 
-def _columns(network: Network) -> dict[int, int]:
-    fed = {*range(network.inputs), *(link.target for link in network.links)}
-    bare = [(0, key) for key in network.keys if key not in fed]  # As if an input led there.
-    column = depths(network.keys, [*network.pairs, *bare])
-    last = max([1, *(column[key] + 1 for key in network.hidden)])
-    return column | dict.fromkeys(network.outputs, last)
+def _columns(
+    keys: Sequence[int], inputs: int, outputs: Sequence[int], pairs: Pairs
+) -> dict[int, int]:
+    fed = {*range(inputs), *(target for _, target in pairs)}
+    bare = [(0, key) for key in keys if key not in fed]  # As if an input led there.
+    column = depths(keys, [*pairs, *bare])
+    ends = {*range(inputs), *outputs}
+    last = max([1, *(column[key] + 1 for key in keys if key not in ends)])
+    return column | dict.fromkeys(outputs, last)
 
 
 def _chain(pair: tuple[int, int], column: dict[int, int]) -> list[Item]:

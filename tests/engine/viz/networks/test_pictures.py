@@ -112,7 +112,7 @@ def test_a_picture_draws_every_node_and_enabled_connection_with_names(small):
 def test_nodes_never_overlap_and_sources_stand_left_of_their_targets(grown):
     for genes in grown[:100]:
         network = networks.from_genes(genes, INPUTS, OUTPUTS)
-        drawn = layout(network)
+        drawn = layout(network.keys, network.inputs, network.outputs, network.pairs)
         columns = {}
         for x, y in drawn.place.values():
             columns.setdefault(x, []).append(y)
@@ -121,6 +121,30 @@ def test_nodes_never_overlap_and_sources_stand_left_of_their_targets(grown):
         for source, target in network.pairs:
             if source not in network.outputs:
                 assert drawn.place[source][0] < drawn.place[target][0]
+
+
+def test_positions_hold_disabled_connections_and_cycles():
+    """Nodes 3, 4 and 5 are a cycle; a disabled connection leads to 6."""
+    links = {"source": [0, 3, 4, 5, 5, 0, 6], "target": [3, 4, 5, 3, 1, 6, 2]}
+    links["enabled"] = [True] * 5 + [False, True]
+    genome = {"inputs": ["a"], "outputs": ["b", "c"], "nodes": {"id": [*range(7)]}}
+    found = networks.positions({"genome": genome | {"connections": links}})
+    column = {int(key): x for key, (x, _) in found.nodes.items()}
+    assert column == {0: 0, 1: 4, 2: 4, 3: 1, 4: 2, 5: 3, 6: 1}
+    assert {pair: [x for x, _ in way] for pair, way in found.passages.items()} == {
+        "6-2": [2, 3]
+    }
+    heights = [y for _, y in (*found.nodes.values(), *found.passages["6-2"])]
+    assert (found.width, found.height, min(heights)) == (4, max(heights), 0)
+
+
+def test_positions_of_a_layered_network_number_outputs_before_hidden_nodes():
+    genome = {"encoding": "weights", "inputs": ["a", "b"], "outputs": ["c"]}
+    found = networks.positions({"genome": genome | {"control": {"hidden": [3]}}})
+    placed = [(0, 0.5), (0, 1.5), (2, 1), (1, 0), (1, 1), (1, 2)]
+    assert found.nodes == dict(zip("012345", placed, strict=True))
+    with pytest.raises(ValueError, match="must hold a network, got 'gait'"):
+        networks.positions({"genome": {"encoding": "gait"}})
 
 
 def test_graphviz_gets_every_node_and_connection(small):

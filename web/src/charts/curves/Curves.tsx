@@ -32,11 +32,11 @@ function Curve({ plot, view }: { plot: Plot; view: CurveView }) {
   const theme = useTheme();
   const drawn = width > 0;
   const { over, log } = view;
-  const form = series
+  const style = series
     .map(({ name, colour, dots, dash, faint, edge }) => [name, colour, dots, dash, faint, edge].join(" "))
     .join();
   const table = useMemo(() => tableOf(series, log), [log, ...series.flatMap(columnsOf)]);
-  const changed = [drawn, theme, form, over, log, format];
+  const changed = [drawn, theme, style, over, log, format];
 
   useEffect(() => {
     if (!drawn) return;

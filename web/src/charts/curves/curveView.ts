@@ -39,9 +39,9 @@ export function arrangePlots(
 ): Plot[] {
   const compared = others.map((other) => comparisonPlots(plotsOf, other, view));
   return plotsOf(curves).map((plot) => {
-    const own = others.length > 0 ? plot.series.map(inOneColour) : plot.series;
-    const mine = own.flatMap((each) => withSmoothLine({ ...each, x: curves[view.over] }, curves, view));
-    return { ...plot, series: [...mine, ...sameTitle(plot, compared)] };
+    const lines = others.length > 0 ? plot.series.map(inOneColour) : plot.series;
+    const main = lines.flatMap((each) => withSmoothLine({ ...each, x: curves[view.over] }, curves, view));
+    return { ...plot, series: [...main, ...seriesOfTitle(plot, compared)] };
   });
 }
 
@@ -52,10 +52,10 @@ export function overlayPlots(
   view: CurveView,
 ): Plot[] {
   const plots = runs.map((run) => comparisonPlots(plotsOf, run, view));
-  return plotsOf(NO_CURVES).map((plot) => ({ ...plot, series: sameTitle(plot, plots) }));
+  return plotsOf(NO_CURVES).map((plot) => ({ ...plot, series: seriesOfTitle(plot, plots) }));
 }
 
-const sameTitle = ({ title }: Plot, plots: Plot[][]) =>
+const seriesOfTitle = ({ title }: Plot, plots: Plot[][]) =>
   plots.flatMap((each) => each.find((other) => other.title === title)?.series ?? []);
 
 /** The plots of another run, in its colour and with its own x values. */

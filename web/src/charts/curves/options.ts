@@ -28,7 +28,7 @@ export function optionsOf({ series, bands, format, over, log, ink }: Drawing): u
     ticks: { show: false },
     font: "11px system-ui, sans-serif",
   };
-  const named = over === "generation" ? {} : { values: mapped((value) => number(value)) };
+  const named = over === "generation" ? {} : { values: formatTicks((value) => number(value)) };
   return {
     width: 1, // The size of the element follows.
     height: 1,
@@ -40,9 +40,9 @@ export function optionsOf({ series, bands, format, over, log, ink }: Drawing): u
     },
     axes: [
       { ...axis, size: 24, gap: 4, ...named, ...(over !== "seconds" && { incrs: WHOLE }) },
-      { ...axis, size: 52, gap: 6, values: mapped(format), ...(log && LOG_TICKS) },
+      { ...axis, size: 52, gap: 6, values: formatTicks(format), ...(log && LOG_TICKS) },
     ],
-    series: [{}, ...series.map((each) => lookOf(each, ink, series.length === 1 && !log))],
+    series: [{}, ...series.map((each) => styleOf(each, ink, series.length === 1 && !log))],
     bands: bands.map(({ high, low, colour }) => ({
       series: [high + 1, low + 1],
       fill: ink(colour, 17),
@@ -51,7 +51,7 @@ export function optionsOf({ series, bands, format, over, log, ink }: Drawing): u
   };
 }
 
-const mapped =
+const formatTicks =
   (format: (value: number) => string): uPlot.Axis.DynamicValues =>
   (_, values) =>
     values.map(format);
@@ -62,7 +62,7 @@ const LOG_TICKS: Pick<uPlot.Axis, "splits" | "filter"> = {
   filter: (_plot, ticks) => ticks,
 };
 
-function lookOf(series: Series, ink: Ink, alone: boolean): uPlot.Series {
+function styleOf(series: Series, ink: Ink, alone: boolean): uPlot.Series {
   const { name, colour, dots, dash, faint, edge } = series;
   const stroke = ink(colour);
   const base: uPlot.Series = { label: name, stroke, width: 1.75 };

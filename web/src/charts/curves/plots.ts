@@ -55,11 +55,11 @@ export function scoresOf(curves: Curves): Plot[] {
 
 /** Work of the search: insertions by emitter, re-evaluations, time, diverged evaluations. */
 export function workOf(curves: Curves): Plot[] {
-  const deviceSeconds = one(withoutFirst(curves), "device_seconds", "--curve-2", false);
+  const deviceSeconds = singleSeries(withoutFirst(curves), "device_seconds", "--curve-2", false);
   const plots: Plot[] = [
-    { title: text.inserted, format: number, series: ofEmitters(curves, ": inserted") },
-    { title: text.improved, format: number, series: ofEmitters(curves, ": improved") },
-    { title: text.hitRate, format: percent, series: one(curves, "hit_rate", "--series-3", true) },
+    { title: text.inserted, format: number, series: emitterSeries(curves, ": inserted") },
+    { title: text.improved, format: number, series: emitterSeries(curves, ": improved") },
+    { title: text.hitRate, format: percent, series: singleSeries(curves, "hit_rate", "--series-3", true) },
     { title: text.deviceSeconds, format: number, series: deviceSeconds },
     { title: text.diverged, format: number, series: divergedSoFar(curves) },
   ];
@@ -91,7 +91,7 @@ function divergedSoFar(curves: Curves): Series[] {
   });
 }
 
-function ofEmitters({ summary }: Curves, ending: string): Series[] {
+function emitterSeries({ summary }: Curves, ending: string): Series[] {
   const names = Object.keys(summary).filter((name) => name.endsWith(ending));
   return names.map((name, i) => ({
     name: name.slice(0, -ending.length),
@@ -100,7 +100,7 @@ function ofEmitters({ summary }: Curves, ending: string): Series[] {
   }));
 }
 
-function one({ summary }: Curves, name: string, colour: string, dots: boolean): Series[] {
+function singleSeries({ summary }: Curves, name: string, colour: string, dots: boolean): Series[] {
   const y = summary[name];
   return y ? [{ name, colour, y, dots }] : [];
 }

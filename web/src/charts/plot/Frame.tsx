@@ -6,7 +6,7 @@ import type { Axis } from "./Plot";
 import { positionOf, ticksOf } from "./scale";
 import "./plot.css";
 
-export interface Room {
+export interface PlotArea {
   left: number;
   right: number;
   top: number;
@@ -14,7 +14,7 @@ export interface Room {
 }
 
 /** A second axis above, with labels at values of the first one. */
-export interface Upper {
+export interface TopAxis {
   title: string;
   ticks: { at: number; text: string }[];
 }
@@ -22,16 +22,16 @@ export interface Upper {
 interface Props {
   x: Axis;
   y: Axis;
-  room: Room;
-  upper: Upper | null;
+  area: PlotArea;
+  topAxis: TopAxis | null;
   shaded: boolean;
 }
 
 /** Pixels per label along each axis. */
 const [X_SPACING, Y_SPACING] = [52, 44];
 
-export function Frame({ x, y, room, upper, shaded }: Props) {
-  const { left, right, top, bottom } = room;
+export function Frame({ x, y, area, topAxis, shaded }: Props) {
+  const { left, right, top, bottom } = area;
   const across = (value: number) => left + positionOf(x.scale, value) * (right - left);
   const up = (value: number) => bottom - positionOf(y.scale, value) * (bottom - top);
   return (
@@ -54,8 +54,8 @@ export function Frame({ x, y, room, upper, shaded }: Props) {
         </g>
       ))}
       <path class="base" d={`M${left} ${bottom}H${right}`} />
-      {upper &&
-        uncrowded(upper.ticks, across).map(({ at, text }) => (
+      {topAxis &&
+        uncrowded(topAxis.ticks, across).map(({ at, text }) => (
           <g key={at}>
             <path class="base" d={`M${across(at)} ${top}v-4`} />
             <text x={across(at)} y={top - 9}>
@@ -68,14 +68,14 @@ export function Frame({ x, y, room, upper, shaded }: Props) {
 }
 
 /** Names of the axes, over the drawing: their definitions need elements that can have the focus. */
-export function AxisTitles({ x, y, room, upper }: Omit<Props, "shaded">) {
-  const { left, right, top, bottom } = room;
+export function AxisTitles({ x, y, area, topAxis }: Omit<Props, "shaded">) {
+  const { left, right, top, bottom } = area;
   const across = { left, width: right - left };
   return (
     <>
-      {upper && (
+      {topAxis && (
         <span class="axis-title" style={px({ ...across, top: top - 46 })}>
-          <Term name={upper.title} />
+          <Term name={topAxis.title} />
         </span>
       )}
       <span class="axis-title" style={px({ ...across, top: bottom + 26 })}>
@@ -89,8 +89,8 @@ export function AxisTitles({ x, y, room, upper }: Omit<Props, "shaded">) {
 }
 
 /** The ticks with enough room, from the last one down. */
-function uncrowded(ticks: Upper["ticks"], across: (value: number) => number): Upper["ticks"] {
-  return ticks.reduceRight<Upper["ticks"]>((labelled, tick) => {
+function uncrowded(ticks: TopAxis["ticks"], across: (value: number) => number): TopAxis["ticks"] {
+  return ticks.reduceRight<TopAxis["ticks"]>((labelled, tick) => {
     const crowded = labelled[0] && across(labelled[0].at) - across(tick.at) < X_SPACING;
     return crowded ? labelled : [tick, ...labelled];
   }, []);

@@ -2,7 +2,7 @@
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import { useSize } from "../../ui/canvas";
-import { type Room, type Upper, AxisTitles, Frame } from "./Frame";
+import { type PlotArea, type TopAxis, AxisTitles, Frame } from "./Frame";
 import { Mark } from "./Mark";
 import { type Scale, positionOf } from "./scale";
 import "../lineStyle.css";
@@ -39,20 +39,20 @@ export interface PlotProps {
   x: Axis;
   y: Axis;
   lines: Line[];
-  upper?: Upper | null;
+  topAxis?: TopAxis | null;
   shaded?: boolean;
   /** Called with the mark under the pointer or with the focus. */
   onFocusPoint?: (point: Point | null) => void;
 }
 
-export function Plot({ title, x, y, lines, upper = null, shaded = false, onFocusPoint }: PlotProps) {
+export function Plot({ title, x, y, lines, topAxis = null, shaded = false, onFocusPoint }: PlotProps) {
   const host = useRef<HTMLDivElement>(null);
   const { width, height } = useSize(host);
   const [hovered, setHovered] = useState<string | null>(null);
   const [focused, setFocused] = useState<Point | null>(null);
   useEffect(() => onFocusPoint?.(focused), [focused]);
-  const room: Room = { left: 78, right: width - 14, top: upper ? 48 : 14, bottom: height - 48 };
-  const drawn = lines.map((line, k) => ({ line, spots: line.points.map((p) => spotOf(p, k, x, y, room)) }));
+  const area: PlotArea = { left: 78, right: width - 14, top: topAxis ? 48 : 14, bottom: height - 48 };
+  const drawn = lines.map((line, k) => ({ line, pixels: line.points.map((p) => pixelOf(p, k, x, y, area)) }));
   const highlighted = hovered ?? lines.find(({ points }) => points.includes(focused!))?.name ?? null;
   const faint = ({ name }: Line) => (highlighted !== null && highlighted !== name ? "faint" : "");
   const follow = (event: PointerEvent) => {
@@ -73,19 +73,19 @@ export function Plot({ title, x, y, lines, upper = null, shaded = false, onFocus
       >
         {width > 0 && (
           <svg width={width} height={height} aria-hidden="true">
-            <Frame {...{ x, y, room, upper, shaded }} />
-            {drawn.map(({ line, spots }) => (
-              <path key={line.name} class={`xy-line ${faint(line)}`} {...pathOf(line, spots)} />
+            <Frame {...{ x, y, area, topAxis, shaded }} />
+            {drawn.map(({ line, pixels }) => (
+              <path key={line.name} class={`xy-line ${faint(line)}`} {...pathOf(line, pixels)} />
             ))}
           </svg>
         )}
-        {width > 0 && <AxisTitles {...{ x, y, room, upper }} />}
+        {width > 0 && <AxisTitles {...{ x, y, area, topAxis }} />}
         {width > 0 &&
-          drawn.flatMap(({ line, spots }) =>
+          drawn.flatMap(({ line, pixels }) =>
             line.points.map((point, i) => (
               <Mark
                 key={`${line.name} ${point.x}`}
-                {...{ point, line, spot: spots[i]!, width, onFocusPoint: setFocused }}
+                {...{ point, line, position: pixels[i]!, width, onFocusPoint: setFocused }}
                 state={point === focused ? "near" : faint(line)}
               />
             )),
@@ -102,8 +102,8 @@ const strokeOf = ({ colour, dash, width }: Line) => ({
 });
 
 /** The position of a point; crosses are at the top, one row per line. */
-function spotOf(point: Point, k: number, x: Axis, y: Axis, room: Room): [number, number] {
-  const { left, right, top, bottom } = room;
+function pixelOf(point: Point, k: number, x: Axis, y: Axis, area: PlotArea): [number, number] {
+  const { left, right, top, bottom } = area;
   return [
     left + positionOf(x.scale, point.x) * (right - left),
     point.y === null ? top + 10 + 12 * k : bottom - positionOf(y.scale, point.y) * (bottom - top),
@@ -112,7 +112,7 @@ function spotOf(point: Point, k: number, x: Axis, y: Axis, room: Room): [number,
 
 interface Drawn {
   line: Line;
-  spots: [number, number][];
+  pixels: [number, number][];
 }
 
 /** Maximal distance of the pointer from a point, in pixels. */
@@ -120,19 +120,19 @@ const MAX_DISTANCE = 22;
 
 /** The point nearest to the pointer. */
 function nearest(drawn: Drawn[], x: number, y: number): Point | null {
-  let [found, least]: [Point | null, number] = [null, MAX_DISTANCE];
-  for (const { line, spots } of drawn) {
-    spots.forEach(([left, top], i) => {
+  let [best, least]: [Point | null, number] = [null, MAX_DISTANCE];
+  for (const { line, pixels } of drawn) {
+    pixels.forEach(([left, top], i) => {
       const distance = Math.hypot(left - x, top - y);
-      if (distance < least) [found, least] = [line.points[i]!, distance];
+      if (distance < least) [best, least] = [line.points[i]!, distance];
     });
   }
-  return found;
+  return best;
 }
 
-/** The path through the spots of points with a value. */
-function pathOf(line: Line, spots: Drawn["spots"]) {
-  const known = spots.filter((_, i) => line.points[i]!.y !== null);
+/** The path through the points with a value. */
+function pathOf(line: Line, pixels: Drawn["pixels"]) {
+  const known = pixels.filter((_, i) => line.points[i]!.y !== null);
   const d = known.map(([x, y], i) => `${i ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
   return { d, style: strokeOf(line) };
 }

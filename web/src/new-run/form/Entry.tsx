@@ -92,8 +92,8 @@ function aboutPlugin(field: Leaf, value: Json): string {
 
 /** The unit, unless the title already names it. */
 function unitOf({ unit, unitBy, title }: NumberField, document: Json): string {
-  const found = unitBy ? (unitBy.units[String(valueAt(document, unitBy.path))] ?? "") : unit;
-  return found === title.toLowerCase() ? "" : found;
+  const name = unitBy ? (unitBy.units[String(valueAt(document, unitBy.path))] ?? "") : unit;
+  return name === title.toLowerCase() ? "" : name;
 }
 
 function rangeOf(field: Leaf, unit: string): string {
@@ -178,7 +178,7 @@ function ChoiceInput({ field, value, unit: _, onChange, ...attributes }: InputPr
 /** A check box for each option; the selected ones stay in the order of the schema. */
 function SeveralInput({ field, value, onChange, id, "aria-invalid": invalid }: InputProps<Several>) {
   const selected = Array.isArray(value) ? value : [];
-  const turn = (option: Json, on: boolean) =>
+  const toggle = (option: Json, on: boolean) =>
     onChange(field.options.filter((each) => (each === option ? on : selected.includes(each))));
   return (
     <div class="several row" role="group" aria-labelledby={`${id}-label`}>
@@ -188,7 +188,7 @@ function SeveralInput({ field, value, onChange, id, "aria-invalid": invalid }: I
             type="checkbox"
             checked={selected.includes(option)}
             aria-invalid={invalid}
-            onChange={(event) => turn(option, event.currentTarget.checked)}
+            onChange={(event) => toggle(option, event.currentTarget.checked)}
           />
           {words(option)}
         </label>

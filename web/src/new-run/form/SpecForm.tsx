@@ -12,10 +12,10 @@ import { text } from "./text";
 
 /** Sections of a form; the first one holds the values outside all others. */
 export function partsOf(form: Section): (Section | Union)[] {
-  const whole = (field: Field) => field.kind === "section" || field.kind === "union";
-  const loose = form.fields.filter((field) => !whole(field));
-  const general: Section = { ...form, title: text.general, help: "", fields: loose };
-  return [general, ...(form.fields.filter(whole) as (Section | Union)[])];
+  const isSection = (field: Field) => field.kind === "section" || field.kind === "union";
+  const others = form.fields.filter((field) => !isSection(field));
+  const general: Section = { ...form, title: text.general, help: "", fields: others };
+  return [general, ...(form.fields.filter(isSection) as (Section | Union)[])];
 }
 
 export function SpecForm({ parts, state }: { parts: (Section | Union)[]; state: FormState }) {
@@ -128,8 +128,8 @@ function KindSelect({ union, state }: { union: Union; state: FormState }) {
 }
 
 function Fields({ section, state }: { section: Section; state: FormState }) {
-  const there = section.fields.filter((field) => isApplicable(field, state.document));
-  return there.map((field) => {
+  const applicable = section.fields.filter((field) => isApplicable(field, state.document));
+  return applicable.map((field) => {
     if (field.kind === "constant") return null;
     if (field.kind === "rows") return <RowList key={field.path} rows={field} state={state} />;
     if (field.kind === "section" || field.kind === "union") {
@@ -154,14 +154,14 @@ function RowList({ rows, state }: { rows: Rows; state: FormState }) {
       {rows.help && <p class="help">{rows.help}</p>}
       {items.map((_, i) => (
         <Part key={`${i} of ${items.length}`} part={rows.row(i)} state={state} kind="form-row">
-          {items.length > rows.least && (
+          {items.length > rows.minItems && (
             <button type="button" class="plain" onClick={() => remove(i)}>
               {text.remove(lower(rows.row(i).title))}
             </button>
           )}
         </Part>
       ))}
-      {items.length < rows.most && (
+      {items.length < rows.maxItems && (
         <button type="button" class="plain" onClick={() => state.change(rows.path, [...items, rows.fresh])}>
           {text.addTo(lower(rows.title))}
         </button>
@@ -184,7 +184,7 @@ export function Outline({ parts, state }: Props) {
         const wrong = within(part, state.messages.keys(), parts);
         const changed = within(part, state.changed, parts);
         return (
-          <button type="button" key={part.path} class="plain" onClick={() => go(part.path, state)}>
+          <button type="button" key={part.path} class="plain" onClick={() => goToSection(part.path, state)}>
             {part.title}
             {wrong > 0 && <span class="wrong-text">{text.errors(wrong)}</span>}
             {wrong === 0 && changed > 0 && <span class="tally">{text.changed(changed)}</span>}
@@ -203,7 +203,7 @@ function within({ path }: Props["parts"][0], paths: Iterable<string>, parts: Pro
   return all.length - others;
 }
 
-function go(path: string, state: FormState): void {
+function goToSection(path: string, state: FormState): void {
   state.close(path, false);
   requestAnimationFrame(() => {
     const section = document.getElementById(`section-${path || "general"}`);

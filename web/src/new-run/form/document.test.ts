@@ -45,7 +45,7 @@ describe("a spec under a form", () => {
     expect(typed(text)).toBe(value);
   });
 
-  it("has lists as they are typed, and what is no number stays text", () => {
+  it("reads typed lists; other words stay text", () => {
     expect(typedList(" 0.001, 2;3\n4 ")).toEqual([0.001, 2, 3, 4]);
     expect(typedList("1, x")).toEqual([1, "x"]);
     expect(typedList("")).toEqual([]);
@@ -84,7 +84,7 @@ describe("a spec under a form", () => {
     expect(schemaErrors(FORM, withValue(whole, path, value))).toEqual([{ field, message }]);
   });
 
-  it("shows the server's errors at the field they name, however the place is written", () => {
+  it("shows the server's errors at the field they name, in either notation of an index", () => {
     const messages = at("axes[0].bins", "axes.0.bins");
     expect(messages.get("axes.0.bins")).toEqual(["axes[0].bins", "axes.0.bins"]);
     expect([...at("body.nodes")]).toEqual([["body.nodes", ["body.nodes"]]]);
@@ -105,7 +105,7 @@ describe("a spec under a form", () => {
 });
 
 describe("differences", () => {
-  it("are paths of values, and of parts and lists that are made otherwise", () => {
+  it("are paths of values, and of objects and lists of another shape", () => {
     const a = { seed: 0, body: { builder: "chain", nodes: 3 }, rows: [{ x: 1 }, { x: 2 }], list: [1, 2] };
     expect(changedPaths(a, structuredClone(a))).toEqual([]);
     const b = { seed: 1, body: { builder: "worm" }, rows: [{ x: 1 }, { x: 3 }], list: [1, 3] };
@@ -114,7 +114,7 @@ describe("differences", () => {
     expect(changedPaths({ rows: [] }, { rows: [{ x: 1 }] })).toEqual(["rows"]);
   });
 
-  it("are counted within a part, not within one whose name begins like it", () => {
+  it("are counted within a part, not within parts with the same prefix", () => {
     expect(countWithin(["world", "world.width", "worldly.x"], "world")).toBe(2);
   });
 
@@ -127,7 +127,7 @@ describe("differences", () => {
 });
 
 describe("units and ranges", () => {
-  it("of a number beside the word that decides them, or of the part around it", () => {
+  it("of a number depend on a choice beside it, or on the part around it", () => {
     const number = (description: string, more: Spec = {}) => ({ type: "number", description, ...more });
     const form = formOf({
       properties: {
@@ -149,7 +149,7 @@ describe("units and ranges", () => {
     [{}, ""],
   ])("%j is %s", (range, text) => expect(rangeText(range)).toBe(text));
 
-  it("closes parts that are seldom changed", () => {
+  it("of parts that are seldom changed are closed", () => {
     const form = formOf(experiment("quality-diversity").schema);
     const seldom = form.fields.filter((field) => "seldom" in field).map(({ path }) => path);
     expect(seldom).toEqual(["coupling", "genome"]);

@@ -82,30 +82,30 @@ export function typedJson(text: string): Json {
 
 export function schemaErrors(form: Section, document: Json): FieldError[] {
   return leavesOf(form, document).flatMap((field) => {
-    const message = wrongWith(field, valueAt(document, field.path));
+    const message = leafError(field, valueAt(document, field.path));
     return message ? [{ field: field.path, message }] : [];
   });
 }
 
-function wrongWith(field: Field, value: Json): string | null {
+function leafError(field: Field, value: Json): string | null {
   if (field.kind === "number") return numberError(field, value);
-  if (field.kind === "list") return listComplaint(field, value);
-  if (field.kind === "several") return severalComplaint(field, value);
+  if (field.kind === "list") return listError(field, value);
+  if (field.kind === "several") return severalError(field, value);
   if (field.kind === "nested" && !Array.isArray(value)) return text.needsNested;
   return null;
 }
 
-function listComplaint({ item, least, most }: List, value: Json): string | null {
+function listError({ item, minItems, maxItems }: List, value: Json): string | null {
   const items = Array.isArray(value) ? value : [];
   const wrong = items.map((one) => numberError(item, one)).find((message) => message !== null);
   if (wrong) return wrong;
-  if (items.length < least) return text.tooFew(least);
-  return items.length > most ? text.tooManyNumbers(most) : null;
+  if (items.length < minItems) return text.tooFew(minItems);
+  return items.length > maxItems ? text.tooManyNumbers(maxItems) : null;
 }
 
-function severalComplaint({ least }: Several, value: Json): string | null {
+function severalError({ minItems }: Several, value: Json): string | null {
   const selected = Array.isArray(value) ? value.length : 0;
-  return selected < least ? text.selectMore(least) : null;
+  return selected < minItems ? text.selectMore(minItems) : null;
 }
 
 export function partOf(union: Union, document: Json): Section | null {
@@ -193,7 +193,7 @@ export function countWithin(paths: Iterable<string>, part: string): number {
 
 /** The preset with the same spec, whatever the seed. */
 export function equalPreset(spec: Spec, experiments: Experiment[]): Preset | null {
-  const own = experiments.find(({ experiment }) => experiment === spec.experiment);
+  const experiment = experiments.find((one) => one.experiment === spec.experiment);
   const same = (preset: Preset) => changedPaths(spec, preset.spec).every((path) => path === "seed");
-  return own?.presets.find(same) ?? null;
+  return experiment?.presets.find(same) ?? null;
 }

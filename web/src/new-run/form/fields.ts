@@ -44,8 +44,8 @@ export interface Union extends Common {
 export interface Rows extends Common {
   kind: "rows";
   row: (index: number) => Section | Union;
-  least: number;
-  most: number;
+  minItems: number;
+  maxItems: number;
   fresh: Json;
 }
 
@@ -69,14 +69,14 @@ export interface Choice extends Common {
 export interface List extends Common {
   kind: "list";
   item: NumberField;
-  least: number;
-  most: number;
+  minItems: number;
+  maxItems: number;
 }
 
 export interface Several extends Common {
   kind: "several";
   options: Json[];
-  least: number;
+  minItems: number;
 }
 
 /** `nested` is a list of lists, which is typed as JSON. */
@@ -131,10 +131,10 @@ function freshSettings(schema: Schema, path: string): Pick<Section, "settings"> 
 
 /** Names of optional fields without a default. */
 function followingOf(schema: Schema, root: Schema): string[] {
-  const needed = (schema.required ?? []) as string[];
+  const required = (schema.required ?? []) as string[];
   const properties = Object.entries((schema.properties ?? {}) as Record<string, Schema>);
   return properties
-    .filter(([key, part]) => !needed.includes(key) && !("default" in resolve(part, root)))
+    .filter(([key, part]) => !required.includes(key) && !("default" in resolve(part, root)))
     .map(([key]) => key);
 }
 
@@ -183,16 +183,16 @@ function numberOf(schema: Schema, type: Json, common: Common & { nullable: boole
 
 function arrayOf(schema: Schema, root: Schema, common: Common): Field {
   const item = resolve((schema.items ?? {}) as Schema, root);
-  const [least, most] = [Number(schema.minItems ?? 0), Number(schema.maxItems ?? Infinity)];
-  if (Array.isArray(item.enum)) return { ...common, kind: "several", options: item.enum, least };
+  const [minItems, maxItems] = [Number(schema.minItems ?? 0), Number(schema.maxItems ?? Infinity)];
+  if (Array.isArray(item.enum)) return { ...common, kind: "several", options: item.enum, minItems };
   if (item.type === "array") return { ...common, kind: "nested" };
   if (item.type !== "integer" && item.type !== "number") return rowsOf(schema, root, common);
   return {
     ...common,
     kind: "list",
     item: numberOf(item, item.type, { ...common, nullable: false }),
-    least,
-    most,
+    minItems,
+    maxItems,
   };
 }
 
@@ -223,13 +223,13 @@ function rowsOf(schema: Schema, root: Schema, common: Common): Rows {
     ...common,
     kind: "rows",
     row,
-    least: Number(schema.minItems ?? 0),
-    most: Number(schema.maxItems ?? Infinity),
+    minItems: Number(schema.minItems ?? 0),
+    maxItems: Number(schema.maxItems ?? Infinity),
     fresh: first.kind === "union" ? [...first.parts.values()][0]!.fresh! : freshOf(item, root, first),
   };
 }
 
 function freshOf(item: Schema, root: Schema, { following }: Section): Json {
-  const leftOut = Object.fromEntries(following.map((name) => [name, null]));
-  return { ...(defaultOf(item, root) as Spec | null), ...leftOut };
+  const empty = Object.fromEntries(following.map((name) => [name, null]));
+  return { ...(defaultOf(item, root) as Spec | null), ...empty };
 }

@@ -3,7 +3,7 @@ import type { Schema, Spec } from "../../api/types";
 import { changedPaths, messagesByPath, partOf, schemaErrors, valueAt, withChoice } from "./document";
 import { type Choice, type Field, type Rows, type Section, type Union, formOf } from "./fields";
 import { FORM } from "./form.fixture";
-import { completed } from "./schema";
+import { withDefaults } from "./schema";
 
 const part = <F extends Field>(section: Section, path: string) =>
   section.fields.find((field) => field.path === path) as F;
@@ -29,22 +29,22 @@ describe("a form", () => {
     expect(part(WORLD, "world.viscosity")).toMatchObject({ range: { low: 0, lowOpen: true } });
   });
 
-  it("has a number that may be left empty where null is allowed", () => {
+  it("has a number that may be empty if null is allowed", () => {
     expect(part(WORLD, "world.limit")).toMatchObject({ kind: "number", nullable: true, unit: "m" });
   });
 
-  it("keeps the type of what can be selected", () => {
+  it("keeps the type of options", () => {
     expect(part(WORLD, "world.factor")).toMatchObject({ kind: "choice", options: [1, 2] });
     expect(part(WORLD, "world.open")).toMatchObject({ kind: "flag" });
     expect(part(FORM, "experiment")).toMatchObject({ kind: "constant" });
   });
 
-  it("has a section that can be switched on with its defaults where null is allowed", () => {
+  it("has a section that can be switched on with its defaults if null is allowed", () => {
     expect(part(WORLD, "world.steric")).toMatchObject({ kind: "section", fresh: { strength: 4 } });
     expect(WORLD.fresh).toBeUndefined();
   });
 
-  it("has a part for each word of a union, which begins as its defaults say", () => {
+  it("has a part for each name of a union, with its defaults", () => {
     const union = part<Union>(FORM, "body");
     expect([union.tag, ...union.parts.keys()]).toEqual(["builder", "chain", "line", "worm", "ray"]);
     const chain = union.parts.get("chain")!;
@@ -59,19 +59,19 @@ describe("a form", () => {
 
   it("has lists of numbers and of words for arrays of them", () => {
     expect(part(FORM, "swimmers")).toMatchObject({ kind: "several", options: ["worm", "ray"] });
-    expect(part(FORM, "viscosities")).toMatchObject({ kind: "list", least: 1, most: 3 });
+    expect(part(FORM, "viscosities")).toMatchObject({ kind: "list", minItems: 1, maxItems: 3 });
   });
 
   it("has rows for arrays of objects, and a fresh row from their defaults", () => {
     const rows = part<Rows>(FORM, "axes");
     const fresh = { name: "a", bins: 20, low: null, scale: null };
-    expect([rows.least, rows.most, rows.fresh]).toEqual([1, 2, fresh]);
+    expect([rows.minItems, rows.maxItems, rows.fresh]).toEqual([1, 2, fresh]);
     const row = rows.row(1) as Section;
     const names = ["name", "bins", "low", "scale"];
     expect(row.fields.map(({ path }) => path)).toEqual(names.map((name) => `axes.1.${name}`));
   });
 
-  it("leaves out again what follows from a choice when another is made", () => {
+  it("clears values that follow from a choice when the choice changes", () => {
     const rows = part<Rows>(FORM, "axes");
     const row = rows.row(0) as Section;
     const [name, bins, low, scale] = row.fields as [Field, Field, Field, Field];
@@ -141,12 +141,12 @@ const task = form.fields.find(({ path }) => path === "task") as Section;
 const fitness = task.fields.find(({ path }) => path === "task.fitness") as Choice;
 
 describe("a choice with plug-ins", () => {
-  it("tells its title and who has it", () => {
+  it("has its title and its workers", () => {
     expect(fitness.options).toContain("mine.straight");
     expect(fitness.plugins?.["mine.straight"]).toEqual(about);
   });
 
-  it("brings its settings with it, and takes them away again", () => {
+  it("adds its settings when it is selected, and removes them afterwards", () => {
     const selected = withChoice(SPEC, task, fitness, "mine.straight");
     expect(valueAt(selected, "task.plugin.settings.strictness")).toBe(1);
     const left = withChoice(selected, task, fitness, "displacement");
@@ -155,7 +155,7 @@ describe("a choice with plug-ins", () => {
     expect(changedPaths(left, SPEC)).toEqual([]);
   });
 
-  it("has its settings checked where it is selected, and only there", () => {
+  it("has its settings checked only while it is selected", () => {
     const wrong = { fitness: "mine.straight", plugin: { settings: { strictness: 11 } } };
     expect(schemaErrors(form, { ...SPEC, task: wrong })).toEqual([
       { field: "task.plugin.settings.strictness", message: "Needs at most 10." },
@@ -165,7 +165,7 @@ describe("a choice with plug-ins", () => {
 });
 
 describe("a body from a plug-in", () => {
-  it("has its settings as fields, and begins with their defaults", () => {
+  it("has its settings as fields, with their defaults", () => {
     const body = form.fields.find(({ path }) => path === "body");
     const cross = body?.kind === "union" ? body.parts.get("mine.cross") : undefined;
     expect(cross?.fields.map(({ path }) => path)).toEqual(["body.plugin.settings.strictness"]);
@@ -176,16 +176,16 @@ describe("a body from a plug-in", () => {
 describe("a spec of another run", () => {
   const version = { source: "a".repeat(64), title: "T", sizes: {}, settings: { strictness: 3 } };
 
-  it("takes the version that there is now, with its settings", () => {
+  it("gets the current version of a plug-in, and keeps its settings", () => {
     const spec = { ...SPEC, task: { fitness: "mine.straight", plugin: version } };
-    expect(completed(PLUGINS, spec).task).toEqual({
+    expect(withDefaults(PLUGINS, spec).task).toEqual({
       fitness: "mine.straight",
       plugin: { settings: { strictness: 3 } },
     });
   });
 
-  it("leaves a creature what it is", () => {
+  it("leaves a creature unchanged", () => {
     const creature = { identity: { task: { plugin: version } } };
-    expect(completed(PLUGINS, { ...SPEC, creature }).creature).toEqual(creature);
+    expect(withDefaults(PLUGINS, { ...SPEC, creature }).creature).toEqual(creature);
   });
 });

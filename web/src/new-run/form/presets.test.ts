@@ -14,7 +14,7 @@ import {
 import { type Field, formOf } from "./fields";
 import { PRESETS } from "./form.fixture";
 
-/** The value as it is after a person has typed what the form shows. */
+/** The value after a user has retyped the text that the form shows. */
 function retyped(field: Field, value: Json): Json {
   switch (field.kind) {
     case "number":

@@ -3,15 +3,15 @@
 import { useMemo, useState } from "preact/hooks";
 import type { ResultRow } from "../../api/types";
 import { setQuery } from "../../store/router";
-import { NotForceFree, formOf } from "../../ui/coupling";
+import { NotForceFree, couplingForm } from "../../ui/coupling";
 import { type Point, Plot } from "../../charts/plot/Plot";
-import { formsOf, reynoldsAxis, sweepAxes, sweepLines } from "./gaits";
+import { formsOf, reynoldsAxis, plotAxes, plotLines } from "./gaits";
 import { Card } from "../../ui/Page";
 import { Segments } from "../../ui/Select";
-import { ReplayLoop } from "../../replay/Loop";
+import { ReplayLoop } from "../../replay/ReplayLoop";
 import { ReplayStatus, useReplays } from "../../replay/replays";
 import { useDebounced } from "../../store/polling";
-import { type ResultsProps, TableCard, hrefOf, useTable } from "../results/resultsPage";
+import { type ResultsProps, TableCard, hrefOf, useResultsTable } from "../results/ResultsTable";
 import { text } from "./text";
 import "./gaits.css";
 
@@ -21,23 +21,23 @@ const SETTLE_MS = 120;
 const ALL_FORMS = "all";
 
 export function GaitsRun({ run, query }: ResultsProps) {
-  const { results, missing } = useTable(run);
+  const { results, missing } = useResultsTable(run);
   const forms = formsOf(run.spec);
-  const wanted = query.get("form") ?? "";
-  const requested = [...forms, ALL_FORMS].includes(wanted) ? wanted : forms[0]!;
-  const shown = requested === ALL_FORMS ? forms : [requested];
+  const requestedForm = query.get("form") ?? "";
+  const selected = [...forms, ALL_FORMS].includes(requestedForm) ? requestedForm : forms[0]!;
+  const shown = selected === ALL_FORMS ? forms : [selected];
   const rows = (results?.rows ?? []).filter((row) => shown.includes(String(row.form)));
   const [focused, setFocused] = useState<Point | null>(null);
   // The last mark under a resting pointer; leaving it keeps its replay.
-  const [last, setLast] = useState<Point | null>(null);
-  useDebounced(focused?.href ? focused : null, SETTLE_MS, setLast);
+  const [replayed, setReplayed] = useState<Point | null>(null);
+  useDebounced(focused?.href ? focused : null, SETTLE_MS, setReplayed);
   return (
     <>
       <Card
         id="displacement"
         kind="plot-card"
         title={text.title}
-        actions={forms.length > 1 && <Forms forms={forms} selected={requested} />}
+        actions={forms.length > 1 && <Forms forms={forms} selected={selected} />}
       >
         {missing ? (
           <p class="quiet waiting">{missing}</p>
@@ -45,12 +45,12 @@ export function GaitsRun({ run, query }: ResultsProps) {
           <div class={shown.length > 1 ? "" : "with-replay"}>
             <div class={shown.length > 1 ? "beside" : ""}>
               {shown.map((form) => (
-                <Sweep key={form} {...{ run, query, form }} all={results!.rows} onFocusPoint={setFocused} />
+                <Chart key={form} {...{ run, query, form }} all={results!.rows} onFocusPoint={setFocused} />
               ))}
             </div>
             <aside class="mark-replay" aria-label={text.replay}>
-              {last ? (
-                <MarkPlayer key={last.href} point={last} />
+              {replayed ? (
+                <MarkPlayer key={replayed.href} point={replayed} />
               ) : (
                 <p class="quiet small">{text.pointAtMark}</p>
               )}
@@ -65,7 +65,7 @@ export function GaitsRun({ run, query }: ResultsProps) {
 }
 
 function Forms({ forms, selected }: { forms: string[]; selected: string }) {
-  const choices = forms.map((form): [string, string] => [form, formOf(form).title]);
+  const choices = forms.map((form): [string, string] => [form, couplingForm(form).title]);
   return (
     <Segments
       label={text.form}
@@ -76,30 +76,30 @@ function Forms({ forms, selected }: { forms: string[]; selected: string }) {
   );
 }
 
-interface SweepProps extends ResultsProps {
+interface ChartProps extends ResultsProps {
   form: string;
   all: ResultRow[];
   onFocusPoint: (point: Point | null) => void;
 }
 
-function Sweep({ run, form, all, onFocusPoint }: SweepProps) {
+function Chart({ run, form, all, onFocusPoint }: ChartProps) {
   const rows = useMemo(() => all.filter((row) => row.form === form), [all, form]);
   // The marks must stay the same objects while the pointer is on one of them.
-  const lines = useMemo(() => sweepLines(run.spec, rows, hrefOf(run)), [run.id, run.spec, rows]);
-  const { title, about, free } = formOf(form);
+  const lines = useMemo(() => plotLines(run.spec, rows, hrefOf(run)), [run.id, run.spec, rows]);
+  const { title, about, forceFree } = couplingForm(form);
   // Forms that are not force-free move bodies many times as far, so they have an axis of their own.
-  const peers = all.filter((row) => formOf(String(row.form)).free === free);
+  const peers = all.filter((row) => couplingForm(String(row.form)).forceFree === forceFree);
   return (
-    <div class="sweep">
-      <p class="sweep-title row">
-        <b>{title}</b> <span class="quiet">{about}</span> {!free && <NotForceFree />}
+    <div class="gait-plot">
+      <p class="gait-plot-title row">
+        <b>{title}</b> <span class="quiet">{about}</span> {!forceFree && <NotForceFree />}
       </p>
       <Plot
         title={text.plot(title)}
-        {...sweepAxes(run.spec, peers)}
+        {...plotAxes(run.spec, peers)}
         lines={lines}
-        upper={reynoldsAxis(rows)}
-        shaded={!free}
+        topAxis={reynoldsAxis(rows)}
+        shaded={!forceFree}
         onFocusPoint={onFocusPoint}
       />
     </div>

@@ -1,10 +1,10 @@
 import { describe, expect, it } from "vitest";
 import type { ResultRow, Spec } from "../../api/types";
-import { reynoldsAxis, sweepAxes, sweepLines } from "./gaits";
+import { reynoldsAxis, plotAxes, plotLines } from "./gaits";
 
 const row = (values: Partial<ResultRow>): ResultRow => ({ creature: null, ...values });
 
-describe("a sweep of gaits", () => {
+describe("displacements of gaits", () => {
   const spec: Spec = { swimmers: ["worm", "ray"], viscosities: [0.01, 1], forms: ["ours"] };
   const point = (values: Partial<ResultRow>) =>
     row({ form: "ours", status: "ok", swimmer: "worm", limited: 0, warnings: "", ...values });
@@ -13,7 +13,7 @@ describe("a sweep of gaits", () => {
     point({ viscosity: 0.01, displacement: 3, reynolds: 200, limited: 0.1 }),
     point({ viscosity: 0.01, swimmer: "ray", displacement: null, status: "non-finite" }),
   ];
-  const [worm, ray] = sweepLines(spec, rows, (sha) => `/creatures/${sha}`);
+  const [worm, ray] = plotLines(spec, rows, (sha) => `/creatures/${sha}`);
 
   it("has a line for each swimmer, from the lowest viscosity to the highest", () => {
     expect(worm!.points.map(({ x, y }) => `${x} ${y}`)).toEqual(["0.01 3", "1 0.5"]);
@@ -41,10 +41,10 @@ describe("a sweep of gaits", () => {
 
   it("ignores unfinished simulations in its axis", () => {
     const burst = point({ viscosity: 1, displacement: 1e6, status: "supersonic" });
-    expect(sweepAxes(spec, [...rows, burst]).y.scale).toEqual(sweepAxes(spec, rows).y.scale);
+    expect(plotAxes(spec, [...rows, burst]).y.scale).toEqual(plotAxes(spec, rows).y.scale);
   });
 
   it("has the same axes before its results and after", () => {
-    expect(sweepAxes(spec, []).x).toEqual(expect.objectContaining({ scale: sweepAxes(spec, rows).x.scale }));
+    expect(plotAxes(spec, []).x).toEqual(expect.objectContaining({ scale: plotAxes(spec, rows).x.scale }));
   });
 });

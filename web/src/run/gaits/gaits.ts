@@ -1,8 +1,8 @@
-/** A sweep of gaits as lines: displacement against viscosity, one line a swimmer. */
+/** Displacement against viscosity as lines, one per swimmer. */
 
 import type { ResultRow, Spec } from "../../api/types";
 import { number, percent, words } from "../../ui/format";
-import type { Upper } from "../../charts/plot/Frame";
+import type { TopAxis } from "../../charts/plot/Frame";
 import type { Axis, Line, Point } from "../../charts/plot/Plot";
 import { fromZero, logAround } from "../../charts/plot/scale";
 import { text } from "./text";
@@ -19,7 +19,7 @@ const measure = (row: ResultRow, name: string) =>
 export const formsOf = (spec: Spec) => strings(spec.forms);
 
 /** Common axes of several forms make them comparable. */
-export function sweepAxes(spec: Spec, rows: readonly ResultRow[]): { x: Axis; y: Axis } {
+export function plotAxes(spec: Spec, rows: readonly ResultRow[]): { x: Axis; y: Axis } {
   const displacements = rows.filter(finished).map((row) => Number(row.displacement));
   const format = (value: number) => number(value, 2);
   return {
@@ -28,7 +28,7 @@ export function sweepAxes(spec: Spec, rows: readonly ResultRow[]): { x: Axis; y:
   };
 }
 
-export function sweepLines(spec: Spec, rows: readonly ResultRow[], hrefOf: Href): Line[] {
+export function plotLines(spec: Spec, rows: readonly ResultRow[], hrefOf: Href): Line[] {
   return strings(spec.swimmers).map((swimmer) => ({
     name: swimmer,
     colour: `--series-${1 + Math.max(0, SWIMMERS.indexOf(swimmer))}`,
@@ -70,12 +70,12 @@ function pointOf(row: ResultRow, hrefOf: Href): Point {
 }
 
 /** The Reynolds numbers of the first swimmer that completed, above its viscosities. */
-export function reynoldsAxis(rows: readonly ResultRow[]): Upper | null {
+export function reynoldsAxis(rows: readonly ResultRow[]): TopAxis | null {
   const known = rows.filter((row) => finished(row) && Number(row.reynolds) > 0);
   const swimmer = SWIMMERS.find((name) => known.some((row) => row.swimmer === name));
   if (!swimmer) return null;
-  const own = known.filter((row) => row.swimmer === swimmer);
-  const ticks = own
+  const ofSwimmer = known.filter((row) => row.swimmer === swimmer);
+  const ticks = ofSwimmer
     .map((row) => ({ at: Number(row.viscosity), text: number(Number(row.reynolds), 2) }))
     .sort((a, b) => a.at - b.at);
   return { title: text.reynoldsOf(swimmer), ticks };

@@ -1,4 +1,4 @@
-/** Texts of a sweep of gaits. */
+/** Texts of a run of gaits. */
 
 export const text = {
   title: "Displacement against viscosity",

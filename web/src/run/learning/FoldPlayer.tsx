@@ -4,7 +4,7 @@ import { useMemo, useState } from "preact/hooks";
 import type { Target } from "../../api/types";
 import type { Replay } from "../../decode/replay";
 import { CanvasStage } from "../../replay/CanvasStage";
-import { StepRange } from "../../replay/Transport";
+import { StepRange } from "../../replay/timeControls";
 import { useClock } from "../../replay/clock";
 import { type Point, BODY_INK, chainsOf, positionsAt } from "../../replay/motion";
 import { type Size, prepare, prefersReducedMotion, useTheme } from "../../ui/canvas";
@@ -26,7 +26,7 @@ export function FoldPlayer({ replay, target }: { replay: Replay; target: Target 
   const theme = useTheme();
   const [playing, setPlaying] = useState(() => !prefersReducedMotion());
   const [time, setTime] = useState(() => (prefersReducedMotion() ? last : 0));
-  const [shown, setShown] = useState(0.6);
+  const [opacity, setOpacity] = useState(0.6);
   useClock(playing, (seconds) => {
     const whole = last * (1 + PAUSE_SECONDS / PLAY_SECONDS);
     setTime((now) => (now + (seconds * last) / PLAY_SECONDS) % Math.max(1, whole));
@@ -34,8 +34,8 @@ export function FoldPlayer({ replay, target }: { replay: Replay; target: Target 
   const fold = useMemo((): Fold => {
     const { picture, ...ink } = INK[theme];
     const chains = chainsOf(replay.header.edges);
-    return { replay, target, chains, picture: pictureOf(target, picture), shown, ink };
-  }, [replay, target, theme, shown]);
+    return { replay, target, chains, picture: pictureOf(target, picture), opacity, ink };
+  }, [replay, target, theme, opacity]);
   const moment = Math.min(last, time);
   const scrub = (value: number) => {
     setPlaying(false);
@@ -54,8 +54,8 @@ export function FoldPlayer({ replay, target }: { replay: Replay; target: Target 
             min="0"
             max="1"
             step="0.05"
-            value={shown}
-            onInput={(event) => setShown(event.currentTarget.valueAsNumber)}
+            value={opacity}
+            onInput={(event) => setOpacity(event.currentTarget.valueAsNumber)}
           />
         </label>
       </div>
@@ -101,7 +101,7 @@ interface Fold {
   target: Target;
   chains: number[][];
   /** Opacity of the picture, from 0 to 1. */
-  shown: number;
+  opacity: number;
   ink: { body: string; halo: string };
 }
 
@@ -133,7 +133,7 @@ function drawFold(canvas: HTMLCanvasElement, size: Size, fold: Fold, time: numbe
   const scale = size.width / world[0];
   const screen = ([x, y]: Point): Point => [(x + 0.5) * scale, (world[1] - 0.5 - y) * scale];
   const { left, top, width, height } = pictureBox(fold.target, world);
-  context.globalAlpha = fold.shown;
+  context.globalAlpha = fold.opacity;
   context.imageSmoothingQuality = "high";
   context.drawImage(fold.picture, ...screen([left, top]), width * scale, height * scale);
   context.globalAlpha = 1;

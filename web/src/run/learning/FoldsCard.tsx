@@ -10,7 +10,7 @@ import { number, shortId } from "../../ui/format";
 import { Card } from "../../ui/Page";
 import { FoldPlayer, pictureOf } from "./FoldPlayer";
 import { ReplayStatus, useReplays } from "../../replay/replays";
-import { type ResultsProps, hrefOf } from "../results/resultsPage";
+import { type ResultsProps, hrefOf } from "../results/ResultsTable";
 import { text } from "./text";
 import "./folds.css";
 

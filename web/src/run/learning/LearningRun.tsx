@@ -4,20 +4,20 @@ import { useMemo } from "preact/hooks";
 import type { ResultRow, Run } from "../../api/types";
 import { Plot, type Axis, type Line, type PlotProps } from "../../charts/plot/Plot";
 import { fromZero, logAround } from "../../charts/plot/scale";
-import { newMoment } from "../../replay/moment";
+import { newPlayhead } from "../../replay/playhead";
 import { ReplayPlayer } from "../../replay/ReplayPlayer";
 import { ReplayStatus, useReplays } from "../../replay/replays";
 import type { Curves } from "../../store/curves";
 import { useStore } from "../../store/store";
 import { Card } from "../../ui/Page";
 import { number, shortId, count } from "../../ui/format";
-import { type ResultsProps, TableCard, hrefOf, useTable } from "../results/resultsPage";
+import { type ResultsProps, TableCard, hrefOf, useResultsTable } from "../results/ResultsTable";
 import { FoldsCard } from "./FoldsCard";
 import { text } from "./text";
 
 export function LearningRun({ run, query }: ResultsProps) {
   const curves = useStore((state) => state.details.get(run.id))?.curves;
-  const { results } = useTable(run);
+  const { results } = useResultsTable(run);
   const curve = curves && learningCurveOf(run, curves);
   const rows = results?.rows ?? [];
   return (
@@ -46,17 +46,17 @@ interface Pair extends ResultsProps {
 function Improvement(pair: Pair) {
   const changed = pair.before.creature !== pair.after.creature;
   return (
-    <Card id="films" kind="films" title={text.beforeAndAfter}>
+    <Card id="improvement" title={text.beforeAndAfter}>
       {changed ? <SideBySide {...pair} /> : <p class="quiet">{text.unchanged}</p>}
     </Card>
   );
 }
 
 function SideBySide({ run, query, before, after }: Pair) {
-  const moment = useMemo(newMoment, []);
+  const playhead = useMemo(newPlayhead, []);
   const rendering = useReplays([before.creature!, after.creature!]);
   const [first, last] = rendering.replays ?? [];
-  const films = useMemo(() => {
+  const panels = useMemo(() => {
     if (!first || !last) return [];
     return [
       { replay: first, name: <CreatureLink {...{ run, row: before }} title={text.before} /> },
@@ -66,7 +66,7 @@ function SideBySide({ run, query, before, after }: Pair) {
   return (
     <>
       <ReplayStatus {...rendering} what={text.recordingBoth} />
-      {films.length > 0 && <ReplayPlayer {...{ films, moment, query }} />}
+      {panels.length > 0 && <ReplayPlayer {...{ panels, playhead, query }} />}
     </>
   );
 }

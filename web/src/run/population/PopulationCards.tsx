@@ -2,7 +2,7 @@
 
 import { useMemo } from "preact/hooks";
 import * as api from "../../api/client";
-import type { Genes, Genome, Run } from "../../api/types";
+import type { Run } from "../../api/types";
 import { networkOf } from "../../decode/network";
 import { type Elites, fittest } from "../../store/elites";
 import { useFetched, useSpecies } from "../../store/fetch";
@@ -24,12 +24,12 @@ export function PopulationCards({ run, elites }: { run: Run; elites: Elites }) {
 
 function SpeciesCard({ run }: { run: Run }) {
   const { value, error } = useSpecies(run);
-  const some = value !== null && value.generation.length > 0;
+  const hasSpecies = value !== null && value.generation.length > 0;
   return (
     <Card id="species" title={text.species}>
       {error && <p class="wrong-text small">{error}</p>}
-      {some && <SpeciesPlot history={value} />}
-      {value && !some && (
+      {hasSpecies && <SpeciesPlot history={value} />}
+      {value && !hasSpecies && (
         <p class="quiet waiting">{run.generation === 0 ? text.noSpeciesYet : text.noSpecies}</p>
       )}
     </Card>
@@ -39,9 +39,7 @@ function SpeciesCard({ run }: { run: Run }) {
 function BestNetwork({ run, elites }: { run: Run; elites: Elites }) {
   const best = useMemo(() => fittest(elites)?.[1] ?? null, [elites]);
   const sha = best?.creature ?? null;
-  const { value, error } = useFetched(async () => (sha ? await api.readCreature(sha) : null), [sha]);
-  const genome = value?.identity.genome;
-  const network = useMemo(() => (genome && isNetwork(genome) ? networkOf(genome) : null), [genome]);
+  const { value, error } = useFetched(async () => (sha ? await readGraph(sha) : null), [sha]);
   const note = best && (
     <>
       {text.bestOf(number(best.fitness, 4), best.generation)}{" "}
@@ -54,10 +52,14 @@ function BestNetwork({ run, elites }: { run: Run; elites: Elites }) {
     <Card id="network" title={text.bestNetwork} note={note}>
       {error && <p class="wrong-text small">{error}</p>}
       {!best && <p class="quiet waiting">{text.noBest}</p>}
-      {network && <NetworkGraph network={network} />}
-      {genome && !network && <p class="quiet">{text.noNetwork}</p>}
+      {value === "none" && <p class="quiet">{text.noNetwork}</p>}
+      {value && value !== "none" && <NetworkGraph {...value} />}
     </Card>
   );
 }
 
-const isNetwork = (genome: Genome): genome is Genes => "nodes" in genome;
+async function readGraph(sha: string) {
+  const { genome } = (await api.readCreature(sha)).identity;
+  if (!("nodes" in genome)) return "none";
+  return { network: networkOf(genome), positions: await api.readNetwork(sha) };
+}

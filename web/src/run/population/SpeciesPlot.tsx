@@ -4,7 +4,7 @@ import { useMemo, useRef, useState } from "preact/hooks";
 import type { SpeciesHistory } from "../../api/types";
 import { type Size, useSize } from "../../ui/canvas";
 import { count } from "../../ui/format";
-import { type Room, AxisTitles, Frame } from "../../charts/plot/Frame";
+import { type PlotArea, AxisTitles, Frame } from "../../charts/plot/Frame";
 import type { Axis } from "../../charts/plot/Plot";
 import { positionOf } from "../../charts/plot/scale";
 import { type Stack, colourOf, pathOf, speciesAt, stackOf } from "./speciesStack";
@@ -27,18 +27,18 @@ function axesOf({ generation, size }: Stack): { x: Axis; y: Axis } {
   };
 }
 
-const roomOf = ({ width, height }: Size): Room => {
+const plotAreaOf = ({ width, height }: Size): PlotArea => {
   return { left: 78, right: width - 14, top: 8, bottom: height - 48 };
 };
 
 /** The generation and the members at a point of the plot. */
-function pointedAt(stack: Stack, room: Room, left: number, top: number): Pointed {
+function pointedAt(stack: Stack, area: PlotArea, left: number, top: number): Pointed {
   const { generation, size } = stack;
   const { low, high } = axesOf(stack).x.scale;
-  const value = low + ((left - room.left) / (room.right - room.left)) * (high - low);
+  const value = low + ((left - area.left) / (area.right - area.left)) * (high - low);
   const distance = (i: number) => Math.abs(generation[i]! - value);
   const i = [...generation.keys()].reduce((best, i) => (distance(i) < distance(best) ? i : best));
-  return { i, height: (size * (room.bottom - top)) / (room.bottom - room.top) };
+  return { i, height: (size * (area.bottom - top)) / (area.bottom - area.top) };
 }
 
 export function SpeciesPlot({ history }: { history: SpeciesHistory }) {
@@ -49,9 +49,9 @@ export function SpeciesPlot({ history }: { history: SpeciesHistory }) {
   const last = stack.generation.length - 1;
   const follow = (event: PointerEvent) => {
     const box = host.current!.getBoundingClientRect();
-    setPointed(pointedAt(stack, roomOf(size), event.clientX - box.left, event.clientY - box.top));
+    setPointed(pointedAt(stack, plotAreaOf(size), event.clientX - box.left, event.clientY - box.top));
   };
-  const walk = (event: KeyboardEvent) => {
+  const moveByKey = (event: KeyboardEvent) => {
     const by = { ArrowLeft: -1, ArrowRight: 1, Home: -last, End: last }[event.key];
     if (by === undefined) return;
     event.preventDefault();
@@ -71,13 +71,13 @@ export function SpeciesPlot({ history }: { history: SpeciesHistory }) {
         onPointerMove={follow}
         onPointerDown={follow}
         onPointerLeave={() => setPointed(null)}
-        onKeyDown={walk}
+        onKeyDown={moveByKey}
         onBlur={() => setPointed(null)}
       >
         {size.width > 0 && (
           <>
             <Areas {...{ stack, size, shown }} lit={reading?.number ?? null} />
-            <AxisTitles {...axesOf(stack)} room={roomOf(size)} upper={null} />
+            <AxisTitles {...axesOf(stack)} area={plotAreaOf(size)} topAxis={null} />
           </>
         )}
       </div>
@@ -96,23 +96,23 @@ interface AreasProps {
 }
 
 function Areas({ stack, size, shown, lit }: AreasProps) {
-  const room = roomOf(size);
+  const area = plotAreaOf(size);
   const axes = axesOf(stack);
   const x = (i: number) =>
-    room.left + positionOf(axes.x.scale, stack.generation[i]!) * (room.right - room.left);
-  const y = (members: number) => room.bottom - positionOf(axes.y.scale, members) * (room.bottom - room.top);
+    area.left + positionOf(axes.x.scale, stack.generation[i]!) * (area.right - area.left);
+  const y = (members: number) => area.bottom - positionOf(axes.y.scale, members) * (area.bottom - area.top);
   return (
     <svg width={size.width} height={size.height} aria-hidden="true">
-      <Frame {...axes} room={room} upper={null} shaded={false} />
-      {stack.areas.map((area) => (
+      <Frame {...axes} area={area} topAxis={null} shaded={false} />
+      {stack.areas.map((species) => (
         <path
-          key={area.number}
-          d={pathOf(area, x, y)}
-          class={`species-area ${lit === area.number ? "lit" : ""}`}
-          style={{ fill: colourOf(area.number) }}
+          key={species.number}
+          d={pathOf(species, x, y)}
+          class={`species-area ${lit === species.number ? "lit" : ""}`}
+          style={{ fill: colourOf(species.number) }}
         />
       ))}
-      {shown && <path class="cursor" d={`M${x(shown.i)} ${room.top}V${room.bottom}`} />}
+      {shown && <path class="cursor" d={`M${x(shown.i)} ${area.top}V${area.bottom}`} />}
     </svg>
   );
 }
@@ -128,9 +128,9 @@ function summaryOf(stack: Stack): string {
 function readingOf(stack: Stack, { i, height }: Pointed): { number: number | null; text: string } {
   const living = livingIn(stack, i);
   const generation = stack.generation[i]!;
-  const found = height === null ? null : speciesAt(stack, i, height);
-  if (found) {
-    const [number, size] = found;
+  const species = height === null ? null : speciesAt(stack, i, height);
+  if (species) {
+    const [number, size] = species;
     return { number, text: text.oneSpecies(generation, number, count(size), living.length) };
   }
   const sizes = living

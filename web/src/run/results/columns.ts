@@ -1,7 +1,7 @@
 /** The columns of results: titles, units and formats. */
 
 import type { ResultRow, Value } from "../../api/types";
-import { formOf } from "../../ui/coupling";
+import { couplingForm } from "../../ui/coupling";
 import { DASH, bytes, count, number, percent, words } from "../../ui/format";
 import { text } from "./text";
 
@@ -23,7 +23,7 @@ const as = (write: (value: number) => string) => (value: Value) =>
 const seconds = { unit: "s / 1,000 steps" };
 
 const KNOWN: Record<string, Partial<Column>> = {
-  form: { write: (value) => formOf(String(value)).title },
+  form: { write: (value) => couplingForm(String(value)).title },
   viscosity: { unit: "cells²/step" },
   displacement: { unit: "cells/cycle" },
   direction: { unit: "rad" },

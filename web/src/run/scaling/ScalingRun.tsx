@@ -5,11 +5,11 @@ import { Plot, type Axis, type Line, type Point } from "../../charts/plot/Plot";
 import { logAround } from "../../charts/plot/scale";
 import { Card } from "../../ui/Page";
 import { bytes, number, count } from "../../ui/format";
-import { type ResultsProps, TableCard, useTable } from "../results/resultsPage";
+import { type ResultsProps, TableCard, useResultsTable } from "../results/ResultsTable";
 import { text } from "./text";
 
 export function ScalingRun({ run, query }: ResultsProps) {
-  const { results, missing } = useTable(run);
+  const { results, missing } = useResultsTable(run);
   if (missing || !results) {
     return (
       <section class="card">
@@ -75,8 +75,8 @@ export function timeLines(rows: readonly ResultRow[], summary: Values | null): L
 
 function lineOf(part: Part, rows: readonly ResultRow[], format: (value: number) => string): Line {
   const { column, method, ...view } = part;
-  const mine = rows.filter((row) => row.method === method && positive(row[column]));
-  const points = mine.map((row): Point => {
+  const measured = rows.filter((row) => row.method === method && positive(row[column]));
+  const points = measured.map((row): Point => {
     const [x, y] = [Number(row.nodes), Number(row[column])];
     return { x, y, tooltip: [part.name, text.nodesOf(count(x)), format(y)] };
   });

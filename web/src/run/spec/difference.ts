@@ -32,7 +32,7 @@ export function valueText(value: Json | undefined): string {
 
 /** Lists of plain values are one value. */
 function leavesOf(value: Json, path: string): [path: string, value: Json][] {
-  if (Array.isArray(value) && value.some(isParted)) {
+  if (Array.isArray(value) && value.some(isCompound)) {
     return value.flatMap((item, i) => leavesOf(item, `${path}.${i}`));
   }
   if (!isObject(value) || Object.keys(value).length === 0) return [[path, value]];
@@ -40,7 +40,7 @@ function leavesOf(value: Json, path: string): [path: string, value: Json][] {
   return Object.entries(value).flatMap(([key, part]) => leavesOf(part, inside(key)));
 }
 
-const isParted = (value: Json) => value !== null && typeof value === "object";
+const isCompound = (value: Json) => value !== null && typeof value === "object";
 
 export const isObject = (value: Json | undefined): value is Spec =>
-  value !== undefined && isParted(value) && !Array.isArray(value);
+  value !== undefined && isCompound(value) && !Array.isArray(value);

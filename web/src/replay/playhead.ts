@@ -1,9 +1,9 @@
-/** The moment of a replay that all parts of a page show. */
+/** The playhead of a replay: its time and state, which all parts of a page share. */
 
 import { useEffect, useState } from "preact/hooks";
 import { prefersReducedMotion } from "../ui/canvas";
 
-export class Moment {
+export class Playhead {
   /** In frames; may be a fraction. */
   time = 0;
   playing: boolean;
@@ -28,7 +28,7 @@ export class Moment {
     this.notify();
   }
 
-  /** Stop at a moment. */
+  /** Stop at a time. */
   scrub(time: number): void {
     this.playing = false;
     this.move(time);
@@ -45,11 +45,11 @@ export class Moment {
   }
 }
 
-export const newMoment = () => new Moment(!prefersReducedMotion());
+export const newPlayhead = () => new Playhead(!prefersReducedMotion());
 
-/** Redraw a component when the moment changes. */
-export function useMoment(moment: Moment): Moment {
+/** Redraw a component when the playhead moves, starts or stops. */
+export function usePlayhead(playhead: Playhead): Playhead {
   const [, draw] = useState(0);
-  useEffect(() => moment.listen(() => draw((n) => n + 1)), [moment]);
-  return moment;
+  useEffect(() => playhead.listen(() => draw((n) => n + 1)), [playhead]);
+  return playhead;
 }

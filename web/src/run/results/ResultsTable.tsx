@@ -17,7 +17,7 @@ export interface ResultsProps {
 }
 
 /** The results of a run; `missing` is a note while there are no rows. */
-export function useTable(run: Run) {
+export function useResultsTable(run: Run) {
   const { value, error } = useResults(run.id);
   // The last rows stay while fetching them again fails.
   if (value && value.rows.length > 0) return { results: value, missing: null };
