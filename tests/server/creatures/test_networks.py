@@ -45,7 +45,7 @@ def test_each_form_is_cached_for_ever_under_a_file_name(api, known, form):
 def test_the_forms_hold_the_network(api, known):
     sha = known()
     placed = api.get(f"creatures/{sha}/network.json").json()
-    assert placed["nodes"]["3"][0] == placed["width"] == 1
+    assert placed["nodes"]["3"]["x"] == placed["width"] == 1
     picture = ElementTree.fromstring(api.get(f"creatures/{sha}/network.svg").text)
     assert picture.tag == "{http://www.w3.org/2000/svg}svg"
     assert re.search(r"1 -> 3", api.get(f"creatures/{sha}/network.dot").text)

@@ -1794,24 +1794,18 @@ export interface components {
         };
         /**
          * NetworkPositions
-         * @description Points from (0, 0) to (width, height): x in columns, y in rows.
+         * @description Points from (0, 0) to (width, height).
          */
         NetworkPositions: {
             /** Height */
             height: number;
             /** Nodes */
             nodes: {
-                [key: string]: [
-                    number,
-                    number
-                ];
+                [key: string]: components["schemas"]["Point"];
             };
             /** Passages */
             passages: {
-                [key: string]: [
-                    number,
-                    number
-                ][];
+                [key: string]: components["schemas"]["Point"][];
             };
             /** Width */
             width: number;
@@ -1845,6 +1839,16 @@ export interface components {
             title: string;
             /** Unit */
             unit: string;
+        };
+        /**
+         * Point
+         * @description A place: x in columns, y in rows.
+         */
+        Point: {
+            /** X */
+            x: number;
+            /** Y */
+            y: number;
         };
         /** PresetRead */
         PresetRead: {

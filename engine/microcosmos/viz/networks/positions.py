@@ -8,17 +8,23 @@ from typing import Any
 from .graph import Pairs
 from .layout import COLUMN, ROW, layout
 
-Point = tuple[float, float]
+
+@dataclass(frozen=True)
+class Point:
+    """A place: x in columns, y in rows."""
+
+    x: float
+    y: float
 
 
 @dataclass(frozen=True)
 class NetworkPositions:
-    """Points from (0, 0) to (width, height): x in columns, y in rows."""
+    """Points from (0, 0) to (width, height)."""
 
     width: float
     height: float
     nodes: dict[str, Point]
-    """NetworkPositions of nodes by number."""
+    """Positions of nodes, by number."""
     passages: dict[str, list[Point]]
     """Points that a connection passes between distant columns, by "source-target"."""
 
@@ -40,14 +46,16 @@ def positions(identity: Mapping[str, Any]) -> NetworkPositions:
     first, fixed = len(genome["inputs"]), len(genome["inputs"]) + len(genome["outputs"])
     found = layout(keys, first, keys[first:fixed], pairs)
     points = [*found.place.values(), *(point for way in found.ways.values() for point in way)]
-    top = min(y for _, y in points)
+    columns, rows = zip(*points, strict=True)
 
-    def scaled(point: Point) -> Point:
-        return point[0] / COLUMN, round((point[1] - top) / ROW, 3)
+    def scaled(point: tuple[float, float]) -> Point:
+        return Point(point[0] / COLUMN, round((point[1] - min(rows)) / ROW, 3))
 
     passing = {f"{a}-{b}": way[1:-1] for (a, b), way in found.ways.items() if way[2:]}
+    end = scaled((max(columns), max(rows)))
     return NetworkPositions(
-        *(max(axis) for axis in zip(*map(scaled, points), strict=True)),
+        width=end.x,
+        height=end.y,
         nodes={str(key): scaled(point) for key, point in found.place.items()},
         passages={ends: [scaled(point) for point in way] for ends, way in passing.items()},
     )

@@ -129,12 +129,12 @@ def test_positions_hold_disabled_connections_and_cycles():
     links["enabled"] = [True] * 5 + [False, True]
     genome = {"inputs": ["a"], "outputs": ["b", "c"], "nodes": {"id": [*range(7)]}}
     found = networks.positions({"genome": genome | {"connections": links}})
-    column = {int(key): x for key, (x, _) in found.nodes.items()}
+    column = {int(key): point.x for key, point in found.nodes.items()}
     assert column == {0: 0, 1: 4, 2: 4, 3: 1, 4: 2, 5: 3, 6: 1}
-    assert {pair: [x for x, _ in way] for pair, way in found.passages.items()} == {
+    assert {pair: [point.x for point in way] for pair, way in found.passages.items()} == {
         "6-2": [2, 3]
     }
-    heights = [y for _, y in (*found.nodes.values(), *found.passages["6-2"])]
+    heights = [point.y for point in (*found.nodes.values(), *found.passages["6-2"])]
     assert (found.width, found.height, min(heights)) == (4, max(heights), 0)
 
 
@@ -142,7 +142,8 @@ def test_positions_of_a_layered_network_number_outputs_before_hidden_nodes():
     genome = {"encoding": "weights", "inputs": ["a", "b"], "outputs": ["c"]}
     found = networks.positions({"genome": genome | {"control": {"hidden": [3]}}})
     placed = [(0, 0.5), (0, 1.5), (2, 1), (1, 0), (1, 1), (1, 2)]
-    assert found.nodes == dict(zip("012345", placed, strict=True))
+    assert [(point.x, point.y) for point in found.nodes.values()] == placed
+    assert [*found.nodes] == [*"012345"]
     with pytest.raises(ValueError, match="must hold a network, got 'gait'"):
         networks.positions({"genome": {"encoding": "gait"}})
 
