@@ -63,8 +63,13 @@ def score(fitness: np.ndarray) -> tuple[float, float]:
 def ours(function: loops.Function, seed: int) -> np.ndarray:
     """Return the elites' fitness; our genes run from −1 to 1."""
     emitter = search.emitters.CmaMega(BATCH, newcomer, outputs=3, step=STEP / LIMIT)
-    scaled = lambda genes: function(LIMIT * genes)  # noqa: E731
-    slopes = lambda genes: with_slopes(function, LIMIT * genes)[2]  # noqa: E731
+
+    def scaled(genes: jax.Array) -> tuple[jax.Array, jax.Array]:
+        return function(LIMIT * genes)
+
+    def slopes(genes: jax.Array) -> jax.Array:
+        return with_slopes(function, LIMIT * genes)[2]
+
     return loops.ours(emitter, scaled, search.Grid(AXES), GENES, GENERATIONS, seed, slopes)
 
 

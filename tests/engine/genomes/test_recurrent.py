@@ -91,9 +91,8 @@ def test_without_hidden_nodes_a_recurrent_network_is_a_feed_forward_one(task, fl
 def test_a_closed_loop_that_senses_nothing_is_the_open_one(task, cyclic):
     opened, closed = task(), task(sense_energy=True)
     start = replace(closed.start, energy=jnp.zeros_like(closed.start.energy))
-    see = lambda state, measures: measures.rest  # noqa: E731
     driven = closed.encoding.drive(closed.world, start, cyclic(4), None)
-    end, applied = jax.jit(lambda: simulate(driven, see))()
+    end, applied = jax.jit(lambda: simulate(driven, lambda _, measures: measures.rest))()
     network = cyclic(3)
     expected = opened.encoding.drive(opened.world, opened.start, network, None).inputs
     np.testing.assert_allclose(applied.angle, expected.angle, rtol=1e-12, atol=1e-14)

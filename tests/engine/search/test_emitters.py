@@ -31,8 +31,9 @@ def archive():
         prototype = jax.tree.map(lambda x: x[0], genotypes)
         empty = search.no_elites(5, 1, prototype)
         place = jnp.asarray(cells)
-        put = lambda old, new: old.at[place].set(new)  # noqa: E731
-        whole = jax.tree.map(put, empty.genotypes, genotypes)
+        whole = jax.tree.map(
+            lambda old, new: old.at[place].set(new), empty.genotypes, genotypes
+        )
         occupied = empty.occupied.at[place].set(True)
         fitness = empty.fitness.at[place].set(jnp.arange(len(cells), dtype=jnp.float32))
         return replace(empty, genotypes=whole, occupied=occupied, fitness=fitness)
@@ -176,9 +177,11 @@ def test_weights_are_of_the_better_half_and_sum_to_one():
 
 @pytest.fixture
 def emitter():
+    def newcomer(*, key):
+        return Vector(jnp.zeros(2))
+
     def make(**changes):
         options = {"cells": 4, "step": 0.2, "learning_rate": 0.3, "threshold": 1.0}
-        newcomer = lambda *, key: Vector(jnp.zeros(2))  # noqa: E731
         return emitters.CmaMae(slots=6, newcomer=newcomer, **(options | changes))
 
     return make

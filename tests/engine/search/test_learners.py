@@ -19,7 +19,9 @@ KEYS = jax.random.split(jax.random.key(7), SLOTS)
 
 
 def mega(**changes):
-    newcomer = lambda *, key: Vector(jax.random.uniform(key, (GENES,)))  # noqa: E731
+    def newcomer(*, key):
+        return Vector(jax.random.uniform(key, (GENES,)))
+
     return emitters.CmaMega(slots=SLOTS, newcomer=newcomer, outputs=3, **changes)
 
 

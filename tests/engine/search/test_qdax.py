@@ -91,7 +91,10 @@ def test_their_map_elites_runs_on_our_scores_and_what_diverged_never_enters():
     names = ("core.map_elites", "core.emitters.standard_emitters")
     loop, emitters = map(qdax.require_qdax, names)
     score = qdax.scoring_function(evaluated, AROUND)
-    mutate = lambda x, key: x + 0.3 * jax.random.normal(key, x.shape)  # noqa: E731
+
+    def mutate(x, key):
+        return x + 0.3 * jax.random.normal(key, x.shape)
+
     mix = emitters.MixingEmitter(mutate, None, 0.0, 32)
     run = loop.MAPElites(score, mix, lambda repertoire: {})
     first = jax.random.uniform(jax.random.PRNGKey(0), (32, 5), minval=-1.0, maxval=1.0)

@@ -30,7 +30,10 @@ export function NetworkGraph({ network, positions, selected = null, onSelect }: 
   const pitch = Math.max(MIN_PITCH, Math.min(MAX_PITCH, (3.5 * MAX_PITCH) / positions.width));
   const width = pitch * positions.width + 2 * MARGIN.x;
   const height = ROW * positions.height + 2 * MARGIN.y;
-  const drawn = ({ x, y }: NetworkPositions["nodes"][string]): Point => [pitch * x + MARGIN.x, ROW * y + MARGIN.y];
+  const drawn = ({ x, y }: NetworkPositions["nodes"][string]): Point => [
+    pitch * x + MARGIN.x,
+    ROW * y + MARGIN.y,
+  ];
   const at = (id: number) => positions.nodes[id]!;
   const wayOf = ({ source, target }: Link) =>
     [at(source), ...(positions.passages[`${source}-${target}`] ?? []), at(target)].map(drawn);
