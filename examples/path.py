@@ -12,7 +12,7 @@ import numpy as np
 import microcosmos
 from microcosmos import build, search, spec
 from microcosmos.genomes import Vector
-from microcosmos.search import adam
+from microcosmos.search import folding
 
 SCENE = {
     "world": {"width": 32, "height": 32, "viscosity": 0.1},
@@ -42,13 +42,13 @@ def main(steps: int = 200, updates: int = 100, rate: float = 0.03) -> list[float
 
     both = jax.jit(jax.value_and_grad(distance))
     genes = 0.1 * task.encoding.newcomer(key=jax.random.key(1)).values
-    state, found = adam.begin(genes), []
+    state, found = folding.begin(genes), []
     for update in range(updates):
         value, slope = both(genes)
         found.append(float(value))
         if update % 10 == 0 or update == updates - 1:
             print(f"{update:>3}: {value:.3f} cells from the path")
-        change, state = adam.descend(state, slope, rate)
+        change, state = folding.descend(state, slope, rate)
         genes = jnp.clip(genes + change, -1, 1)  # As genes of a creature are.
     return found
 

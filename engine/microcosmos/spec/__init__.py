@@ -11,7 +11,7 @@ from .estimate import Estimate, estimate
 from .evolution import Evolution
 from .experiments import EXPERIMENTS, Experiment, Preset, Spec, parse
 from .folding import Digit, Folding, Picture, picture
-from .gaits import FORMS, Gaits
+from .gaits import Gaits
 from .neuroevolution import Neuroevolution
 from .plugins import PluginUse, PluginVersion, plugins_in
 from .quality_diversity import QualityDiversity

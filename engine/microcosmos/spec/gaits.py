@@ -15,13 +15,6 @@ from .search import Task
 from .sources import PAPER
 from .world import Steric, World
 
-FORMS = {
-    "ours": "force- and torque-free, one actuator strength for all",
-    "strong": "force- and torque-free, actuators that never tire",
-    "paper": "as in the paper: two layers, free edge angles, not force-free",
-}
-"""Forms of the coupling, by name."""
-
 VISCOSITIES = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
 
 Form = Literal["ours", "strong", "paper"]

@@ -68,7 +68,7 @@ class World(Part):
     magic: Literal["capped", "fixed"] = field("capped", source=TRT)
     """Magic parameter Λ of the two relaxation times: 3/16 (fixed), or at most (τ − 1/2)/2."""
     fluid: bool = True
-    """Simulate the fluid; without it, constraints alone move bodies."""
+    """Simulate the fluid; without it, only constraints and repulsion move bodies."""
     steric: Steric | None = None
     """Repulsion between nodes; empty: filaments pass through each other."""
     energy: Energy | None = None

@@ -26,7 +26,7 @@ class Form:
     kernel: coupling.Kernel = coupling.PESKIN
     magic: Callable = fluid.capped_magic
     fluid: bool = True
-    """Without a fluid, constraints alone move bodies."""
+    """Without a fluid, only constraints and repulsion move bodies."""
 
     def __post_init__(self):
         if self.projection is coupling.torque_free and self.theta_feedback == 0:

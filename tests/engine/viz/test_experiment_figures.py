@@ -136,7 +136,7 @@ def test_the_lines_of_a_scaling_run_have_the_numbers_of_its_rows(timings):
     x, y = line(time, "all pairs (∝ n$^{2.00}$)").get_data()
     np.testing.assert_allclose(y, 1e-6 * np.array(NODES[:2]) ** 2)
     np.testing.assert_allclose(line(memory, "all pairs").get_ydata(), [8e6, 1.28e8])
-    assert memory.yaxis.get_major_formatter()(2**29) == "512 MiB"
+    assert memory.yaxis.get_major_formatter()(2**29) == "537 MB"
 
 
 def test_the_guide_of_a_scaling_run_is_linear(timings):
@@ -173,7 +173,7 @@ def test_a_file_of_another_kind_is_refused(timings, tmp_path):
 def test_rows_that_lack_a_number_are_refused(draw, lacking):
     with pytest.raises(ValueError, match="`rows` must have at least one row"):
         draw([])
-    with pytest.raises(ValueError, match=f"`rows` must have {lacking}, .*; row 0 has not"):
+    with pytest.raises(ValueError, match=f"`rows` must have {lacking}, .*; row 0 does not"):
         draw([{"anything": 1}])
 
 
