@@ -31,7 +31,7 @@ SERVICES = ("MICROCOSMOS_REDIS_URL", "MICROCOSMOS_DATABASE_URL", "MICROCOSMOS_AR
 def wait_until(
     condition: Callable[[], Any], seconds: float, what: str, every: float = 0.1
 ) -> Any:
-    """Return the first true value of the condition, asked `every` so many seconds."""
+    """Return the first true value of the condition, asked again `every` seconds."""
     deadline = time.monotonic() + seconds
     while not (found := condition()):
         if time.monotonic() > deadline:

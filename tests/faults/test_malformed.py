@@ -13,7 +13,7 @@ from drive import ROOT
 from uploads import LIES, all_cases, lie, send, watched
 
 FEW, MANY = 64, 8
-"""One in so many of about three thousand files; `make acceptance` sends all."""
+"""Send every 64th, or every 8th, of about three thousand files; `make acceptance` sends all."""
 
 
 @pytest.fixture

@@ -89,7 +89,7 @@ def test_mistakes_are_refused_with_their_reason(command, words, invoke, tmp_path
 
 def test_evolve_sets_fields_and_makes_the_folder_of_its_file(invoke, tmp_path, monkeypatch):
     carried = []
-    monkeypatch.setattr(run_command, "carry_on", lambda *given: carried.append(given) or True)
+    monkeypatch.setattr(run_command, "run_with_progress", lambda *given: carried.append(given))
     (tmp_path / "spec.json").write_text(json.dumps(SPEC))
     command = ["evolve", "spec.json", "--out", "new/folder/x.h5"]
     invoke(*command, "--set", "world.viscosity=0.07")

@@ -52,8 +52,8 @@ LOST = ("warning", "is not loaded again")
     ("device", "loaded", "expected"),
     [
         ({"error": "CUDA_ERROR_UNKNOWN"}, False, [("problem", "CUDA_ERROR_UNKNOWN"), LOST]),
-        ({"right": False, "memory_bytes": None}, False, [("problem", "wrong numbers"), LOST]),
-        ({"right": True} | MEMORY, True, [("ok", "6.44 GB of 8.59 GB free")]),
+        ({"correct": False, "memory_bytes": None}, False, [("problem", "wrong numbers"), LOST]),
+        ({"correct": True} | MEMORY, True, [("ok", "6.44 GB of 8.59 GB free")]),
     ],
 )
 def test_a_device_is_reported_with_its_faults(tmp_path, monkeypatch, device, loaded, expected):

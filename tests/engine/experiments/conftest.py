@@ -145,7 +145,7 @@ def lasting():
 
 @pytest.fixture(scope="session")
 def elite_files():
-    """A function that gives creature files of elites at the end of a run, at most so many."""
+    """A function that gives creature files of elites at the end of a run, at most `most`."""
 
     def files(course, most=None):
         state = course.states[-1]
