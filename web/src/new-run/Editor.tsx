@@ -26,7 +26,7 @@ interface Props {
   experiment: Experiment;
   view: View;
   show: (view: View) => void;
-  take: (text: string, file: string, typed?: boolean) => string | null;
+  openDocument: (text: string, file: string, typed?: boolean) => string | null;
   replacing: boolean;
 }
 
@@ -79,7 +79,17 @@ interface SpecProps extends Props {
   onProblem: (problem: string | null) => void;
 }
 
-function SpecView({ editor, illegible, onProblem, draft, current, view, show, take, replacing }: SpecProps) {
+function SpecView({
+  editor,
+  illegible,
+  onProblem,
+  draft,
+  current,
+  view,
+  show,
+  openDocument,
+  replacing,
+}: SpecProps) {
   const { form, state, forking, errors } = editor;
   const parts = useMemo(() => partsOf(form), [form]);
   return (
@@ -99,7 +109,7 @@ function SpecView({ editor, illegible, onProblem, draft, current, view, show, ta
           key={draft.revision}
           spec={current.spec}
           errors={illegible ? [] : errors}
-          take={(text) => take(text, "", true)}
+          onText={(text) => openDocument(text, "", true)}
           onProblem={onProblem}
           replace={replacing}
         />
