@@ -14,7 +14,7 @@ from browser import executable, launched, overhear
 from databases import own_redis
 from drive import QUICK, ROOT, Installation, running
 from playwright.sync_api import expect
-from small import submit_small_runs
+from small_runs import submit_small_runs
 
 from server.services.services import Services, connect
 from server.settings import Settings
@@ -76,15 +76,15 @@ def common(browser):
 
 @pytest.fixture
 def product(common, tmp_path):
-    with running(tmp_path / "data", common) as place:
-        yield place
+    with running(tmp_path / "data", common) as product:
+        yield product
 
 
 @pytest.fixture(scope="package")
 def shared(common, tmp_path_factory):
     """One product for most tests, which computes a run of each kind."""
-    with running(tmp_path_factory.mktemp("shared") / "data", common) as place:
-        yield Shared(place, submit_small_runs(place))
+    with running(tmp_path_factory.mktemp("shared") / "data", common) as product:
+        yield Shared(product, submit_small_runs(product))
 
 
 @pytest.fixture(scope="package")
@@ -95,9 +95,9 @@ def idle(request, common, tmp_path_factory):
     folder = tmp_path_factory.mktemp("idle")
     with own_redis(folder) as url:
         environment = {"WORKERS": "0", "MICROCOSMOS_REDIS_URL": url}
-        with running(folder / "data", common | environment) as place:
+        with running(folder / "data", common | environment) as product:
             services = connect(Settings(data=folder / "data", redis_url=url))
-            yield Idle(place, services)
+            yield Idle(product, services)
             services.close()
 
 

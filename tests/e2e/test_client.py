@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from browser import overhear
 from playwright.sync_api import Browser
-from small import TINY
+from small_runs import TINY
 
 from microcosmos.archive.file import load
 from microcosmos.client import Client, Replay

@@ -5,7 +5,7 @@ from io import BytesIO
 
 import h5py
 from drive import Installation
-from places import stage
+from pages import stage
 from playwright.sync_api import Page, expect
 
 SLOW = 300_000

@@ -3,7 +3,7 @@
 import re
 from urllib.parse import urlsplit
 
-from places import TOUR_TAKEN, best_of, stage, the_map
+from pages import TOUR_TAKEN, best_of, stage, the_map
 from playwright.sync_api import Page, Request, expect
 
 SLOW = 300_000

@@ -15,17 +15,17 @@ SHORT = QUICK | {
 
 
 @pytest.fixture
-def installation(tmp_path):
+def start_product(tmp_path):
     """Starts an installation with these settings."""
     with ExitStack() as stack:
         yield lambda **more: stack.enter_context(running(tmp_path / "data", SHORT | more))
 
 
 @pytest.fixture(scope="package")
-def place(tmp_path_factory):
+def product(tmp_path_factory):
     """A running installation with two workers, which all tests may disturb."""
-    with running(tmp_path_factory.mktemp("data"), SHORT | {"WORKERS": "2"}) as place:
-        yield place
+    with running(tmp_path_factory.mktemp("data"), SHORT | {"WORKERS": "2"}) as product:
+        yield product
 
 
 @pytest.fixture(scope="session")
@@ -43,8 +43,8 @@ def spec():
 
 
 @pytest.fixture(scope="package")
-def undisturbed(place, spec):
+def undisturbed(product, spec):
     """The results of an undisturbed run."""
-    run = place.submit(spec)
-    place.wait(run, "finished", seconds=300)  # It has to compile.
-    return place.results(run)
+    run = product.submit(spec)
+    product.wait(run, "finished", seconds=300)  # It has to compile.
+    return product.results(run)

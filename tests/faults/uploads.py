@@ -55,19 +55,19 @@ def all_cases(canary: Path) -> Iterable[Case]:
     return chain(malformed.cases(), malformed_hdf5.cases(canary))
 
 
-def send(place: Installation, cases: Iterable[Case]) -> Findings:
+def send(product: Installation, cases: Iterable[Case]) -> Findings:
     """Post each file as a creature; the server has to refuse it with the reason."""
     found, valid, before = Findings(), malformed.good()["sha256"], None
     for case in cases:
         began = time.monotonic()
-        answer = place.http.post(
+        answer = product.http.post(
             "/api/v1/creatures", content=case.body, headers={"Content-Type": case.kind}
         )
         if before is None:  # The first file has started the sandbox and warmed it up.
-            before = memory(place)
+            before = memory(product)
         else:
             found.slowest = max(found.slowest, time.monotonic() - began)
-            found.growth = max(found.growth, memory(place) - before)
+            found.growth = max(found.growth, memory(product) - before)
         if answer.is_success and case.harmless and answer.json()["creature"] == valid:
             continue
         found.refused += 1
@@ -78,10 +78,10 @@ def send(place: Installation, cases: Iterable[Case]) -> Findings:
     return found
 
 
-def memory(place: Installation) -> int:
+def memory(product: Installation) -> int:
     """Bytes in the memory of the server and its sandboxes."""
     total = 0
-    for process in place.processes():
+    for process in product.processes():
         with suppress(psutil.Error, OSError):  # A sandbox may end while it is measured.
             if process.cmdline()[1:] in MEASURED:
                 total += process.memory_info().rss

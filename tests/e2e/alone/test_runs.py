@@ -5,7 +5,7 @@ import re
 import pytest
 from drive import Installation
 from playwright.sync_api import Page, expect
-from small import TINY
+from small_runs import TINY
 
 SLOW = 300_000
 
