@@ -26,7 +26,7 @@ interface Props {
   experiment: Experiment;
   view: View;
   show: (view: View) => void;
-  openDocument: (text: string, file: string, typed?: boolean) => string | null;
+  open: (text: string, file: string, typed?: boolean) => string | null;
   replacing: boolean;
 }
 
@@ -79,17 +79,7 @@ interface SpecProps extends Props {
   onProblem: (problem: string | null) => void;
 }
 
-function SpecView({
-  editor,
-  illegible,
-  onProblem,
-  draft,
-  current,
-  view,
-  show,
-  openDocument,
-  replacing,
-}: SpecProps) {
+function SpecView({ editor, illegible, onProblem, draft, current, view, show, open, replacing }: SpecProps) {
   const { form, state, forking, errors } = editor;
   const parts = useMemo(() => partsOf(form), [form]);
   return (
@@ -109,7 +99,7 @@ function SpecView({
           key={draft.revision}
           spec={current.spec}
           errors={illegible ? [] : errors}
-          onText={(text) => openDocument(text, "", true)}
+          onText={(text) => open(text, "", true)}
           onProblem={onProblem}
           replace={replacing}
         />

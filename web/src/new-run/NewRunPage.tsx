@@ -29,7 +29,7 @@ function NewRunForm({ experiments, query }: { experiments: Experiment[]; query: 
   const experiment = experiments.find((one) => one.experiment === current?.spec.experiment);
   const selected = picked ?? experiment ?? experiments[0]!;
   useEffect(() => setPicked(null), [draft.revision]);
-  const { openDocument, file } = useDocument(draft, experiments, selected, experiment);
+  const { open, file } = useDocument(draft, experiments, selected, experiment);
   const costs = usePresetCosts(selected);
   const view = query.get("view") === "json" ? "json" : "form";
   const show = (next: "form" | "json", replace = false) => {
@@ -38,10 +38,7 @@ function NewRunForm({ experiments, query }: { experiments: Experiment[]; query: 
   };
   const preset = current?.base.kind === "preset" ? current.base.name : null;
   return (
-    <Page
-      title={text.newRun}
-      actions={<SourceButtons openDocument={openDocument} onPaste={() => show("json", true)} />}
-    >
+    <Page title={text.newRun} actions={<SourceButtons open={open} onPaste={() => show("json", true)} />}>
       {draft.problem && (
         <p class="banner wrong" role="alert">
           {draft.problem}
@@ -61,14 +58,14 @@ function NewRunForm({ experiments, query }: { experiments: Experiment[]; query: 
       {current && experiment && (
         <>
           <BaseBar {...{ draft, current, experiments, file }} />
-          <Editor {...{ draft, current, view, show, openDocument, replacing }} experiment={experiment} />
+          <Editor {...{ draft, current, view, show, open, replacing }} experiment={experiment} />
         </>
       )}
     </Page>
   );
 }
 
-function SourceButtons({ openDocument, onPaste }: { openDocument: OpenDocument; onPaste: () => void }) {
+function SourceButtons({ open, onPaste }: { open: OpenDocument; onPaste: () => void }) {
   return (
     <>
       <span class="spring" />
@@ -77,7 +74,7 @@ function SourceButtons({ openDocument, onPaste }: { openDocument: OpenDocument; 
         <button type="button" onClick={onPaste}>
           {text.pasteSpec}
         </button>
-        <OpenFileButton openDocument={openDocument} />
+        <OpenFileButton open={open} />
       </span>
     </>
   );

@@ -20,9 +20,9 @@ export function useDocument(
   experiments: Experiment[],
   selected: Experiment,
   current: Experiment | undefined,
-): { openDocument: OpenDocument; file: CreatureFile | null } {
+): { open: OpenDocument; file: CreatureFile | null } {
   const [file, setFile] = useState<CreatureFile | null>(null);
-  const openDocument: OpenDocument = (text, name, typed = false) => {
+  const open: OpenDocument = (text, name, typed = false) => {
     try {
       const read = readText(text, selected.experiment === "refinement");
       const same = typed && read.kind === "spec" && read.spec.experiment === current?.experiment;
@@ -38,33 +38,33 @@ export function useDocument(
       return messageOf(error);
     }
   };
-  useDocumentDrop(openDocument);
-  return { openDocument, file };
+  useDocumentDrop(open);
+  return { open, file };
 }
 
 /** Handle text pasted outside fields, and dropped files. */
-function useDocumentDrop(openDocument: OpenDocument): void {
-  useFileDrop(text.dropDocument, (file) => void readFile(openDocument, file));
+function useDocumentDrop(open: OpenDocument): void {
+  useFileDrop(text.dropDocument, (file) => void readFile(open, file));
   useListener("paste", (event: ClipboardEvent) => {
     if ((event.target as Element).closest?.("input, textarea, select")) return;
     const pasted = event.clipboardData?.getData("text") ?? "";
     if (!pasted.trim()) return;
     event.preventDefault();
-    showProblem(openDocument(pasted, ""), text.pasted);
+    showProblem(open(pasted, ""), text.pasted);
   });
 }
 
-async function readFile(openDocument: OpenDocument, file: File): Promise<void> {
-  showProblem(openDocument(await file.text(), file.name), file.name);
+async function readFile(open: OpenDocument, file: File): Promise<void> {
+  showProblem(open(await file.text(), file.name), file.name);
 }
 
 function showProblem(problem: string | null, what: string): void {
   if (problem) showToast({ kind: "wrong", text: `${what}: ${problem}` });
 }
 
-export function OpenFileButton({ openDocument }: { openDocument: OpenDocument }) {
+export function OpenFileButton({ open }: { open: OpenDocument }) {
   return (
-    <FileButton name={text.documentFile} onFile={(file) => void readFile(openDocument, file)}>
+    <FileButton name={text.documentFile} onFile={(file) => void readFile(open, file)}>
       {text.openFile}
     </FileButton>
   );

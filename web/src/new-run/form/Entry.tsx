@@ -4,7 +4,7 @@ import type { Json } from "../../api/types";
 import { count, number } from "../../ui/format";
 import { Term } from "../../ui/Term";
 import { valueAt, typed, typedJson, typedList } from "./document";
-import type { Leaf, NumberField, Range, Choice, MultipleChoice } from "./fields";
+import type { Leaf, NumberField, Range, Choice, Multiple } from "./fields";
 import { text } from "./text";
 import { useEffect, useState } from "preact/hooks";
 import { Options } from "../../ui/Select";
@@ -145,7 +145,7 @@ interface InputProps<Kind extends Leaf = Leaf> {
 export function Input(props: InputProps) {
   const { field, value, unit: _, onChange, ...attributes } = props;
   if (field.kind === "choice") return <ChoiceInput {...props} field={field} />;
-  if (field.kind === "multiple") return <MultipleChoiceInput {...props} field={field} />;
+  if (field.kind === "multiple") return <MultipleInput {...props} field={field} />;
   if (field.kind !== "flag") return <WrittenInput {...props} />;
   return (
     <input
@@ -176,13 +176,7 @@ function ChoiceInput({ field, value, unit: _, onChange, ...attributes }: InputPr
 }
 
 /** A check box for each option; the selected ones stay in the order of the schema. */
-function MultipleChoiceInput({
-  field,
-  value,
-  onChange,
-  id,
-  "aria-invalid": invalid,
-}: InputProps<MultipleChoice>) {
+function MultipleInput({ field, value, onChange, id, "aria-invalid": invalid }: InputProps<Multiple>) {
   const selected = Array.isArray(value) ? value : [];
   const toggle = (option: Json, on: boolean) =>
     onChange(field.options.filter((each) => (each === option ? on : selected.includes(each))));

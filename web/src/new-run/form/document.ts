@@ -3,7 +3,7 @@
 import type { FieldError, Json, Spec, Experiment, Preset } from "../../api/types";
 import { isObject } from "../../run/spec/difference";
 import { number } from "../../ui/format";
-import type { Field, List, NumberField, Section, MultipleChoice, Union } from "./fields";
+import type { Field, List, NumberField, Section, Multiple, Union } from "./fields";
 import { join } from "./schema";
 import { text } from "./text";
 
@@ -90,7 +90,7 @@ export function schemaErrors(form: Section, document: Json): FieldError[] {
 function leafError(field: Field, value: Json): string | null {
   if (field.kind === "number") return numberError(field, value);
   if (field.kind === "list") return listError(field, value);
-  if (field.kind === "multiple") return multipleChoiceError(field, value);
+  if (field.kind === "multiple") return multipleError(field, value);
   if (field.kind === "nested" && !Array.isArray(value)) return text.needsNested;
   return null;
 }
@@ -103,7 +103,7 @@ function listError({ item, minItems, maxItems }: List, value: Json): string | nu
   return items.length > maxItems ? text.tooManyNumbers(maxItems) : null;
 }
 
-function multipleChoiceError({ minItems }: MultipleChoice, value: Json): string | null {
+function multipleError({ minItems }: Multiple, value: Json): string | null {
   const selected = Array.isArray(value) ? value.length : 0;
   return selected < minItems ? text.selectMore(minItems) : null;
 }

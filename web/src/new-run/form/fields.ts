@@ -73,7 +73,7 @@ export interface List extends Common {
   maxItems: number;
 }
 
-export interface MultipleChoice extends Common {
+export interface Multiple extends Common {
   kind: "multiple";
   options: Json[];
   minItems: number;
@@ -88,7 +88,7 @@ interface Constant extends Common {
   kind: "constant";
 }
 
-export type Leaf = NumberField | Choice | List | MultipleChoice | Plain;
+export type Leaf = NumberField | Choice | List | Multiple | Plain;
 export type Field = Section | Union | Rows | Constant | Leaf;
 
 export function formOf(schema: Schema): Section {
