@@ -4,6 +4,7 @@ from contextlib import ExitStack
 
 import pytest
 from drive import QUICK, running
+from small_spec import SMALL_SCENE
 
 SHORT = QUICK | {
     "MICROCOSMOS_DEMONSTRATION": "0",
@@ -31,15 +32,8 @@ def product(tmp_path_factory):
 @pytest.fixture(scope="session")
 def spec():
     """The smallest run that is still a run."""
-    return {
-        "experiment": "quality-diversity",
-        "seed": 7,
-        "world": {"width": 32, "height": 32},
-        "body": {"nodes": 12},
-        "control": {"period": 30},
-        "task": {"steps": 60},
-        "search": {"generations": 12, "batch": 16, "block": 8},
-    }
+    search = {"generations": 12, "batch": 16, "block": 8}
+    return SMALL_SCENE | {"seed": 7, "search": search}
 
 
 @pytest.fixture(scope="package")

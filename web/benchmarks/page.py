@@ -18,7 +18,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "faults"))
 
 from browser import launched
-from drive import ROOT, Installation, wait_until
+from drive import ROOT, Installation, running, wait_until
 from large import creatures_of, write_run
 from playwright.sync_api import Browser, Page, Response, ViewportSize
 from playwright.sync_api import TimeoutError as Late
@@ -88,16 +88,13 @@ BLOCKS = """
 
 def main() -> None:
     os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[:CORES])
-    with tempfile.TemporaryDirectory() as folder:
-        product = Installation(Path(folder) / "data", SETTINGS)
-        product.start()
-        try:
-            runs = prepare(product)
-            with launched() as browser:
-                Console(width=110).print(table(browser, product, runs))
-        finally:
-            product.end()
-            product.close()
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        running(Path(folder) / "data", SETTINGS) as product,
+    ):
+        runs = prepare(product)
+        with launched() as browser:
+            Console(width=110).print(table(browser, product, runs))
 
 
 def prepare(product: Installation) -> tuple[str, str, str]:
@@ -268,10 +265,8 @@ def gallery(browser: Browser, url: str) -> str:
 
 def script(browser: Browser, product: Installation, run: str) -> str:
     """Size of the scripts that each page loads, gzipped."""
-    built = ROOT / "web" / "dist"
-    sizes = {
-        file.name: len(gzip.compress(file.read_bytes())) / 1000 for file in built.rglob("*.js")
-    }
+    files = (ROOT / "web" / "dist").rglob("*.js")
+    sizes = {file.name: len(gzip.compress(file.read_bytes())) / 1000 for file in files}
     archive = product.http.get(f"/api/v1/runs/{run}/archive").raise_for_status().json()
     paths = {
         "a run": f"/runs/{run}",

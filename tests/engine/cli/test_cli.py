@@ -11,21 +11,14 @@ from importlib import import_module
 
 import httpx
 import pytest
+from small_spec import SMALL_SCENE
 
 from microcosmos.archive.file import read_table
 from microcosmos.cli import pictures
 
 run_command = import_module("microcosmos.cli.run")
 
-SPEC = {
-    "experiment": "quality-diversity",
-    "seed": 5,
-    "world": {"width": 32, "height": 32},
-    "body": {"nodes": 12},
-    "control": {"period": 30},
-    "task": {"steps": 60},
-    "search": {"generations": 12, "batch": 16},
-}
+SPEC = SMALL_SCENE | {"seed": 5, "search": {"generations": 12, "batch": 16}}
 
 
 @pytest.fixture
