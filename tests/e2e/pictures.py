@@ -14,7 +14,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
-from browser import launched, overhear
+from browser import collect_complaints, launched
 from drive import ROOT, Installation, running
 from layout import THEMES, WIDTHS, faults
 from pages import NOWHERE, TOUR_TAKEN, hold_still, product_pages, visit
@@ -79,7 +79,7 @@ def take_all(browser: Browser, address: str) -> list[str]:
             )
             context.add_init_script(TOUR_TAKEN)
             page = context.new_page()
-            overhear(page, wrong)
+            collect_complaints(page, wrong)
             for target in product_pages(address):
                 name = f"{target.name}-{width}-{theme}"
                 if not visit(page, address, target, HOUR):
@@ -119,7 +119,7 @@ def await_motions(page: Page) -> None:
 
 
 def save(png: bytes, name: str) -> None:
-    """Keep a picture in few colours, each the very one that most of its pixels have."""
+    """Save a picture in few colours, each the most frequent one of its pixels."""
     picture = Image.open(io.BytesIO(png)).convert("RGB")
     method, still = Image.Quantize.MAXCOVERAGE, Image.Dither.NONE
     few = picture.quantize(COLOURS, method=method, dither=still)

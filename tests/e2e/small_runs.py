@@ -35,7 +35,7 @@ OF_PRESETS: dict[str, tuple[str, str, dict[str, Any]]] = {
         {"nodes": [200, 400, 800], "width": 64, "height": 64, "all_pairs": 400, "steps": 10},
     ),
 }
-"""Experiment, preset, and what is smaller than in it."""
+"""Experiment, preset, and the fields that replace the preset's."""
 
 
 def submit_small_runs(product: Installation) -> dict[str, str]:

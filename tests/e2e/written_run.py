@@ -1,4 +1,4 @@
-"""A run that no worker computes: what one would write of it is written here."""
+"""A run whose generations a test writes, in place of a worker."""
 
 from typing import Any
 from uuid import UUID

@@ -1,8 +1,8 @@
-"""The main job at full size: `make acceptance` prints what `make test` shows small.
+"""Acceptance checks: `make acceptance` repeats tests of `make test` at full size.
 
 Four searches at equal evaluations, five seeds each, submitted over HTTP; a run that is
 killed, stopped, paused and resumed, whose archive has to be byte for byte the undisturbed
-one, as has that of a second start_product, on PostgreSQL and a Redis server; creatures that
+one, as has that of a second installation, on PostgreSQL and a Redis server; creatures that
 sense and collect energy; searches with derivatives and without; a page that is left open for
 half an hour, or for as many minutes as `MINUTES` says; and thousands of malformed files.
 Names of parts choose some.
@@ -15,7 +15,7 @@ from pathlib import Path
 
 import malformed_hdf5
 import rich
-from databases import Missing, services
+from databases import Missing, service_settings
 from drive import Installation, interrupt, kill_job, pause_and_resume, running, stop_worker
 from left_open import leave_open
 from searches import HOURS, METHODS, SEEDS, carry_out, compare, compare_slopes, forage, spec
@@ -59,7 +59,7 @@ def databases(product: Installation) -> bool:
     embedded = product.archive(carry_out(product, document, "SQLite, embedded Redis")["id"])
     try:
         with (
-            services() as settings,
+            service_settings() as settings,
             running(product.folder.parent / "elsewhere", SETTINGS | settings) as other,
         ):
             title = "PostgreSQL, Redis server"

@@ -1,4 +1,4 @@
-"""Real servers, workers, databases and queues, to be disturbed."""
+"""Fixtures with real servers, workers, databases and queues, which tests disturb."""
 
 from contextlib import ExitStack
 
@@ -31,7 +31,7 @@ def product(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def spec():
-    """The smallest run that is still a run."""
+    """A search of twelve generations."""
     search = {"generations": 12, "batch": 16, "block": 8}
     return SMALL_SCENE | {"seed": 7, "search": search}
 

@@ -213,7 +213,7 @@ class Installation:
 
 @contextmanager
 def running(folder: Path, environment: dict[str, str]) -> Iterator[Installation]:
-    """An installation that is started, and ended at the end."""
+    """Yield a started installation, and end it."""
     product = Installation(folder, environment)
     try:
         product.start()

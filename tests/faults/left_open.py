@@ -1,4 +1,4 @@
-"""A page that is left open on a running run for half an hour, looked at all the while.
+"""The memory of a page that shows a running run for half an hour.
 
 Once a minute everything that the page does not need any more is collected; what is left, and
 how many nodes its document has, is noted. The first third is for warming up. In the last

@@ -178,7 +178,7 @@ def compare_slopes(product: Installation) -> bool:
     }
     most = [min(one[axis][-1] for runs in curves.values() for one in runs) for axis in (0, 1)]
     found = {
-        method: [[at(one, axis, most[axis]) for one in runs] for axis in (0, 1)]
+        method: [[score_at(one, axis, most[axis]) for one in runs] for axis in (0, 1)]
         for method, runs in curves.items()
     }
     columns = ("equal evaluations", "equal device-seconds")
@@ -203,7 +203,7 @@ def curve(product: Installation, run: dict) -> np.ndarray:
     return np.array([found["evaluations"], np.cumsum(seconds), found["qd_score"]])
 
 
-def at(one: np.ndarray, axis: int, most: float) -> float:
+def score_at(one: np.ndarray, axis: int, most: float) -> float:
     """The QD score of the last generation that ended by then."""
     return float(one[2, np.searchsorted(one[axis], most, side="right") - 1])
 

@@ -10,7 +10,7 @@ import malformed
 import malformed_hdf5
 import pytest
 from drive import ROOT
-from uploads import LIES, all_cases, lie, send, watched
+from uploads import FALSE_LENGTHS, all_cases, send, send_false_length, watched
 
 FEW, MANY = 64, 8
 """Send every 64th, or every 8th, of about three thousand files; `make acceptance` sends all."""
@@ -20,15 +20,15 @@ FEW, MANY = 64, 8
 def canary(tmp_path):
     """Another valid file of this machine, which must not be read."""
     path = tmp_path / "canary.h5"
-    path.write_bytes(malformed_hdf5.whole())
+    path.write_bytes(malformed_hdf5.valid_file())
     return path
 
 
 def test_the_original_files_are_valid(product):
-    for body in (malformed.written(malformed.good()), malformed_hdf5.whole()):
+    for body in (malformed.encoded(malformed.valid_document()), malformed_hdf5.valid_file()):
         answer = product.http.post("/api/v1/creatures", content=body)
         assert answer.status_code in (200, 201)
-        assert answer.json()["creature"] == malformed.good()["sha256"]
+        assert answer.json()["creature"] == malformed.valid_document()["sha256"]
 
 
 @pytest.mark.parametrize("every", [FEW, pytest.param(MANY, marks=pytest.mark.long)])
@@ -47,8 +47,8 @@ def test_a_byte_order_mark_is_named(product):
 
 
 def test_a_false_content_length_does_no_harm(product):
-    for name, (sent, status) in LIES.items():
-        answer = lie(product.port, sent)
+    for name, (sent, status) in FALSE_LENGTHS.items():
+        answer = send_false_length(product.port, sent)
         assert not answer or status in answer, name
         assert product.http.get("/healthz").status_code == 200
 
@@ -106,7 +106,7 @@ def test_the_kernel_ends_slow_sandboxes(action, limit, ended):
 
 def test_a_killed_sandbox_is_replaced(product):
     product.signal("server.creatures.sandbox_process", signal.SIGKILL)
-    body = malformed.written(malformed.good())
+    body = malformed.encoded(malformed.valid_document())
     answers = [product.http.post("/api/v1/creatures", content=body) for _ in range(3)]
     assert {answer.status_code for answer in answers} <= {200, 503}
     assert answers[-1].status_code == 200

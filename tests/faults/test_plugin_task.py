@@ -31,7 +31,7 @@ SMALL = {
 
 
 @pytest.fixture
-def hire(tmp_path):
+def start_plugin_worker(tmp_path):
     """Starts a second worker of an installation, with the example and a broken module."""
     hired = []
     module, broken = shutil.copy(EXAMPLE, tmp_path), tmp_path / "broken.py"
@@ -56,7 +56,9 @@ def worker_with_plugins(product):
     return next((one for one in product.get("workers") if one["plugins"]), None)
 
 
-def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(start_product, hire, tmp_path):
+def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(
+    start_product, start_plugin_worker, tmp_path
+):
     product = start_product(WORKERS="1")
     wait_until(lambda: product.get("workers"), 60, "its worker lives")
     refused = product.http.post("/api/v1/runs", json=SMALL)
@@ -65,7 +67,7 @@ def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(start_product, 
     assert "no worker has 'plugin_task.straight'" in messages["task.fitness"]
     assert "docs/plugins.md" in messages["body.builder"]
 
-    worker = hire(product)
+    worker = start_plugin_worker(product)
     names = [f"plugin_task.{name}" for name in ("straight", "sway", "cross")]
     assert {one["name"] for one in worker["plugins"]} == set(names)
     (failed,) = worker["unloaded"]

@@ -11,7 +11,7 @@ from contextlib import suppress
 
 import h5py
 import pytest
-from databases import Missing, services
+from databases import Missing, service_settings
 from drive import interrupt, kill_job, kill_worker, pause_and_resume, stop_worker, wait_until
 
 from microcosmos.archive import file
@@ -100,10 +100,10 @@ def test_a_sweep_that_is_killed_and_paused_ends_with_the_same_table(product):
 
 
 @pytest.fixture
-def elsewhere():
+def postgresql_and_redis():
     """The settings of an installation on this machine's PostgreSQL and Redis."""
     try:
-        with services() as settings:
+        with service_settings() as settings:
             yield settings
     except Missing as missing:
         pytest.skip(str(missing))
@@ -111,10 +111,10 @@ def elsewhere():
 
 @pytest.mark.long
 def test_postgresql_and_a_redis_server_give_the_same_bytes(
-    elsewhere, start_product, spec, undisturbed
+    postgresql_and_redis, start_product, spec, undisturbed
 ):
     """`undisturbed` is of SQLite and the embedded Redis."""
-    product = start_product(**elsewhere)
+    product = start_product(**postgresql_and_redis)
     assert "the one that MICROCOSMOS_REDIS_URL names" in product.output.read_text()
     assert not product.named("redis-server")
     assert not list(product.folder.glob("*.sqlite"))

@@ -1,4 +1,4 @@
-"""A server that asks for tokens: its first one, others, and what happens when they end."""
+"""A server that requires tokens: the first one, further ones, and their revocation."""
 
 import re
 import stat
@@ -13,19 +13,19 @@ SECRET = re.compile(r"mc_[\w-]{43}")
 
 
 @pytest.fixture
-def guarded(common, tmp_path):
+def protected_product(product_settings, tmp_path):
     """A product without workers that needs a token even from this machine."""
     needed = {"MICROCOSMOS_AUTH": "required", "WORKERS": "0"}
-    with running(tmp_path / "data", common | needed) as product:
+    with running(tmp_path / "data", product_settings | needed) as product:
         yield product
 
 
-def test_an_admin_signs_in_and_manages_tokens(guarded, new_page):
-    alice, admin, first = new_page(), new_page(), first_token(guarded)
-    sign_in(admin, guarded.url, first)
+def test_an_admin_signs_in_and_manages_tokens(protected_product, new_page):
+    alice, admin, first = new_page(), new_page(), first_token(protected_product)
+    sign_in(admin, protected_product.url, first)
     secret = make_a_token(admin)
-    use_it(alice, guarded.url, secret)
-    stay_within_its_scope(alice, guarded, first)
+    use_it(alice, protected_product.url, secret)
+    stay_within_its_scope(alice, protected_product, first)
     revoke_it(admin)
     # The event stream of the page ends, and the page asks for a token.
     expect(alice.get_by_role("heading", name="Sign in")).to_be_visible()

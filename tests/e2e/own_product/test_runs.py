@@ -1,4 +1,4 @@
-"""Runs are named, found, sorted and compared, and workers say what they are at."""
+"""Runs are named, found, sorted and compared, and the list of workers shows their runs."""
 
 import re
 
