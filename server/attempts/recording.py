@@ -10,8 +10,8 @@ from uuid import UUID
 from sqlalchemy import func, insert, select
 from sqlalchemy.orm import Session
 
-from microcosmos.archive.creature import LICENCE
 from microcosmos.archive.report import Report
+from microcosmos.naming import LICENCE
 
 from ..creatures.storage import creature_columns, insert_and_lock, link
 from ..tables import Elite, Generation, Result

@@ -13,8 +13,8 @@ from redis import RedisError
 from sqlalchemy.exc import OperationalError, TimeoutError
 from starlette.exceptions import HTTPException
 
-from microcosmos.archive.creature import CreatureError
 from microcosmos.spec import field_path
+from microcosmos.spec.creature import CreatureError
 
 from .schemas import Wire
 

@@ -7,9 +7,9 @@ from uuid import UUID
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from microcosmos.archive.creature import CreatureError
 from microcosmos.archive.initial import genes_of
 from microcosmos.spec import Evolution, Refinement, Spec
+from microcosmos.spec.creature import CreatureError
 
 from ..core.database import insert_missing
 from ..tables import Creature, InitialCreature

@@ -22,9 +22,9 @@ import numpy as np
 from pydantic import ValidationError
 
 from microcosmos.archive import creature, creature_h5, pedigree
-from microcosmos.archive.creature import CreatureError
 from microcosmos.naming import FORMAT, encode
 from microcosmos.spec import EXPERIMENTS
+from microcosmos.spec.creature import CreatureError
 
 from ..core import json_body
 from ..core.errors import Problem, ProblemError, problem_of

@@ -8,8 +8,8 @@ from typing import Any
 from pydantic import ValidationError
 from sqlalchemy.orm import Session
 
-from microcosmos.archive.creature import CreatureError
 from microcosmos.spec import Spec
+from microcosmos.spec.creature import CreatureError
 
 from ..core.errors import (
     FieldError,

@@ -1,9 +1,10 @@
-"""Creature files as JSON: reading and writing."""
+"""Creature files as JSON: parse one, and the functions that name, build and interpret it."""
 
 import json
 from typing import Any
 
-from ..naming import FORMAT, LICENCE, canonical, document, name  # noqa: F401
+# Callers find these beside `parse`, as docs/formats.md shows.
+from ..naming import canonical, document, name  # noqa: F401
 from ..spec.creature import CreatureError, Identity, check, room, scene_of  # noqa: F401
 
 

@@ -11,9 +11,10 @@ import numpy as np
 
 from ..naming import canonical, decode
 from ..spec import shape
+from ..spec.creature import scene_of
 from . import file as hdf5
 from . import hdf5_guard
-from .creature import parse, scene_of
+from .creature import parse
 
 FORMAT = "microcosmos-creature-hdf5/1"
 

@@ -126,7 +126,7 @@ def to_ribs(archive: Source) -> Any:
     """
     data = _bytes(archive)
     found, peer = columns(data), require("ribs.archives", "ribs[visualize]")
-    solution, measures = _beside(found, "solution_"), _beside(found, "measures_")
+    solution, measures = _stacked(found, "solution_"), _stacked(found, "measures_")
     fields = list(found)[list(found).index("threshold") + 1 : -1]
     fields = {name: np.asarray(found[name]) for name in fields}
     filled = _empty(peer, data, solution.shape[1], fields)
@@ -161,7 +161,7 @@ def _middles(filled: Any, index: np.ndarray) -> np.ndarray:
     return filled.lower_bounds + place / filled.dims * filled.interval_size
 
 
-def _beside(found: dict[str, Any], prefix: str) -> np.ndarray:
+def _stacked(found: dict[str, Any], prefix: str) -> np.ndarray:
     return np.stack([x for name, x in found.items() if name.startswith(prefix)], 1)
 
 

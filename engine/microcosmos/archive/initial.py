@@ -10,9 +10,8 @@ from typing import Any
 from ..naming import decode, encode
 from ..spec import Direct, Evolution, Grown, Weights, shape
 from ..spec.control import Control
-from ..spec.creature import Identity
+from ..spec.creature import CreatureError, Identity
 from ..spec.creature.cppn_genes import Connections, Nodes, check_genes
-from .creature import CreatureError
 
 Genes = dict[str, Any]
 """The genome of a creature's identity."""

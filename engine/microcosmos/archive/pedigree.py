@@ -26,7 +26,7 @@ def split(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[dict[str, Any]]
         raise CreatureError("ancestors", needed, got)
     file = parse({name: part for name, part in data.items() if name != "ancestors"})
     ancestors = [_ancestor(one, place) for place, one in enumerate(files)]
-    _refuse_strangers(file, ancestors)
+    _refuse_unrelated(file, ancestors)
     return file, ancestors
 
 
@@ -43,7 +43,7 @@ def parents(file: Mapping[str, Any]) -> list[str]:
     return list((file["provenance"] or {}).get("parents", ()))
 
 
-def _refuse_strangers(file: Mapping[str, Any], ancestors: list[dict[str, Any]]) -> None:
+def _refuse_unrelated(file: Mapping[str, Any], ancestors: list[dict[str, Any]]) -> None:
     by_name = {one["sha256"]: one for one in ancestors}
     known, nearest = {file["sha256"]}, parents(file)
     while nearest:

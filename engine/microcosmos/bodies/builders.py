@@ -81,10 +81,10 @@ def star(arms: int, arm_nodes: int, spacing: float, **stiffness: Unpack[Stiffnes
     _refuse_fewer("arm_nodes", arm_nodes, 1)
     turn = 2 * np.pi * np.arange(arms) / arms
     along = spacing * np.arange(1, arm_nodes + 1)
-    tips = np.stack([np.cos(turn), np.sin(turn)], 1)[:, None] * along[None, :, None]
+    arm_positions = np.stack([np.cos(turn), np.sin(turn)], 1)[:, None] * along[None, :, None]
     outer = 1 + np.arange(arms * arm_nodes).reshape(arms, arm_nodes)
     inner = np.concatenate([np.zeros((arms, 1), int), outer[:, :-1]], 1)
-    positions = np.concatenate([np.zeros((1, 2)), tips.reshape(-1, 2)])
+    positions = np.concatenate([np.zeros((1, 2)), arm_positions.reshape(-1, 2)])
     return from_edges(positions, np.stack([inner.ravel(), outer.ravel()], 1), **stiffness)
 
 

@@ -120,7 +120,7 @@ def build_plan(chosen: spec.Evolution) -> Plan:
         names=names_of(chosen.emitters),
         counters=neat.first_counters(*fixed),
         device=device.device_kind(),
-        limits=build_limits(chosen.search.stop),
+        limits=build_stop_limits(chosen.search.stop),
         reevaluation=build_reevaluation(chosen),
         force_free=chosen.coupling.force_free,
         measures=measures_of(scene),
@@ -158,7 +158,7 @@ def _counters(plan: Plan, genes: list[dict[str, Any]]) -> neat.Counters:
     )
 
 
-def build_limits(stop: spec.Stop) -> Limits:
+def build_stop_limits(stop: spec.Stop) -> Limits:
     given = {name: value for name, value in stop.model_dump().items() if value is not None}
     return Limits(**given)
 

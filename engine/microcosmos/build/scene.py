@@ -36,14 +36,14 @@ def build_task(
     by the one that a genotype has grown.
     """
     body = spec.shape(scene.body) if body is None else body
-    place = build_world(scene.world, scene.coupling, body, dtype)
+    box = build_world(scene.world, scene.coupling, body, dtype)
     middle = np.array([scene.world.width, scene.world.height]) / 2
     positions = body.positions - body.positions.mean(0) + middle
-    start = world.at_rest(place, jnp.asarray(positions, dtype))
+    start = world.at_rest(box, jnp.asarray(positions, dtype))
     gait = isinstance(scene.control, spec.Gait)
     encoding = None if gait else build_encoding(scene, room or ROOM)
     return search.Task(
-        place,
+        box,
         start,
         encoding,
         build_goal(scene.task),
@@ -60,9 +60,9 @@ def build_goal(task: spec.Task) -> search.Goal:
     return search.Goal(displacement, energy * task.energy_weight)
 
 
-def build_placements(place: spec.World) -> jnp.ndarray | None:
+def build_placements(box: spec.World) -> jnp.ndarray | None:
     """Build the shifts of the energy in each world of a creature; None for one world."""
-    energy, size = place.energy, (place.width, place.height)
+    energy, size = box.energy, (box.width, box.height)
     if energy is None or energy.placements == 1:
         return None
     shifts = fields.placements(size, energy.placements, energy.seed)
@@ -70,12 +70,12 @@ def build_placements(place: spec.World) -> jnp.ndarray | None:
 
 
 def build_world(
-    place: spec.World, form: spec.Coupling, body: bodies.Body, dtype: Any = jnp.float32
+    box: spec.World, form: spec.Coupling, body: bodies.Body, dtype: Any = jnp.float32
 ) -> world.World:
     """Build the box of fluid around bodies."""
-    size = (place.width, place.height)
+    size = (box.width, box.height)
     return world.World(
-        viscosity=jnp.asarray(place.viscosity, dtype),
+        viscosity=jnp.asarray(box.viscosity, dtype),
         rods=build_rods(body, dtype),
         groups=groups.Groups(jnp.asarray(body.member, jnp.int32), body.count),
         size=size,
@@ -87,13 +87,13 @@ def build_world(
             constraint_iterations=form.constraint_iterations,
             layers=form.layers,
             kernel=KERNELS[form.kernel],
-            magic=MAGIC[place.magic],
-            fluid=place.fluid,
+            magic=MAGIC[box.magic],
+            fluid=box.fluid,
         ),
-        limits=build_limits(form, place.viscosity, dtype),
+        limits=build_limits(form, box.viscosity, dtype),
         nu_c=_scalar(form.nu_c, dtype),
-        steric=build_steric(place.steric, dtype),
-        energy=build_energy(place.energy, size, dtype),
+        steric=build_steric(box.steric, dtype),
+        energy=build_energy(box.energy, size, dtype),
     )
 
 

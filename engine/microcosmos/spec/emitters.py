@@ -11,20 +11,20 @@ from .sources import CMA_MAE, CMA_ME, CMA_MEGA, LINE, NEAT, OMG_MEGA
 Rate = Annotated[float, Field(ge=0.0, le=1.0)]
 
 
-class Sharing(Part):
+class WeightedEmitter(Part):
     """An emitter beside others."""
 
     share: int = field(1, ge=1, le=1000)
     """Weight of this emitter when the batch is divided among all emitters."""
 
 
-class RandomEmitter(Sharing):
+class RandomEmitter(WeightedEmitter):
     """New random genomes: a baseline that learns nothing."""
 
     operator: Literal["random"] = "random"
 
 
-class NeatEmitter(Sharing):
+class NeatEmitter(WeightedEmitter):
     """Elites varied by NEAT's mutations, some crossed with another elite first."""
 
     model_config = after(f"{NEAT}, sections 3.1 and 3.2")
@@ -34,7 +34,7 @@ class NeatEmitter(Sharing):
     """Probability of crossover with a second parent."""
 
 
-class LineEmitter(Sharing):
+class LineEmitter(WeightedEmitter):
     """An elite plus an isotropic step and a step along the line to another elite."""
 
     model_config = after(LINE)
@@ -46,7 +46,7 @@ class LineEmitter(Sharing):
     """Standard deviation of the step along the line, relative to the line's length."""
 
 
-class GaussianEmitter(Sharing):
+class GaussianEmitter(WeightedEmitter):
     """An elite plus an isotropic step."""
 
     operator: Literal["gaussian"] = "gaussian"
@@ -54,7 +54,7 @@ class GaussianEmitter(Sharing):
     """Standard deviation of the step; genes lie within ±1."""
 
 
-class CmaMaeEmitter(Sharing):
+class CmaMaeEmitter(WeightedEmitter):
     """CMA-MAE: an evolution strategy that improves on thresholds, which follow the archive."""
 
     model_config = after(CMA_MAE)
@@ -68,7 +68,7 @@ class CmaMaeEmitter(Sharing):
     """Threshold of empty cells."""
 
 
-class CmaMeEmitter(Sharing):
+class CmaMeEmitter(WeightedEmitter):
     """CMA-ME's improvement emitters of QDax, which must be installed."""
 
     model_config = after(CMA_ME)
@@ -80,7 +80,7 @@ class CmaMeEmitter(Sharing):
     """Emitters that take turns, one per generation."""
 
 
-class PopulationEmitter(Sharing):
+class PopulationEmitter(WeightedEmitter):
     """NEAT with its own population (species, fitness sharing, crossover) beside the archive.
 
     Empty values are those of the preset.
@@ -106,7 +106,7 @@ class PopulationEmitter(Sharing):
     """Probability of crossover with a second parent."""
 
 
-class LamarckianEmitter(Sharing):
+class LamarckianEmitter(WeightedEmitter):
     """NEAT's variation; offspring then learn by gradients and pass on what they learned."""
 
     model_config = after(OMG_MEGA)
@@ -126,7 +126,7 @@ class LamarckianEmitter(Sharing):
     """Steps that a gradient keeps in memory at a time, recomputing the others; empty: all."""
 
 
-class CmaMegaEmitter(Sharing):
+class CmaMegaEmitter(WeightedEmitter):
     """CMA-MEGA: an evolution strategy over gradient steps of fitness and descriptors."""
 
     model_config = after(CMA_MEGA)

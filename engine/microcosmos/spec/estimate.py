@@ -58,8 +58,8 @@ def _(spec: Evolution) -> Estimate:
     evaluations = search.batch * search.generations + gradients
     record = 2 * (48 * search.generations + 96 * min(evaluations, 4 * spec.archive.cells))
     computed = ceil(search.batch / search.block) * search.block * search.generations
-    one = simulation(spec.scene, spec.genome.max_nodes)
-    memory = search.block * one + archive + vary + record + slopes(spec)
+    one = simulation_bytes(spec.scene, spec.genome.max_nodes)
+    memory = search.block * one + archive + vary + record + emitter_gradient_bytes(spec)
     cell_steps = (computed + GRADIENT * gradients) * cell_steps_of(spec.scene)
     return Estimate(memory, evaluations, cell_steps)
 
@@ -67,7 +67,7 @@ def _(spec: Evolution) -> Estimate:
 @estimate.register
 def _(spec: Folding) -> Estimate:
     cells, count = spec.world.width * spec.world.height, len(shape(spec.body).positions)
-    in_flight = spec.block * (fluid(cells) + nodes(count * spec.coupling.layers))
+    in_flight = spec.block * (fluid_bytes(cells) + node_bytes(count * spec.coupling.layers))
     updates = spec.updates * ceil(len(spec.targets) / spec.block) * spec.block
     return Estimate(
         memory_bytes=in_flight + spec.gradient_bytes + 64 * FLOAT * count * len(spec.targets),
@@ -82,7 +82,8 @@ def _(spec: Refinement) -> Estimate:
     scene = scene_of(file)
     nodes, _ = room(file) or (0, 0)
     return Estimate(
-        memory_bytes=spec.block * simulation(scene, nodes) + gradient(scene, spec.segment),
+        memory_bytes=spec.block * simulation_bytes(scene, nodes)
+        + gradient_bytes(scene, spec.segment),
         evaluations=1 + spec.steps * (1 + spec.block),
         cell_steps=cell_steps_of(scene) * (1 + spec.steps * (GRADIENT + spec.block)),
     )
@@ -92,7 +93,7 @@ def _(spec: Refinement) -> Estimate:
 def _(spec: Gaits) -> Estimate:
     block, points = len(spec.viscosities), len(spec.viscosities) * len(spec.strokes)
     scenes = [spec.scene(*stroke, 0.1) for stroke in spec.strokes]
-    largest = max(simulation(scene, 0) for scene in scenes)
+    largest = max(simulation_bytes(scene, 0) for scene in scenes)
     memory = min(spec.block, block) * largest
     return Estimate(memory, points, points * cell_steps_of(scenes[0]))
 
@@ -103,17 +104,18 @@ def _(spec: Scaling) -> Estimate:
     pairs = 64 * min(spec.all_pairs, most) * CHUNK // 16
     steps = spec.steps + 3 * spec.part_steps
     return Estimate(
-        memory_bytes=fluid(cells) + nodes(most) + pairs,
+        memory_bytes=fluid_bytes(cells) + node_bytes(most) + pairs,
         evaluations=len(spec.nodes),
         cell_steps=len(spec.nodes) * cells * steps,
     )
 
 
-def slopes(spec: Evolution) -> int:
+def emitter_gradient_bytes(spec: Evolution) -> int:
     """Return the bytes of the gradients that emitters compute at once."""
-    asked = [pair for pair in zip(spec.emitters, spec.gradients, strict=True) if pair[1]]
-    segments = [(getattr(emitter, "segment", None), count) for emitter, count in asked]
-    needed = (gradient(spec.scene, one) * min(n, spec.search.block) for one, n in segments)
+    scene, block = spec.scene, spec.search.block
+    pairs = zip(spec.emitters, spec.gradients, strict=True)
+    segments = [(getattr(emitter, "segment", None), count) for emitter, count in pairs if count]
+    needed = (gradient_bytes(scene, one) * min(count, block) for one, count in segments)
     return max(needed, default=0)
 
 
@@ -128,14 +130,15 @@ def cell_steps_of(scene: Scene) -> int:
     return placements(world) * world.width * world.height * scene.task.steps
 
 
-def gradient(scene: Scene, segment: int | None) -> int:
+def gradient_bytes(scene: Scene, segment: int | None) -> int:
     """Return the bytes that one creature's gradient keeps."""
     count = len(shape(scene.body).positions)
-    step = reverse.of_step(scene.world, scene.coupling, count)
-    return reverse.in_all(scene.task.steps, segment, step, reverse.of_state(scene.world, count))
+    step = reverse.step_bytes(scene.world, scene.coupling, count)
+    state = reverse.state_bytes(scene.world, count)
+    return reverse.total_bytes(scene.task.steps, segment, step, state)
 
 
-def simulation(scene: Scene, network_nodes: int) -> int:
+def simulation_bytes(scene: Scene, network_nodes: int) -> int:
     """Return the bytes of one simulated creature."""
     count = len(shape(scene.body).positions)
     # A batched choice among activations computes all of them.
@@ -144,7 +147,7 @@ def simulation(scene: Scene, network_nodes: int) -> int:
     if isinstance(scene.control, Direct | Grown):
         controls += 4 * min(count, LAID_OUT) ** 2 * FLOAT
     cells = scene.world.width * scene.world.height
-    return fluid(cells) + nodes(count * scene.coupling.layers) + controls
+    return fluid_bytes(cells) + node_bytes(count * scene.coupling.layers) + controls
 
 
 def _width(control: Controller | Gait | Fold) -> int:
@@ -154,11 +157,11 @@ def _width(control: Controller | Gait | Fold) -> int:
     return max(control.sizes) if isinstance(control, Weights) else 0
 
 
-def fluid(cells: int) -> int:
+def fluid_bytes(cells: int) -> int:
     """Return the bytes of populations before, in and after a step, and of scalar fields."""
     return (4 * PLANES + 8) * cells * FLOAT
 
 
-def nodes(count: int) -> int:
+def node_bytes(count: int) -> int:
     """Return the bytes of windows, transfers by chunks, constraints and positions."""
     return (4 * WINDOW * count + 8 * WINDOW * min(count, CHUNK) + 60 * count) * FLOAT

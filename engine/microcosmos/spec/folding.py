@@ -143,8 +143,8 @@ class Folding(Part):
     def reverse_bytes(self) -> tuple[int, int]:
         """Return the bytes that reverse mode keeps per step and per state of a block."""
         nodes = len(estimated_shape(self.body).positions)
-        step = reverse.of_step(self.world, self.coupling, nodes)
-        return self.block * step, self.block * reverse.of_state(self.world, nodes)
+        step = reverse.step_bytes(self.world, self.coupling, nodes)
+        return self.block * step, self.block * reverse.state_bytes(self.world, nodes)
 
     @property
     def segment(self) -> int | None:
@@ -157,7 +157,7 @@ class Folding(Part):
     @property
     def gradient_bytes(self) -> int:
         """Return the bytes that reverse mode keeps in all."""
-        return reverse.in_all(self.steps, self.segment, *self.reverse_bytes)
+        return reverse.total_bytes(self.steps, self.segment, *self.reverse_bytes)
 
     @property
     def generations(self) -> int:

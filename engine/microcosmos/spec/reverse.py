@@ -8,7 +8,7 @@ from .world import World
 FLOAT = 4
 
 
-def of_step(world: World, coupling: Coupling, nodes: int) -> int:
+def step_bytes(world: World, coupling: Coupling, nodes: int) -> int:
     """Return the bytes that the derivative of a step keeps."""
     floats = 20 * nodes * coupling.constraint_iterations
     if world.fluid:
@@ -17,12 +17,12 @@ def of_step(world: World, coupling: Coupling, nodes: int) -> int:
     return FLOAT * floats
 
 
-def of_state(world: World, nodes: int) -> int:
+def state_bytes(world: World, nodes: int) -> int:
     """Return the bytes of a state from which steps are recomputed."""
     return FLOAT * (9 * world.width * world.height + 5 * nodes)
 
 
-def in_all(steps: int, segment: int | None, step: int, state: int) -> int:
+def total_bytes(steps: int, segment: int | None, step: int, state: int) -> int:
     """Return the bytes of all steps, or of each segment's state and one segment's steps."""
     if segment is None or segment >= steps:
         return steps * step

@@ -27,7 +27,7 @@ from ..fluid import vorticity
 from ..genomes import Drive
 from ..spec import Gait, Scene, Task, shape
 from ..spec.creature import fitness_of
-from ..spec.estimate import placements, simulation
+from ..spec.estimate import placements, simulation_bytes
 from .replay_file import REPLAY_FORMAT
 
 FRAMES = 250
@@ -156,7 +156,7 @@ def interval(scene: Scene, network_nodes: int) -> int:
     simulations = 1 + several if several > 1 else 1  # The recorded one, and those averaged.
     for field, limit, found, unit in (
         ("task.steps", CELL_STEPS, cells * scene.task.steps * simulations, "cell steps"),
-        ("body.nodes", 2**32, simulation(scene, network_nodes), "bytes of memory"),
+        ("body.nodes", 2**32, simulation_bytes(scene, network_nodes), "bytes of memory"),
     ):
         if found > limit:
             raise creature.CreatureError(

@@ -117,7 +117,7 @@ class Fold(Part):
         _refuse_count(self.values, len(graph.joints) + len(graph.edges))
 
 
-class Stroke(Gait):
+class GaitGenome(Gait):
     """A hand-made gait in place of genes."""
 
     encoding: Literal["gait"]

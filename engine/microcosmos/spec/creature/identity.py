@@ -10,21 +10,21 @@ from ..coupling import Coupling
 from ..scene import Gait, Scene
 from ..search import Task
 from ..world import World
-from .genomes import CPPN, Direct, Fold, Grown, PluginGenome, Stroke, Weights
+from .genomes import CPPN, Direct, Fold, GaitGenome, Grown, PluginGenome, Weights
 
 Genome = Annotated[
     Annotated[CPPN, Tag("cppn")]
     | Annotated[Direct, Tag("direct")]
     | Annotated[Weights, Tag("weights")]
     | Annotated[Grown, Tag("cppn-body")]
-    | Annotated[Stroke, Tag("gait")]
+    | Annotated[GaitGenome, Tag("gait")]
     | Annotated[Fold, Tag("fold")]
     | Annotated[PluginGenome, Tag("plugin")],
     *one_of("encoding", ENCODINGS[:-1], name_in("encoding")),
 ]
 
 
-class PlacedWorld(World):
+class CoupledWorld(World):
     """The world and the coupling, on both of which a creature's measures depend."""
 
     coupling: Coupling
@@ -35,7 +35,7 @@ class Identity(Part):
 
     format: Literal["microcosmos-creature/1"]
     genome: Genome
-    world: PlacedWorld
+    world: CoupledWorld
     body: Body
     task: Task
 
@@ -52,7 +52,7 @@ class Identity(Part):
     def scene(self) -> Scene:
         """Return the scene that is simulated."""
         world, genome = self.world.model_dump(), self.genome
-        gait = isinstance(genome, Stroke)
+        gait = isinstance(genome, GaitGenome)
         control = Gait(**genome.model_dump(exclude={"encoding"})) if gait else genome.control
         return Scene(
             coupling=world.pop("coupling"),
