@@ -10,7 +10,7 @@ from typing import Any
 
 import h5py
 import numpy as np
-from malformed import Case, good
+from malformed import Case, valid_document
 
 from microcosmos.archive import creature, creature_h5
 
@@ -22,7 +22,7 @@ Edits = Iterator[tuple[Any, ...]]
 
 
 def valid_file() -> bytes:
-    return creature_h5.dump(creature.parse(good()))
+    return creature_h5.dump(creature.parse(valid_document()))
 
 
 def cases(canary: Path) -> Iterator[Case]:
