@@ -6,7 +6,7 @@ from typing import Any
 import jax.numpy as jnp
 
 from .. import naming, search, spec
-from ..spec.control import Sight
+from ..spec.control import NetworkInputs
 from .scene import build_limits, build_stroke, build_task
 
 
@@ -32,7 +32,7 @@ def _genome(control: spec.Controller | spec.Gait | spec.Fold) -> dict[str, Any]:
     if isinstance(control, spec.Gait):
         return {"encoding": "gait", **written}
     genome: dict[str, Any] = {"encoding": control.encoding, "control": written}
-    if isinstance(control, Sight):
+    if isinstance(control, NetworkInputs):
         genome |= {"inputs": list(control.inputs), "outputs": list(control.outputs)}
     return genome
 

@@ -49,7 +49,7 @@ def build_crowd(chosen: spec.Scaling, nodes: int) -> tuple[scaling.Scene, world.
     """Build a box with many straight filaments at random places, at rest."""
     one = bodies.chain(chosen.filament, SPACING)
     centres = chosen.centres(nodes).tolist()
-    crowd = bodies.together([bodies.placed(one, centre) for centre in centres])
+    crowd = bodies.combined([bodies.placed(one, centre) for centre in centres])
     wide = spec.World(width=chosen.width, height=chosen.height, steric=chosen.steric)
     box = build_world(wide, spec.Coupling(), crowd)
     start = world.at_rest(box, jnp.asarray(crowd.positions, jnp.float32))
