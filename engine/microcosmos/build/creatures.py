@@ -10,8 +10,8 @@ from ..spec.control import NetworkInputs
 from .scene import build_limits, build_stroke, build_task
 
 
-def frame(scene: spec.Scene) -> dict[str, Any]:
-    """Return the identity of a scene's creatures without their genes."""
+def identity_template(scene: spec.Scene) -> dict[str, Any]:
+    """Return the identity of a scene's creatures without their genes; a gait has none."""
     whole = scene.model_dump(mode="json")
     # Limits as numbers: the default of an empty limit must not change a creature.
     limits = {

@@ -11,7 +11,7 @@ from ..bodies import extent
 from ..experiments import gaits, scaling
 from ..experiments.table_file import TableRun
 from ..spec.scaling import SPACING
-from .creatures import build_point, build_stroke_block, frame
+from .creatures import build_point, build_stroke_block, identity_template
 from .scene import build_world
 
 
@@ -73,7 +73,7 @@ def _stroke(chosen: spec.Gaits, form: str, swimmer: str) -> gaits.Stroke:
         viscosities=chosen.viscosities,
         sperm=tuple(_sperm(scene, joints, float(body.bend.min())) for scene in scenes),
         spacing=spacing,
-        identities=tuple(frame(scene) for scene in scenes),
+        identities=tuple(identity_template(scene) for scene in scenes),
     )
 
 

@@ -114,7 +114,7 @@ class Direct(Actuation, InheritedTraits):
         joints, edges = len(body.joints), len(body.edges)
         sizes = {name: joints if name in JOINT_TRAITS else edges for name in self.traits}
         if "rest_angle" in sizes:
-            sizes["rest_angle"] = len(bodies.unfolded(body).joints)
+            sizes["rest_angle"] = len(bodies.layout(body).free)
         return sizes | {"angles": self.weights * joints, "lengths": self.weights * edges}
 
 
@@ -215,7 +215,7 @@ def refuse_unfit(control: Controller, body: Body) -> None:
         )
     if isinstance(control, InheritedTraits) and (control.rest_angle or control.rest_length):
         try:
-            bodies.unfolded(graph)
+            bodies.layout(graph)
         except ValueError as error:
             raise ValueError(
                 f"`control.rest_angle` and `rest_length` must be empty for this `body`: {error}"
