@@ -34,7 +34,7 @@ DIRECT = {
 def main(
     emitter: str = "iso+line", generations: int = 20, batch: int = 32, **changes: Any
 ) -> Any:
-    """The repertoire after so many generations."""
+    """Return the repertoire after `generations`."""
     microcosmos.prepare()
     network = {"control": {"period": 50}, "search": {"batch": batch}}
     spec = microcosmos.parse(SPEC | (network if emitter == "neat" else DIRECT) | changes)

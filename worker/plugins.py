@@ -31,7 +31,7 @@ def files(settings: Settings) -> list[Path]:
     return [Path(part) for part in settings.modules.split(os.pathsep) if part]
 
 
-def load(settings: Settings) -> Sequence[plugins.Unloaded]:
+def load(settings: Settings) -> Sequence[plugins.FailedModule]:
     """Load all plug-ins; log and return those that fail."""
     failed = plugins.load_all(files(settings))
     for one in failed:

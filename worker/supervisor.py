@@ -63,7 +63,7 @@ class Supervisor(BaseWorker):
         finally:
             self.heartbeats.release()
             with loop.logging_outages():
-                self.services.jobs.forget(job.id)
+                self.services.jobs.remove(job.id)
             with loop.logging_outages():
                 error = None if self.killed else "the process of the job died unexpectedly"
                 end_job(self.services, run_id, self.name, error)

@@ -29,7 +29,7 @@ THICKER = 0.8
 
 @dataclass(frozen=True)
 class Case:
-    """A cylinder of `diameter` cells in a periodic box of so many diameters."""
+    """A cylinder of `diameter` cells in a periodic box; its sizes are in diameters."""
 
     reynolds: int
     diameter: int = 16

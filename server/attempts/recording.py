@@ -32,7 +32,7 @@ class Rows:
 
 def rows_of(report: Report, seconds: float) -> Rows:
     """Convert a report; `seconds` is the run's wall time so far."""
-    summary = plain(report.summary)
+    summary = json_values(report.summary)
     run = {
         "generation": int(report.generation),
         "qd_score": finite(report.qd_score),
@@ -59,7 +59,7 @@ def rows_of(report: Report, seconds: float) -> Rows:
         results=[
             {
                 "generation": run["generation"],
-                "values": plain(row.values),
+                "values": json_values(row.values),
                 "creature": row.creature,
             }
             for row in report.rows
@@ -76,7 +76,7 @@ def finite(value: float | None) -> float | None:
     return value if value is not None and math.isfinite(value) else None
 
 
-def plain(values: Mapping[str, Any] | None) -> dict[str, Any] | None:
+def json_values(values: Mapping[str, Any] | None) -> dict[str, Any] | None:
     """Replace numbers that are not finite by None, for JSON."""
     if values is None:
         return None

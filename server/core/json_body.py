@@ -21,7 +21,7 @@ NUL = re.compile(r"(?<!\\)(?:\\\\)*\\u0000")
 
 
 def json_route(limit: int) -> type[APIRoute]:
-    """Return a class of routes that take JSON objects of at most so many bytes.
+    """Return a class of routes that take JSON objects of at most `limit` bytes.
 
     FastAPI itself reads bodies of any length, and JSON that other parsers refuse.
     """

@@ -56,15 +56,19 @@ def main() -> None:
 
 
 def warm_up() -> None:
-    """Do each task once: later the child can load nothing."""
+    """Do each task once: later the child can load nothing. Raise where a task goes wrong."""
     identity = example()
     file = creature.document(identity, None, None)
-    for body in (creature.canonical(file), creature_h5.dump(creature.parse(file))):
-        assert answer(b"creature\n" + body).startswith(RESULT)
-    for body in (b"{}", b"\xff", b"[" * 10_000, HDF5 + bytes(1000)):
-        assert answer(b"creature\n" + body).startswith(PROBLEM)
-    for form in networks.FORMS:
-        assert answer(form.encode() + b"\n" + creature.canonical(identity)).startswith(RESULT)
+    read = (creature.canonical(file), creature_h5.dump(creature.parse(file)))
+    refused = (b"{}", b"\xff", b"[" * 10_000, HDF5 + bytes(1000))
+    written, forms = creature.canonical(identity), [form.encode() for form in networks.FORMS]
+    requests = [(b"creature", body, RESULT) for body in read]
+    requests += [(b"creature", body, PROBLEM) for body in refused]
+    requests += [(form, written, RESULT) for form in forms]
+    for task, body, expected in requests:
+        found = answer(task + b"\n" + body)
+        if not found.startswith(expected):
+            raise RuntimeError(f"{task!r} must answer {expected!r}, got {found[:200]!r}")
 
 
 def example() -> dict[str, Any]:

@@ -77,7 +77,7 @@ class Jobs:
     def _replace(self, queue: Queue, names: Sequence[str]) -> None:
         for job in Job.fetch_many(names, self.redis, JSONSerializer):
             if job:
-                self._forget(job)
+                self._remove(job)
         data = [
             Queue.prepare_data(
                 RUN_JOB, (name,), job_id=name, timeout=-1, result_ttl=0, failure_ttl=3600
@@ -101,7 +101,7 @@ class Jobs:
     ) -> None:
         """Enqueue a rendering. Replays go first, unless the holder of a share orders them."""
         job_id = self.rendering_id(creature, kind)
-        self.forget(job_id)
+        self.remove(job_id)
         queue = self.audits if kind in TIMEOUTS else self.renderings
         queue.enqueue(
             RENDER_JOB,
@@ -117,7 +117,7 @@ class Jobs:
 
     def give_up(self, job: Job, reason: str) -> None:
         """Mark a job as failed whose worker has died."""
-        self._forget(job)
+        self._remove(job)
         job.set_status(JobStatus.FAILED)
         with self.redis.pipeline() as pipeline:
             job.failed_job_registry.add(job, FAILURE_SECONDS, reason, pipeline)
@@ -133,11 +133,11 @@ class Jobs:
             return Job.fetch(job_id, connection=self.redis, serializer=JSONSerializer)
         return None
 
-    def forget(self, job_id: str) -> None:
+    def remove(self, job_id: str) -> None:
         if job := self.find(job_id):
-            self._forget(job)
+            self._remove(job)
 
-    def _forget(self, job: Job) -> None:
+    def _remove(self, job: Job) -> None:
         """Remove a job with every trace of its executions.
 
         RQ's own method raises if a worker died: the data of an execution expires before its

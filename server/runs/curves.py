@@ -15,7 +15,7 @@ COUNT_PREFIX = "diverged: "
 
 
 def thinned(last: int, points: int) -> list[int]:
-    """Return about so many generations, evenly spaced from 1 to the last."""
+    """Return about `points` generations, evenly spaced from 1 to the last."""
     if last <= points:
         return list(range(1, last + 1))
     return sorted({1 + round(i * (last - 1) / (points - 1)) for i in range(points)})

@@ -27,7 +27,7 @@ def read_generations(
     session: SessionDep,
     points: Annotated[int | None, Query(ge=2, le=10_000)] = None,
 ) -> Curves:
-    """Return all generations, or about so many of them, evenly spaced.
+    """Return all generations, or about `points` of them, evenly spaced.
 
     `summary` has the newest values since the previous point.
     """
@@ -49,7 +49,7 @@ def read_species(
     session: SessionDep,
     points: Annotated[int, Query(ge=2, le=10_000)] = 400,
 ) -> Species:
-    """Return the sizes of the species in about so many generations, evenly spaced.
+    """Return the sizes of the species in about `points` generations, evenly spaced.
 
     The columns are empty if the search has no species.
     """

@@ -72,7 +72,7 @@ def refuse_too_large(services: Services, spec: Spec) -> None:
 
 
 def too_large(spec: Spec, limit: int) -> FieldError | None:
-    """Return the error of a spec that needs more than so many bytes."""
+    """Return the error of a spec that needs more than `limit` bytes."""
     needed = estimate(spec).memory_bytes
     if needed <= limit:
         return None

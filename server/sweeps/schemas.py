@@ -27,8 +27,8 @@ def seeds_sent(value: Any) -> Any:
         return value
     got = f"{value!r:.80}"
     raise ValueError(
-        f"needs a number of seeds from 1 to {MAX_RUNS:,}, or a list of so many whole numbers "
-        f"from 0 to {SEEDS - 1}; got {got}"
+        f"needs a number of seeds from 1 to {MAX_RUNS:,}, or a list of up to {MAX_RUNS:,} "
+        f"whole numbers from 0 to {SEEDS - 1}; got {got}"
     )
 
 

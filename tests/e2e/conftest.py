@@ -1,20 +1,20 @@
-"""The whole product in a browser: started as `make run` does, and looked at.
+"""Fixtures of tests in a browser: products started as `make run` does.
 
 Starting a product and compiling its programs take longer than most tests. So tests share:
 `shared` has small runs of each kind, and computes what else is submitted there; at `idle`
 nobody computes. A test that needs a list of runs of its own, or ends the server, takes
-`product` before `page`, and is in alone/: two processes share the folders.
+`product` before `page`, and is in own_product/: two processes share the folders.
 """
 
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-from browser import executable, launched, overhear
+from browser import collect_complaints, executable, launched
 from databases import own_redis
 from drive import QUICK, ROOT, Installation, running
 from playwright.sync_api import expect
-from small import submit_small_runs
+from small_runs import submit_small_runs
 
 from server.services.services import Services, connect
 from server.settings import Settings
@@ -67,7 +67,7 @@ def browser():
 
 
 @pytest.fixture(scope="package")
-def common(browser):
+def product_settings(browser):
     """The environment of every product of the session."""
     if not (ROOT / "web" / "dist" / "index.html").exists():
         pytest.fail("web/dist is missing: build the page first")
@@ -75,29 +75,29 @@ def common(browser):
 
 
 @pytest.fixture
-def product(common, tmp_path):
-    with running(tmp_path / "data", common) as place:
-        yield place
+def product(product_settings, tmp_path):
+    with running(tmp_path / "data", product_settings) as product:
+        yield product
 
 
 @pytest.fixture(scope="package")
-def shared(common, tmp_path_factory):
+def shared(product_settings, tmp_path_factory):
     """One product for most tests, which computes a run of each kind."""
-    with running(tmp_path_factory.mktemp("shared") / "data", common) as place:
-        yield Shared(place, submit_small_runs(place))
+    with running(tmp_path_factory.mktemp("shared") / "data", product_settings) as product:
+        yield Shared(product, submit_small_runs(product))
 
 
 @pytest.fixture(scope="package")
-def idle(request, common, tmp_path_factory):
+def idle(request, product_settings, tmp_path_factory):
     """One product without workers, whose Redis the tests use too."""
     if any(needs(item, "shared") for item in request.session.items):
         request.getfixturevalue("shared")  # It computes meanwhile.
     folder = tmp_path_factory.mktemp("idle")
     with own_redis(folder) as url:
         environment = {"WORKERS": "0", "MICROCOSMOS_REDIS_URL": url}
-        with running(folder / "data", common | environment) as place:
+        with running(folder / "data", product_settings | environment) as product:
             services = connect(Settings(data=folder / "data", redis_url=url))
-            yield Idle(place, services)
+            yield Idle(product, services)
             services.close()
 
 
@@ -118,7 +118,7 @@ def new_page(browser):
 
 
 @pytest.fixture
-def stranger(new_page):
+def anonymous_page(new_page):
     return new_page()
 
 
@@ -132,7 +132,7 @@ def complaints():
 def page(new_page, complaints):
     """A page of which any complaint fails the test; it is closed before the server ends."""
     page = new_page()
-    overhear(page, complaints)
+    collect_complaints(page, complaints)
     yield page
     page.context.close()
     assert complaints == []

@@ -14,11 +14,11 @@ from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
-from browser import launched, overhear
+from browser import collect_complaints, launched
 from drive import ROOT, Installation, running
-from looks import THEMES, WIDTHS, faults
+from layout import THEMES, WIDTHS, faults
+from pages import NOWHERE, TOUR_TAKEN, hold_still, product_pages, visit
 from PIL import Image
-from places import NOWHERE, TOUR_TAKEN, hold_still, places, visit
 from playwright.sync_api import Browser, Page, TimeoutError
 
 FOLDER = ROOT / "docs" / "pictures" / "page"
@@ -44,27 +44,27 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(os.environ.get("DATA") or temporary).resolve()
         new = not folder.exists() or not any(folder.iterdir())
-        with running(folder, {}) as place, launched() as browser:
+        with running(folder, {}) as product, launched() as browser:
             if new:
-                carry_out(place)
-            wrong = take_all(browser, place.url)
+                carry_out(product)
+            wrong = take_all(browser, product.url)
     size = sum(file.stat().st_size for file in FOLDER.glob("*.png"))
     print(f"{len(list(FOLDER.glob('*.png')))} pictures, {size / 1e6:.1f} MB, in {FOLDER}")
     sys.exit("\n".join(wrong) if wrong else None)
 
 
-def carry_out(place: Installation) -> None:
+def carry_out(product: Installation) -> None:
     """Run the first preset of each experiment, a sweep, and the README's run."""
-    presets = {one["experiment"]: one["presets"] for one in place.get("experiments")}
+    presets = {one["experiment"]: one["presets"] for one in product.get("experiments")}
     for experiment, known in presets.items():
         if experiment != "quality-diversity" and known:
-            place.submit(known[0]["spec"])
-    place.http.post("/api/v1/sweeps", json=SWEEP).raise_for_status()
+            product.submit(known[0]["spec"])
+    product.http.post("/api/v1/sweeps", json=SWEEP).raise_for_status()
     standard = next(one for one in presets["quality-diversity"] if one["name"] == "standard")
     search = standard["spec"]["search"] | {"generations": 120}
-    place.submit(standard["spec"] | {"search": search})
-    for run in place.get("runs")["items"]:
-        place.wait(run["id"], "finished", seconds=HOUR)
+    product.submit(standard["spec"] | {"search": search})
+    for run in product.get("runs")["items"]:
+        product.wait(run["id"], "finished", seconds=HOUR)
         print(f"{run['experiment']} is finished", flush=True)
 
 
@@ -79,10 +79,10 @@ def take_all(browser: Browser, address: str) -> list[str]:
             )
             context.add_init_script(TOUR_TAKEN)
             page = context.new_page()
-            overhear(page, wrong)
-            for place in places(address):
-                name = f"{place.name}-{width}-{theme}"
-                if not visit(page, address, place, HOUR):
+            collect_complaints(page, wrong)
+            for target in product_pages(address):
+                name = f"{target.name}-{width}-{theme}"
+                if not visit(page, address, target, HOUR):
                     wrong.append(f"{name}: {NOWHERE}")
                     continue
                 hold_still(page)
@@ -119,7 +119,7 @@ def await_motions(page: Page) -> None:
 
 
 def save(png: bytes, name: str) -> None:
-    """Keep a picture in few colours, each the very one that most of its pixels have."""
+    """Save a picture in few colours, each the most frequent one of its pixels."""
     picture = Image.open(io.BytesIO(png)).convert("RGB")
     method, still = Image.Quantize.MAXCOVERAGE, Image.Dither.NONE
     few = picture.quantize(COLOURS, method=method, dither=still)

@@ -3,10 +3,10 @@
 import re
 
 import pytest
-from places import TOUR_TAKEN, best_of, elites, the_map
+from pages import TOUR_TAKEN, best_of, elites, the_map
 from playwright.sync_api import Page, expect
-from small import CENTROIDS
-from written import Written
+from small_runs import CENTROIDS
+from written_run import WrittenRun
 
 SLOW = 120_000
 
@@ -119,9 +119,9 @@ def test_the_gallery_moves_and_is_walked_by_keys(page, searched):
 @pytest.mark.parametrize("motion", ["no-preference", "reduce"])
 def test_a_cell_that_changes_live_flashes_once(page, idle, motion):
     """Only its outline flashes; nothing does where reduced motion is preferred."""
-    run = Written(idle.services, seed=41)
-    run.begin("worker 1")
-    run.go_on(1, 3)
+    run = WrittenRun(idle.services, seed=41)
+    run.claim("worker 1")
+    run.write_generations(1, 3)
     page.add_init_script(TOUR_TAKEN)
     page.emulate_media(reduced_motion=motion)
     page.clock.install()
@@ -129,7 +129,7 @@ def test_a_cell_that_changes_live_flashes_once(page, idle, motion):
     expect(elites(page)).to_have_text("3 elites")
     page.clock.run_for(2 * FLASH_MS)
     page.clock.pause_at(page.evaluate("Date.now() + 10"))
-    run.go_on(4, 4)
+    run.write_generations(4, 4)
     expect(elites(page)).to_have_text("4 elites")
     page.clock.run_for(FLASH_MS // 4)
     drawn = page.evaluate(WHERE_DRAWN_DIFFERENTLY)["drawn"]

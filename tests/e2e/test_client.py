@@ -10,9 +10,9 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from browser import overhear
+from browser import collect_complaints
 from playwright.sync_api import Browser
-from small import TINY
+from small_runs import TINY
 
 from microcosmos.archive.file import load
 from microcosmos.client import Client, Replay
@@ -20,10 +20,12 @@ from microcosmos.client import Client, Replay
 GUIDE = Path(__file__).parents[2] / "docs" / "client.md"
 
 
-def test_a_run_is_driven_by_commands_and_read_by_the_client(shared, common, tmp_path, browser):
+def test_a_run_is_driven_by_commands_and_read_by_the_client(
+    shared, product_settings, tmp_path, browser
+):
     address = shared.product.url
     (tmp_path / "tiny.json").write_text(json.dumps(TINY | {"seed": 77}))
-    environment = os.environ | common | {"MICROCOSMOS_URL": address}
+    environment = os.environ | product_settings | {"MICROCOSMOS_URL": address}
     submitted = ("-m", "microcosmos.cli", "submit", "tiny.json", "--watch", "--name", "mine")
     id, *lines = output_of(submitted, tmp_path, environment)
     assert "finished" in lines[-1]
@@ -35,14 +37,14 @@ def test_a_run_is_driven_by_commands_and_read_by_the_client(shared, common, tmp_
         play(run.archive().best().replay(), browser, tmp_path)
 
 
-def test_the_example_in_the_client_guide_works(shared, common, tmp_path):
+def test_the_example_in_the_client_guide_works(shared, product_settings, tmp_path):
     examples = re.findall(r"```python\n(.*?)```", GUIDE.read_text(), re.DOTALL)
     (example,) = (text for text in examples if "mc.Client" in text)
     spec = '{"experiment": "quality-diversity", "search": {"generations": 10}}'
     for written, small in ((spec, repr(TINY)), ("http://127.0.0.1:8000", shared.product.url)):
         assert written in example
         example = example.replace(written, small)
-    *_, last = output_of(("-c", example), tmp_path, os.environ | common)
+    *_, last = output_of(("-c", example), tmp_path, os.environ | product_settings)
     assert last.endswith("True")
     assert (tmp_path / "first.h5").exists()
 
@@ -78,7 +80,7 @@ def play(replay: Replay, browser: Browser, folder: Path) -> None:
     """As a notebook shows it: in a frame, off the network, moving."""
     (folder / "notebook.html").write_text(f"<!doctype html>{replay._repr_html_()}")
     page, complaints, asked = browser.new_page(), [], []
-    overhear(page, complaints)
+    collect_complaints(page, complaints)
     page.on("request", lambda request: asked.append(request.url))
     page.goto((folder / "notebook.html").as_uri())
     frame = page.frame_locator("iframe")

@@ -5,7 +5,7 @@ from io import BytesIO
 
 import h5py
 from drive import Installation
-from places import stage
+from pages import stage
 from playwright.sync_api import Page, expect
 
 SLOW = 300_000
@@ -20,7 +20,7 @@ def test_a_creature_is_watched_read_and_kept(shared, page):
     choose_what_is_shown(page)
     read_the_shape_over_time(page)
     see_what_the_network_computes(page)
-    keep_it_as_hdf5(page, sha)
+    download_as_hdf5(page, sha)
     walk_to_a_parent_and_back(page, sha, parent)
 
 
@@ -109,7 +109,7 @@ def see_what_the_network_computes(page: Page) -> None:
     expect(page.get_by_role("application", name="Output of position")).to_be_visible()
 
 
-def keep_it_as_hdf5(page: Page, sha: str) -> None:
+def download_as_hdf5(page: Page, sha: str) -> None:
     with page.expect_download(timeout=SLOW) as download:
         page.get_by_role("link", name="HDF5").click()
     assert download.value.suggested_filename == f"creature-{sha[:12]}.h5"

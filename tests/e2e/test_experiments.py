@@ -2,8 +2,8 @@
 
 import re
 
-import places
-from places import stage, start_run, the_map
+import pages
+from pages import stage, start_run, the_map
 from playwright.sync_api import Page, expect
 
 SLOW = 300_000
@@ -149,7 +149,7 @@ def see_it_swim(page: Page) -> None:
     expect(page.get_by_role("heading", name="Worm")).to_be_visible()
     expect(page.get_by_text("not force-free", exact=True)).to_be_visible()
     expect(page.get_by_role("group", name=re.compile("^Network:"))).to_have_count(0)
-    places.see_it_swim(page, SLOW / 1000)
+    pages.see_it_swim(page, SLOW / 1000)
     with page.expect_download(timeout=SLOW) as download:
         page.get_by_role("button", name="GIF").click()
     assert re.fullmatch(r"creature-[0-9a-f]{12}\.gif", download.value.suggested_filename)

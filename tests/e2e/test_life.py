@@ -2,10 +2,10 @@
 
 import re
 
-from looks import violations
-from places import TOUR_TAKEN, the_map
+from layout import violations
+from pages import TOUR_TAKEN, the_map
 from playwright.sync_api import Locator, Page, expect
-from small import TINY
+from small_runs import TINY
 
 SLOW = 60_000
 NAME = "In honey"

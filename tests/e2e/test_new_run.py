@@ -1,4 +1,4 @@
-"""The page for a new run: what a spec can begin from, what is shown of it, what it refuses."""
+"""The page for a new run: sources of a spec, what the page shows of it, and refused input."""
 
 import json
 import re

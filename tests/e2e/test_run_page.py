@@ -3,7 +3,7 @@
 import re
 
 from playwright.sync_api import Page, expect
-from written import GENERATIONS, Written
+from written_run import GENERATIONS, WrittenRun
 
 from microcosmos.spec import EXPERIMENTS
 
@@ -12,11 +12,11 @@ CHANGED = "before => before !== document.querySelector('#curves canvas').toDataU
 
 def test_a_run_is_shown_from_the_queue_to_its_end_and_compared(page, idle):
     services, address = idle.services, idle.product.url
-    other = Written(services, 7)
-    other.begin("worker 1")
-    other.go_on(1, GENERATIONS)
+    other = WrittenRun(services, 7)
+    other.claim("worker 1")
+    other.write_generations(1, GENERATIONS)
     other.attempt.finish()
-    run = Written(services, 8)
+    run = WrittenRun(services, 8)
     page.goto(f"{address}/runs/{run.id}")
     page.evaluate("window.neverReloaded = true")
     watch_it_begin(page, run)
@@ -31,23 +31,23 @@ def test_a_run_is_shown_from_the_queue_to_its_end_and_compared(page, idle):
     walk_by_keyboard(page)
 
 
-def watch_it_begin(page: Page, run: Written) -> None:
+def watch_it_begin(page: Page, run: WrittenRun) -> None:
     # The page shows the reason once.
     expect(page.get_by_role("status").get_by_text("No worker is alive")).to_have_count(1)
-    run.begin("worker 1")
+    run.claim("worker 1")
     expect(page.get_by_text("up to a minute on a CPU")).to_be_visible()
     elapsed = page.locator(".activity .quiet")
     before = elapsed.inner_text()
     expect(elapsed).not_to_have_text(before)
-    run.go_on(1, 4)
+    run.write_generations(1, 4)
     expect(page.get_by_text("up to a minute on a CPU")).to_have_count(0)
 
 
-def follow_the_log(page: Page, run: Written) -> None:
+def follow_the_log(page: Page, run: WrittenRun) -> None:
     log = page.get_by_role("region", name="Log")
     run.attempt.fail("Traceback:\n  File x\nZeroDivisionError: twice nothing")
-    run.begin("worker 2")
-    run.go_on(5, GENERATIONS)
+    run.claim("worker 2")
+    run.write_generations(5, GENERATIONS)
     run.attempt.finish()
     expect(log.get_by_text("Finished.")).to_be_visible()
     entries = log.get_by_role("listitem")
@@ -66,7 +66,7 @@ def follow_the_log(page: Page, run: Written) -> None:
     log.get_by_label("Show").select_option("info")
 
 
-def see_species_and_the_best_network(page: Page, run: Written) -> None:
+def see_species_and_the_best_network(page: Page, run: WrittenRun) -> None:
     plot = page.get_by_role("application", name=re.compile("^Species over generations"))
     expect(plot).to_have_attribute("aria-label", re.compile("2 in all"))
     reading = page.locator("#species-at-cursor")
@@ -112,7 +112,7 @@ def pixels(page: Page) -> str:
     return page.evaluate("document.querySelector('#curves canvas').toDataURL()")
 
 
-def compare_with_another_run(page: Page, other: Written) -> None:
+def compare_with_another_run(page: Page, other: WrittenRun) -> None:
     curves = page.get_by_role("region", name="Curves")
     alone = pixels(page)
     curves.get_by_role("button", name="Compare with a run").click()
@@ -125,7 +125,7 @@ def compare_with_another_run(page: Page, other: Written) -> None:
     assert f"with={other.id}" in page.url
 
 
-def see_what_differs_in_the_spec(page: Page, other: Written) -> None:
+def see_what_differs_in_the_spec(page: Page, other: WrittenRun) -> None:
     card = page.get_by_role("region", name="Spec", exact=True)
     expect(card).to_contain_text("1 field differs from preset Demo")
     card.get_by_role("button", name="Compare specs").click()
@@ -136,7 +136,7 @@ def see_what_differs_in_the_spec(page: Page, other: Written) -> None:
     assert f"against={other.id}" in page.url
 
 
-def reload_and_close_comparisons(page: Page, other: Written) -> None:
+def reload_and_close_comparisons(page: Page, other: WrittenRun) -> None:
     page.reload()
     curves = page.get_by_role("region", name="Curves")
     expect(curves.get_by_label("Log scale")).to_be_checked()

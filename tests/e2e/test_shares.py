@@ -3,49 +3,49 @@
 import re
 from urllib.parse import urlsplit
 
-from places import TOUR_TAKEN, best_of, stage, the_map
+from pages import TOUR_TAKEN, best_of, stage, the_map
 from playwright.sync_api import Page, Request, expect
 
 SLOW = 300_000
 FIRST_S = 300
 
 
-def test_a_creature_is_published_viewed_and_revoked(shared, page, stranger):
+def test_a_creature_is_published_viewed_and_revoked(shared, page, anonymous_page):
     address = shared.product.url
     sha = best_of(shared.product, shared.finished("voronoi"))
     page.goto(f"{address}/creatures/{sha}")
     link = publish(page, "An eel <b>&", listed=True)
-    asked = requests_of(stranger)
-    stranger.goto(link)
-    expect(stranger.get_by_role("heading", level=1)).to_contain_text("An eel <b>&")
-    expect(stage(stranger)).to_be_visible(timeout=SLOW)
-    expect(stranger.get_by_text("Ada, Bob").first).to_be_visible()
-    expect(stranger.get_by_role("button", name="Publish")).to_have_count(0)
+    asked = requests_of(anonymous_page)
+    anonymous_page.goto(link)
+    expect(anonymous_page.get_by_role("heading", level=1)).to_contain_text("An eel <b>&")
+    expect(stage(anonymous_page)).to_be_visible(timeout=SLOW)
+    expect(anonymous_page.get_by_text("Ada, Bob").first).to_be_visible()
+    expect(anonymous_page.get_by_role("button", name="Publish")).to_have_count(0)
     check_requests(link, asked)
-    check_the_link_preview(stranger, link)
-    import_it(stranger, address, sha)
-    find_it_in_the_commons(stranger, address, link)
+    check_the_link_preview(anonymous_page, link)
+    import_it(anonymous_page, address, sha)
+    find_it_in_the_commons(anonymous_page, address, link)
     revoke(page, address, "An eel <b>&")
-    stranger.goto(link)
-    expect(stranger.get_by_text("Its owner has revoked this share.")).to_be_visible()
+    anonymous_page.goto(link)
+    expect(anonymous_page.get_by_text("Its owner has revoked this share.")).to_be_visible()
 
 
-def test_an_archive_is_published_and_its_elites_are_opened(shared, page, stranger):
+def test_an_archive_is_published_and_its_elites_are_opened(shared, page, anonymous_page):
     address = shared.product.url
     page.add_init_script(TOUR_TAKEN)
-    stranger.add_init_script(TOUR_TAKEN)
+    anonymous_page.add_init_script(TOUR_TAKEN)
     page.goto(f"{address}/runs/{shared.finished('voronoi')}")
     link = publish(page, "Eels", listed=False)
-    asked = requests_of(stranger)
-    stranger.goto(link)
-    the_map(stranger).focus()
-    stranger.keyboard.press("ArrowRight")
-    stranger.keyboard.press("Enter")
-    stranger.wait_for_url(re.compile("/s/.+/creatures/"))
-    expect(stage(stranger)).to_be_visible(timeout=SLOW)
+    asked = requests_of(anonymous_page)
+    anonymous_page.goto(link)
+    the_map(anonymous_page).focus()
+    anonymous_page.keyboard.press("ArrowRight")
+    anonymous_page.keyboard.press("Enter")
+    anonymous_page.wait_for_url(re.compile("/s/.+/creatures/"))
+    expect(stage(anonymous_page)).to_be_visible(timeout=SLOW)
     check_requests(link, asked)
     slug = link.rpartition("/")[2]
-    commons = stranger.request.get(f"{address}/api/v1/commons").json()["items"]
+    commons = anonymous_page.request.get(f"{address}/api/v1/commons").json()["items"]
     assert slug not in [share["slug"] for share in commons], "it is not listed"
 
 
@@ -86,40 +86,40 @@ def check_requests(link: str, asked: list[tuple[str, str | None]]) -> None:
     assert others == []
 
 
-def check_the_link_preview(stranger: Page, link: str) -> None:
+def check_the_link_preview(anonymous_page: Page, link: str) -> None:
     """Other sites find a title, and a picture that exists."""
-    text = stranger.request.get(link).text()
+    text = anonymous_page.request.get(link).text()
     assert 'property="og:title" content="An eel &lt;b&gt;&amp;"' in text
     found = re.search('property="og:image" content="([^"]+)"', text)
     assert found
-    picture = stranger.request.get(found[1])
+    picture = anonymous_page.request.get(found[1])
     for _ in range(FIRST_S):
         if picture.status == 200:
             break
-        stranger.wait_for_timeout(1000)
-        picture = stranger.request.get(found[1])
+        anonymous_page.wait_for_timeout(1000)
+        picture = anonymous_page.request.get(found[1])
     assert picture.headers["content-type"] == "image/png"
     width, height = (int.from_bytes(picture.body()[at : at + 4]) for at in (16, 20))
     assert (width, height) == (1200, 630)
 
 
-def import_it(stranger: Page, address: str, sha: str) -> None:
+def import_it(anonymous_page: Page, address: str, sha: str) -> None:
     """An imported download keeps name, licence and credit."""
-    with stranger.expect_download() as event:
-        stranger.get_by_role("link", name="JSON").click()
+    with anonymous_page.expect_download() as event:
+        anonymous_page.get_by_role("link", name="JSON").click()
     text = event.value.path().read_text()
     for word in ('"CC-BY-SA-4.0"', '"Ada"', '"ancestors"'):
         assert word in text
-    answer = stranger.request.post(
+    answer = anonymous_page.request.post(
         f"{address}/api/v1/creatures", data=text, headers={"Content-Type": "application/json"}
     )
     assert (answer.status, answer.json()) == (200, {"creature": sha})
 
 
-def find_it_in_the_commons(stranger: Page, address: str, link: str) -> None:
-    asked = requests_of(stranger)
-    stranger.goto(f"{address}/commons")
-    tile = stranger.get_by_role("link", name=re.compile("An eel <b>&"))
+def find_it_in_the_commons(anonymous_page: Page, address: str, link: str) -> None:
+    asked = requests_of(anonymous_page)
+    anonymous_page.goto(f"{address}/commons")
+    tile = anonymous_page.get_by_role("link", name=re.compile("An eel <b>&"))
     expect(tile).to_have_attribute("href", urlsplit(link).path)
     public = re.compile("/commons|/assets/.+|/favicon.svg|/api/v1/(commons|shares/.+)")
     moves = re.compile("/api/v1/creatures/[0-9a-f]{64}/motion")

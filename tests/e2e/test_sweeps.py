@@ -5,7 +5,7 @@ from typing import Any
 from uuid import UUID
 
 from playwright.sync_api import expect
-from small import TINY
+from small_runs import TINY
 
 from server.runs.announce import announce
 from server.tables import FINISHED, Generation, Run

@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 from drive import Installation
-from places import elites, pixels, see_it_swim, start_run, the_map
+from pages import elites, pixels, see_it_swim, start_run, the_map
 from playwright.sync_api import Page, expect
 
 SLOW = 120_000

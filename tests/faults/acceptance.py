@@ -1,4 +1,4 @@
-"""The main job at full size: `make acceptance` prints what `make test` shows small.
+"""Acceptance checks: `make acceptance` repeats tests of `make test` at full size.
 
 Four searches at equal evaluations, five seeds each, submitted over HTTP; a run that is
 killed, stopped, paused and resumed, whose archive has to be byte for byte the undisturbed
@@ -15,7 +15,7 @@ from pathlib import Path
 
 import malformed_hdf5
 import rich
-from databases import Missing, services
+from databases import Missing, service_settings
 from drive import Installation, interrupt, kill_job, pause_and_resume, running, stop_worker
 from left_open import leave_open
 from searches import HOURS, METHODS, SEEDS, carry_out, compare, compare_slopes, forage, spec
@@ -25,15 +25,15 @@ FAULTS = (kill_job, stop_worker, kill_job, pause_and_resume, kill_job)
 SETTINGS = {"MICROCOSMOS_DEMONSTRATION": "0", "MICROCOSMOS_CHECKPOINT_INTERVAL": "5"}
 
 
-def disturb(place: Installation, undisturbed: bytes) -> bool:
+def disturb(product: Installation, undisturbed: bytes) -> bool:
     """Tell whether a run disturbed at random moments ends with the same bytes."""
-    run = place.submit(spec(SEEDS[0], "MAP-Elites, NEAT"))
+    run = product.submit(spec(SEEDS[0], "MAP-Elites, NEAT"))
     moments = sorted(random.choices(range(1, 45), k=len(FAULTS)))
     faults = list(zip(moments, FAULTS, strict=True))
-    interrupt(place, run, faults, seconds=2 * HOURS)
-    attempts = place.wait(run, "finished", seconds=2 * HOURS)["attempt"]
+    interrupt(product, run, faults, seconds=2 * HOURS)
+    attempts = product.wait(run, "finished", seconds=2 * HOURS)["attempt"]
     names = ", ".join(f"{fault.__name__} at {moment}" for moment, fault in faults)
-    return identical(place.archive(run), undisturbed, f"{names}: {attempts} attempts")
+    return identical(product.archive(run), undisturbed, f"{names}: {attempts} attempts")
 
 
 def identical(archive: bytes, expected: bytes, title: str) -> bool:
@@ -42,25 +42,25 @@ def identical(archive: bytes, expected: bytes, title: str) -> bool:
     return same
 
 
-def searches(place: Installation) -> bool:
+def searches(product: Installation) -> bool:
     """Tell whether searches beat random search, and a disturbed run ends as an undisturbed."""
     runs = {
-        name: [carry_out(place, spec(s, name), f"{name}, seed {s}") for s in SEEDS]
+        name: [carry_out(product, spec(s, name), f"{name}, seed {s}") for s in SEEDS]
         for name in METHODS
     }
-    good = compare(place, runs)
-    return disturb(place, place.archive(runs["MAP-Elites, NEAT"][0]["id"])) and good
+    good = compare(product, runs)
+    return disturb(product, product.archive(runs["MAP-Elites, NEAT"][0]["id"])) and good
 
 
-def databases(place: Installation) -> bool:
+def databases(product: Installation) -> bool:
     """Tell whether the same run ends with the same bytes on SQLite with the embedded Redis and,
     with faults, on PostgreSQL with a Redis server."""
     document = spec(SEEDS[0], "MAP-Elites, NEAT")
-    embedded = place.archive(carry_out(place, document, "SQLite, embedded Redis")["id"])
+    embedded = product.archive(carry_out(product, document, "SQLite, embedded Redis")["id"])
     try:
         with (
-            services() as settings,
-            running(place.folder.parent / "elsewhere", SETTINGS | settings) as other,
+            service_settings() as settings,
+            running(product.folder.parent / "elsewhere", SETTINGS | settings) as other,
         ):
             title = "PostgreSQL, Redis server"
             archive = other.archive(carry_out(other, document, title)["id"])
@@ -70,12 +70,12 @@ def databases(place: Installation) -> bool:
         return False
 
 
-def uploads(place: Installation) -> bool:
+def uploads(product: Installation) -> bool:
     """Tell whether thousands of malformed files are refused in time, and no other is read."""
-    canary = place.folder / "canary.h5"
+    canary = product.folder / "canary.h5"
     canary.write_bytes(malformed_hdf5.whole())
     with watched(canary) as readings:
-        found = send(place, all_cases(canary))
+        found = send(product, all_cases(canary))
     rich.print(
         f"{found.refused} malformed files: {len(found.wrong)} not refused as they should be, "
         f"the slowest in {found.slowest:.2f} s, {found.growth >> 20} MiB more memory at most, "
@@ -102,9 +102,9 @@ def main(names: list[str]) -> None:
     rich.reconfigure(width=110)
     with (
         tempfile.TemporaryDirectory() as folder,
-        running(Path(folder) / "data", SETTINGS) as place,
+        running(Path(folder) / "data", SETTINGS) as product,
     ):
-        good = [PARTS[name](place) for name in names or PARTS]
+        good = [PARTS[name](product) for name in names or PARTS]
     sys.exit(not all(good))
 
 

@@ -1,4 +1,4 @@
-"""Chromium, which people look through; Playwright drives it."""
+"""Chromium, driven by Playwright."""
 
 import shutil
 from collections.abc import Iterator
@@ -23,7 +23,7 @@ def executable() -> str | None:
 
 @contextmanager
 def launched(path: str | None = None) -> Iterator[Browser]:
-    """A browser without a window, until it is done with."""
+    """Yield a browser without a window."""
     path = path or executable()
     if path is None:
         raise FileNotFoundError(f"needs a browser on PATH, one of {', '.join(NAMES)}")
@@ -33,7 +33,7 @@ def launched(path: str | None = None) -> Iterator[Browser]:
         browser.close()
 
 
-def overhear(page: Page, complaints: list[str]) -> None:
+def collect_complaints(page: Page, complaints: list[str]) -> None:
     """Collect the errors and warnings of a page."""
 
     def note(kind: str, text: str) -> None:

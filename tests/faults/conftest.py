@@ -1,9 +1,10 @@
-"""Real servers, workers, databases and queues, to be disturbed."""
+"""Fixtures with real servers, workers, databases and queues, which tests disturb."""
 
 from contextlib import ExitStack
 
 import pytest
 from drive import QUICK, running
+from small_spec import SMALL_SCENE
 
 SHORT = QUICK | {
     "MICROCOSMOS_DEMONSTRATION": "0",
@@ -15,36 +16,29 @@ SHORT = QUICK | {
 
 
 @pytest.fixture
-def installation(tmp_path):
+def start_product(tmp_path):
     """Starts an installation with these settings."""
     with ExitStack() as stack:
         yield lambda **more: stack.enter_context(running(tmp_path / "data", SHORT | more))
 
 
 @pytest.fixture(scope="package")
-def place(tmp_path_factory):
+def product(tmp_path_factory):
     """A running installation with two workers, which all tests may disturb."""
-    with running(tmp_path_factory.mktemp("data"), SHORT | {"WORKERS": "2"}) as place:
-        yield place
+    with running(tmp_path_factory.mktemp("data"), SHORT | {"WORKERS": "2"}) as product:
+        yield product
 
 
 @pytest.fixture(scope="session")
 def spec():
-    """The smallest run that is still a run."""
-    return {
-        "experiment": "quality-diversity",
-        "seed": 7,
-        "world": {"width": 32, "height": 32},
-        "body": {"nodes": 12},
-        "control": {"period": 30},
-        "task": {"steps": 60},
-        "search": {"generations": 12, "batch": 16, "block": 8},
-    }
+    """A search of twelve generations."""
+    search = {"generations": 12, "batch": 16, "block": 8}
+    return SMALL_SCENE | {"seed": 7, "search": search}
 
 
 @pytest.fixture(scope="package")
-def undisturbed(place, spec):
+def undisturbed(product, spec):
     """The results of an undisturbed run."""
-    run = place.submit(spec)
-    place.wait(run, "finished", seconds=300)  # It has to compile.
-    return place.results(run)
+    run = product.submit(spec)
+    product.wait(run, "finished", seconds=300)  # It has to compile.
+    return product.results(run)

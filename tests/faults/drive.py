@@ -31,7 +31,7 @@ SERVICES = ("MICROCOSMOS_REDIS_URL", "MICROCOSMOS_DATABASE_URL", "MICROCOSMOS_AR
 def wait_until(
     condition: Callable[[], Any], seconds: float, what: str, every: float = 0.1
 ) -> Any:
-    """Return the first true value of the condition, asked `every` so many seconds."""
+    """Return the first true value of the condition, asked again `every` seconds."""
     deadline = time.monotonic() + seconds
     while not (found := condition()):
         if time.monotonic() > deadline:
@@ -213,47 +213,47 @@ class Installation:
 
 @contextmanager
 def running(folder: Path, environment: dict[str, str]) -> Iterator[Installation]:
-    """An installation that is started, and ended at the end."""
-    place = Installation(folder, environment)
+    """Yield a started installation, and end it."""
+    product = Installation(folder, environment)
     try:
-        place.start()
-        yield place
-        place.end()
+        product.start()
+        yield product
+        product.end()
     finally:
-        place.close()
+        product.close()
 
 
 JOB, SUPERVISOR = "worker.job_process", "worker.supervisor"
 
 
-def kill_job(place: Installation, run: str) -> None:
+def kill_job(product: Installation, run: str) -> None:
     """Kill the process that computes, as the kernel does when memory runs out."""
-    place.signal(JOB, signal.SIGKILL)
+    product.signal(JOB, signal.SIGKILL)
 
 
-def kill_worker(place: Installation, run: str) -> None:
-    place.signal(SUPERVISOR, signal.SIGKILL)
+def kill_worker(product: Installation, run: str) -> None:
+    product.signal(SUPERVISOR, signal.SIGKILL)
 
 
-def stop_worker(place: Installation, run: str) -> None:
+def stop_worker(product: Installation, run: str) -> None:
     """Terminate the worker; the process that started it starts it again."""
-    place.signal(SUPERVISOR, signal.SIGTERM)
+    product.signal(SUPERVISOR, signal.SIGTERM)
 
 
-def pause_and_resume(place: Installation, run: str) -> None:
-    place.ask(run, "pause")
-    place.wait(run, "paused")
-    place.ask(run, "resume")
+def pause_and_resume(product: Installation, run: str) -> None:
+    product.ask(run, "pause")
+    product.wait(run, "paused")
+    product.ask(run, "resume")
 
 
 Fault = Callable[[Installation, str], None]
 
 
 def interrupt(
-    place: Installation, run: str, faults: Iterable[tuple[int, Fault]], seconds: float = 120
+    product: Installation, run: str, faults: Iterable[tuple[int, Fault]], seconds: float = 120
 ) -> None:
     """Cause each fault in an attempt of its own, once that has reached a generation."""
     attempt = 0
     for generation, fault in faults:
-        attempt = place.reach(run, generation, after=attempt, seconds=seconds)
-        fault(place, run)
+        attempt = product.reach(run, generation, after=attempt, seconds=seconds)
+        fault(product, run)

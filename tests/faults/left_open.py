@@ -1,4 +1,4 @@
-"""A page that is left open on a running run for half an hour, looked at all the while.
+"""The memory of a page that shows a running run for half an hour.
 
 Once a minute everything that the page does not need any more is collected; what is left, and
 how many nodes its document has, is noted. The first third is for warming up. In the last
@@ -51,22 +51,22 @@ SPEC = {
 """A generation takes a second or so, as those of real runs do; it is cancelled at the end."""
 
 
-def leave_open(place: Installation) -> bool:
+def leave_open(product: Installation) -> bool:
     """Tell whether the page uses no more memory at the end than in the middle."""
-    run = place.submit(SPEC)
-    place.reach(run, 2, seconds=300)
+    run = product.submit(SPEC)
+    product.reach(run, 2, seconds=300)
     with launched() as browser:
         page = browser.new_page(viewport={"width": 1280, "height": 900})
         page.add_init_script("localStorage.setItem('microcosmos:tour-taken', '1')")
-        page.goto(f"{place.url}/runs/{run}")
+        page.goto(f"{product.url}/runs/{run}")
         page.evaluate("window.neverReloaded = true")
-        samples = measured(page, place, run)
+        samples = measured(page, product, run)
         assert page.evaluate("window.neverReloaded")
-    place.ask(run, "cancel")
+    product.ask(run, "cancel")
     return judged(samples)
 
 
-def measured(page: Page, place: Installation, run: str) -> list[dict[str, float]]:
+def measured(page: Page, product: Installation, run: str) -> list[dict[str, float]]:
     """Measure the page at equal intervals, using it in between."""
     session = page.context.new_cdp_session(page)
     session.send("HeapProfiler.enable")
@@ -83,7 +83,7 @@ def measured(page: Page, place: Installation, run: str) -> list[dict[str, float]
         parts = {title: usage.get(part, 0.0) / 1e6 for part, title in PARTS.items()}
         sample = {
             "minutes": (time.monotonic() - began) / 60,
-            "generation": place.read(run)["generation"],
+            "generation": product.read(run)["generation"],
             "heap": sum(parts.values()),
             **parts,
             "nodes": session.send("Memory.getDOMCounters")["nodes"],

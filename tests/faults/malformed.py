@@ -19,7 +19,7 @@ Keys = tuple[str | int, ...]
 
 @dataclass(frozen=True)
 class Case:
-    """A body, and a pattern of its refusal."""
+    """A request body, and a pattern that its refusal matches."""
 
     name: str
     body: bytes
@@ -29,19 +29,19 @@ class Case:
     """The change may leave the file valid."""
 
 
-def good() -> dict[str, Any]:
+def valid_document() -> dict[str, Any]:
     return creature.document(reports.identity(), None, None)
 
 
-def written(document: Any) -> bytes:
+def encoded(document: Any) -> bytes:
     return json.dumps(document, separators=(",", ":"), ensure_ascii=False).encode()
 
 
 def cases() -> Iterator[Case]:
     """Documents that are not plain JSON, not a creature, or not the creature they name."""
-    yield from broken(written(good()))
+    yield from broken(encoded(valid_document()))
     yield from oversized()
-    yield from changed(good())
+    yield from changed(valid_document())
 
 
 def broken(whole: bytes) -> Iterator[Case]:
@@ -140,7 +140,7 @@ def edited(document: Any, path: Keys, edit: Callable[..., None], *values: Any) -
     """Set or delete the item at a path."""
     other = deepcopy(document)
     edit(reduce(getitem, path[:-1], other), path[-1], *values)
-    return written(other)
+    return encoded(other)
 
 
 def literal(document: Any, path: Keys, text: str) -> bytes:

@@ -21,15 +21,15 @@ Edits = Iterator[tuple[Any, ...]]
 """The name of a case, a pattern of its refusal, a function of a file, and its arguments."""
 
 
-def whole() -> bytes:
+def valid_file() -> bytes:
     return creature_h5.dump(creature.parse(good()))
 
 
 def cases(canary: Path) -> Iterator[Case]:
     """`canary` is a file of this machine that the server must not open."""
-    file = whole()
+    file = valid_file()
     yield from damaged(file)
-    for name, says, edit, *arguments in (*foreign(canary), *bombs(), *others()):
+    for name, says, edit, *arguments in (*outside_links(canary), *bombs(), *wrong_members()):
         stream = BytesIO(file)
         with h5py.File(stream, "r+", libver=("v110", "v110")) as opened:
             edit(opened, *arguments)
@@ -57,7 +57,7 @@ def damaged(file: bytes) -> Iterator[Case]:
 def members() -> list[str]:
     """The paths of all datasets."""
     names: list[str] = []
-    with h5py.File(BytesIO(whole())) as file:
+    with h5py.File(BytesIO(valid_file())) as file:
         file.visit(names.append)
         return [name for name in names if isinstance(file[name], h5py.Dataset)]
 
@@ -65,7 +65,7 @@ def members() -> list[str]:
 MEMBERS = members()
 
 
-def foreign(canary: Path) -> Edits:
+def outside_links(canary: Path) -> Edits:
     """Members that lie in another file, or under another name, or nowhere."""
     for name in (*MEMBERS, "body", "genome"):
         for title, link in (
@@ -77,7 +77,7 @@ def foreign(canary: Path) -> Edits:
             yield f"{name}: {title}", ELSEWHERE, replace, name, link
     for name in MEMBERS:
         for path in (str(canary), "/etc/passwd", "/dev/zero", "../" * 12 + str(canary)[1:]):
-            yield f"{name}: storage in {path}", ELSEWHERE, store, name, path
+            yield f"{name}: storage in {path}", ELSEWHERE, store_elsewhere, name, path
         yield f"{name}: virtual", ELSEWHERE, make_virtual, name, str(canary)
 
 
@@ -86,8 +86,8 @@ def replace(file: h5py.File, name: str, value: Any) -> None:
     file[name] = value
 
 
-def store(file: h5py.File, name: str, path: str) -> None:
-    """Put as many bytes into another file."""
+def store_elsewhere(file: h5py.File, name: str, path: str) -> None:
+    """Declare that the data lies in another file, with the same size."""
     shape, dtype = file[name].shape or (1,), file[name].dtype
     size = max(1, int(np.prod(shape))) * dtype.itemsize
     create(file, name, shape=shape, dtype=dtype, external=[(path, 0, size)])
@@ -146,7 +146,7 @@ VALUES = {
 TEXTS = (b"", b"\xff", b"NaN", b"null ", b"[" * 20_000, b'{"a": 1, "a": 2}', b"0" * 64)
 
 
-def others() -> Edits:
+def wrong_members() -> Edits:
     """Members of another kind, with other values, missing, or one too many."""
     for name in MEMBERS:
         for title, value in VALUES.items():

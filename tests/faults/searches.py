@@ -54,10 +54,10 @@ SENSOR = 3
 """The input of the CPPN for energy, after position, sine and cosine."""
 
 
-def carry_out(place: Installation, document: dict, title: str) -> dict:
+def carry_out(product: Installation, document: dict, title: str) -> dict:
     """Carry out a run, print a line about it and return it from the API."""
     began = time.monotonic()
-    found = place.wait(place.submit(document), "finished", seconds=2 * HOURS)
+    found = product.wait(product.submit(document), "finished", seconds=2 * HOURS)
     seconds = time.monotonic() - began
     rich.print(
         f"{title}: QD score {found['qd_score']:.1f}, coverage {found['coverage']:.3f}, best "
@@ -78,7 +78,7 @@ def spec(seed: int, method: str) -> dict:
     return written({**chosen, "seed": seed, "search": search})
 
 
-def compare(place: Installation, runs: dict[str, list[dict]]) -> bool:
+def compare(product: Installation, runs: dict[str, list[dict]]) -> bool:
     """Print and draw medians and ranges; tell whether medians reach their bars."""
     found = {n: [[run[f] for run in some] for f in FIGURES] for n, some in runs.items()}
     rich.print(table("median (range)", FIGURES.values(), found))
@@ -89,7 +89,7 @@ def compare(place: Installation, runs: dict[str, list[dict]]) -> bool:
         rich.print(f"{method}, {figure}: {own / other:.2f} × random search (bar {bar})")
     draw(runs)
     for method, some in runs.items():
-        purities = [purity(file) for run in some for file in fittest(place, run["id"], 10)]
+        purities = [purity(file) for run in some for file in fittest(product, run["id"], 10)]
         rich.print(
             f"{method}: {np.mean(np.array(purities) >= PURE):.0%} of the ten fittest of each "
             f"seed are sinusoidal (median {statistics.median(purities):.0%} of the power in "
@@ -116,11 +116,11 @@ def draw(runs: dict[str, list[dict]]) -> None:
     """A panel for each figure, a point for each seed, a bar at the median."""
     figure = Figure(figsize=(10, 3.2), layout="constrained")
     for axes, (key, title) in zip(figure.subplots(1, 3), FIGURES.items(), strict=True):
-        for place, found in enumerate(runs.values()):
+        for column, found in enumerate(runs.values()):
             values = [run[key] for run in found]
-            axes.plot([place] * len(values), values, "o", alpha=0.5, color=f"C{place}")
+            axes.plot([column] * len(values), values, "o", alpha=0.5, color=f"C{column}")
             middle = statistics.median(values)
-            axes.plot([place - 0.3, place + 0.3], [middle] * 2, color=f"C{place}", lw=2)
+            axes.plot([column - 0.3, column + 0.3], [middle] * 2, color=f"C{column}", lw=2)
         labels = [method.replace(", ", ",\n") for method in runs]
         axes.set_xticks(range(len(runs)), labels, fontsize=7)
         axes.set_title(title, fontsize=10)
@@ -129,10 +129,10 @@ def draw(runs: dict[str, list[dict]]) -> None:
     figure.savefig(PICTURES / "searches.png", dpi=150)
 
 
-def fittest(place: Installation, run: str, count: int) -> list[dict]:
-    archive = place.get(f"runs/{run}/archive")
+def fittest(product: Installation, run: str, count: int) -> list[dict]:
+    archive = product.get(f"runs/{run}/archive")
     order = np.argsort(archive["fitness"])[::-1][:count]
-    return [place.get(f"creatures/{archive['creature'][i]}") for i in order]
+    return [product.get(f"creatures/{archive['creature'][i]}") for i in order]
 
 
 def purity(file: dict) -> float:
@@ -164,21 +164,21 @@ def slope_spec(seed: int, method: str) -> dict:
     return written({**size, "seed": seed, "control": control, "search": search})
 
 
-def compare_slopes(place: Installation) -> bool:
+def compare_slopes(product: Installation) -> bool:
     """Compare searches with derivatives and without, by evaluations and by device-seconds.
 
     Either may win.
     """
     curves = {
         method: [
-            curve(place, carry_out(place, slope_spec(s, method), f"{method}, seed {s}"))
+            curve(product, carry_out(product, slope_spec(s, method), f"{method}, seed {s}"))
             for s in SEEDS
         ]
         for method in SLOPE_METHODS
     }
     most = [min(one[axis][-1] for runs in curves.values() for one in runs) for axis in (0, 1)]
     found = {
-        method: [[at(one, axis, most[axis]) for one in runs] for axis in (0, 1)]
+        method: [[score_at(one, axis, most[axis]) for one in runs] for axis in (0, 1)]
         for method, runs in curves.items()
     }
     columns = ("equal evaluations", "equal device-seconds")
@@ -195,15 +195,15 @@ def compare_slopes(place: Installation) -> bool:
     return True
 
 
-def curve(place: Installation, run: dict) -> np.ndarray:
+def curve(product: Installation, run: dict) -> np.ndarray:
     """Evaluations, device-seconds without compilation, and QD score, (3, generation)."""
-    found = place.get(f"runs/{run['id']}/generations")
+    found = product.get(f"runs/{run['id']}/generations")
     seconds = np.array(found["summary"]["device_seconds"], float)
     seconds[0] = 0.0  # The first generation compiles the programs.
     return np.array([found["evaluations"], np.cumsum(seconds), found["qd_score"]])
 
 
-def at(one: np.ndarray, axis: int, most: float) -> float:
+def score_at(one: np.ndarray, axis: int, most: float) -> float:
     """The QD score of the last generation that ended by then."""
     return float(one[2, np.searchsorted(one[axis], most, side="right") - 1])
 
@@ -213,10 +213,10 @@ def draw_slopes(curves: dict[str, list[np.ndarray]]) -> None:
     figure = Figure(figsize=(10, 3.6), layout="constrained")
     panels = figure.subplots(1, 2, sharey=True)
     for axis, label in enumerate(("evaluations", "device-seconds")):
-        for place, (method, runs) in enumerate(curves.items()):
+        for number, (method, runs) in enumerate(curves.items()):
             for number, one in enumerate(runs):
                 once = method if number == 0 else f"_{method}"
-                style = {"color": f"C{place}", "lw": 1, "alpha": 0.8, "label": once}
+                style = {"color": f"C{number}", "lw": 1, "alpha": 0.8, "label": once}
                 panels[axis].plot(one[axis], one[2], **style)
         panels[axis].set(xlabel=label, ylim=(0, None))
         panels[axis].spines[["top", "right"]].set_visible(False)
@@ -243,15 +243,15 @@ def forage_spec(seed: int, fitness: str) -> dict:
     return written({**parts, "seed": seed, "control": control})
 
 
-def forage(place: Installation) -> bool:
+def forage(product: Installation) -> bool:
     """Tell whether selection for energy collects more, and blindness less, as medians."""
     from microcosmos.audit.reproducibility import check
 
     found: dict[str, list[float]] = {"displacement+energy": [], "displacement": [], "blind": []}
     for seed in FORAGERS:
         for fitness in ("displacement+energy", "displacement"):
-            run = carry_out(place, forage_spec(seed, fitness), f"{fitness}, seed {seed}")
-            (best,) = fittest(place, run["id"], 1)
+            run = carry_out(product, forage_spec(seed, fitness), f"{fitness}, seed {seed}")
+            (best,) = fittest(product, run["id"], 1)
             found[fitness].append(best["measured"]["measures"]["energy"])
             if fitness == "displacement+energy":
                 found["blind"].append(check(blinded(best)).repeated["energy"])

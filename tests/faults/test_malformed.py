@@ -10,47 +10,47 @@ import malformed
 import malformed_hdf5
 import pytest
 from drive import ROOT
-from uploads import LIES, all_cases, lie, send, watched
+from uploads import FALSE_LENGTHS, all_cases, send, send_false_length, watched
 
 FEW, MANY = 64, 8
-"""One in so many of about three thousand files; `make acceptance` sends all."""
+"""Send every 64th, or every 8th, of about three thousand files; `make acceptance` sends all."""
 
 
 @pytest.fixture
 def canary(tmp_path):
     """Another valid file of this machine, which must not be read."""
     path = tmp_path / "canary.h5"
-    path.write_bytes(malformed_hdf5.whole())
+    path.write_bytes(malformed_hdf5.valid_file())
     return path
 
 
-def test_the_original_files_are_valid(place):
-    for body in (malformed.written(malformed.good()), malformed_hdf5.whole()):
-        answer = place.http.post("/api/v1/creatures", content=body)
+def test_the_original_files_are_valid(product):
+    for body in (malformed.encoded(malformed.valid_document()), malformed_hdf5.valid_file()):
+        answer = product.http.post("/api/v1/creatures", content=body)
         assert answer.status_code in (200, 201)
-        assert answer.json()["creature"] == malformed.good()["sha256"]
+        assert answer.json()["creature"] == malformed.valid_document()["sha256"]
 
 
 @pytest.mark.parametrize("every", [FEW, pytest.param(MANY, marks=pytest.mark.long)])
-def test_malformed_files_are_refused_with_the_reason_and_read_no_other(place, canary, every):
+def test_malformed_files_are_refused_with_the_reason_and_read_no_other(product, canary, every):
     with watched(canary) as readings:
-        found = send(place, islice(all_cases(canary), 0, None, every))
+        found = send(product, islice(all_cases(canary), 0, None, every))
     assert found.wrong == []
     assert found.refused > 2400 / every
     assert found.growth < 100 << 20
     assert readings == []
 
 
-def test_a_byte_order_mark_is_named(place):
-    answer = place.http.post("/api/v1/creatures", content=b"\xef\xbb\xbf{}")
+def test_a_byte_order_mark_is_named(product):
+    answer = product.http.post("/api/v1/creatures", content=b"\xef\xbb\xbf{}")
     assert "byte order mark (BOM)" in answer.json()["detail"]
 
 
-def test_a_false_content_length_does_no_harm(place):
-    for name, (sent, status) in LIES.items():
-        answer = lie(place.port, sent)
+def test_a_false_content_length_does_no_harm(product):
+    for name, (sent, status) in FALSE_LENGTHS.items():
+        answer = send_false_length(product.port, sent)
         assert not answer or status in answer, name
-        assert place.http.get("/healthz").status_code == 200
+        assert product.http.get("/healthz").status_code == 200
 
 
 def test_the_file_watch_notices_readings(canary):
@@ -104,9 +104,9 @@ def test_the_kernel_ends_slow_sandboxes(action, limit, ended):
     assert done.returncode == -ended
 
 
-def test_a_killed_sandbox_is_replaced(place):
-    place.signal("server.creatures.sandbox_process", signal.SIGKILL)
-    body = malformed.written(malformed.good())
-    answers = [place.http.post("/api/v1/creatures", content=body) for _ in range(3)]
+def test_a_killed_sandbox_is_replaced(product):
+    product.signal("server.creatures.sandbox_process", signal.SIGKILL)
+    body = malformed.encoded(malformed.valid_document())
+    answers = [product.http.post("/api/v1/creatures", content=body) for _ in range(3)]
     assert {answer.status_code for answer in answers} <= {200, 503}
     assert answers[-1].status_code == 200

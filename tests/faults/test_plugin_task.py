@@ -31,20 +31,20 @@ SMALL = {
 
 
 @pytest.fixture
-def hire(tmp_path):
+def start_plugin_worker(tmp_path):
     """Starts a second worker of an installation, with the example and a broken module."""
     hired = []
     module, broken = shutil.copy(EXAMPLE, tmp_path), tmp_path / "broken.py"
     broken.write_text("import os\nos.nothing\n")
 
-    def start(place):
-        (other,) = place.named(SUPERVISOR)
+    def start(product):
+        (other,) = product.named(SUPERVISOR)
         environment = other.environ() | {"MICROCOSMOS_MODULES": f"{module}:{broken}"}
         command = [sys.executable, "-m", SUPERVISOR, "0"]
-        with (place.folder / "hired.txt").open("ab") as output:
+        with (product.folder / "hired.txt").open("ab") as output:
             streams = {"stdout": output, "stderr": output}
             hired.append(subprocess.Popen(command, cwd=ROOT, env=environment, **streams))
-        return wait_until(lambda: worker_with_plugins(place), 60, "it reports its plug-ins")
+        return wait_until(lambda: worker_with_plugins(product), 60, "it reports its plug-ins")
 
     yield start
     for process in hired:
@@ -52,53 +52,55 @@ def hire(tmp_path):
         process.wait(30)
 
 
-def worker_with_plugins(place):
-    return next((one for one in place.get("workers") if one["plugins"]), None)
+def worker_with_plugins(product):
+    return next((one for one in product.get("workers") if one["plugins"]), None)
 
 
-def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(installation, hire, tmp_path):
-    place = installation(WORKERS="1")
-    wait_until(lambda: place.get("workers"), 60, "its worker lives")
-    refused = place.http.post("/api/v1/runs", json=SMALL)
+def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(
+    start_product, start_plugin_worker, tmp_path
+):
+    product = start_product(WORKERS="1")
+    wait_until(lambda: product.get("workers"), 60, "its worker lives")
+    refused = product.http.post("/api/v1/runs", json=SMALL)
     assert refused.status_code == 422
     messages = {one["field"]: one["message"] for one in refused.json()["errors"]}
     assert "no worker has 'plugin_task.straight'" in messages["task.fitness"]
     assert "docs/plugins.md" in messages["body.builder"]
 
-    worker = hire(place)
+    worker = start_plugin_worker(product)
     names = [f"plugin_task.{name}" for name in ("straight", "sway", "cross")]
     assert {one["name"] for one in worker["plugins"]} == set(names)
     (failed,) = worker["unloaded"]
     assert failed["module"].endswith("broken.py")
     assert "AttributeError" in failed["reason"]
 
-    run = place.submit(SMALL)
-    done = place.wait(run, "finished", seconds=240)
-    log = place.get(f"runs/{run}/log")["entries"]
+    run = product.submit(SMALL)
+    done = product.wait(run, "finished", seconds=240)
+    log = product.get(f"runs/{run}/log")["entries"]
     assert any(f"begins on worker {worker['name']}" in entry["text"] for entry in log)
-    tree, attributes = file.load(place.archive(run))
+    tree, attributes = file.load(product.archive(run))
     spec = json.loads(attributes["spec"])
     assert spec == done["spec"]
     assert spec["task"]["plugin"]["source"] == sha256(EXAMPLE.read_bytes()).hexdigest()
     measures = json.loads(attributes["measures"])
     assert measures[-2:] == ["plugin_task.straight", "plugin_task.sway"]
-    archive = place.get(f"runs/{run}/archive", measures="plugin_task.straight")
+    archive = product.get(f"runs/{run}/archive", measures="plugin_task.straight")
     assert archive["measures"]["plugin_task.straight"] == archive["fitness"]
     assert archive["fitness"] == tree["archive"]["fitness"].tolist()
 
     module = tmp_path / EXAMPLE.name
     module.write_text(f"{EXAMPLE.read_text()}# Changed.\n")
     wait_until(
-        lambda: worker_with_plugins(place)["plugins"] != worker["plugins"],
+        lambda: worker_with_plugins(product)["plugins"] != worker["plugins"],
         60,
         "the worker notices the changed module",
     )
-    again = place.submit(spec)
-    waiting = place.read(again)
+    again = product.submit(spec)
+    waiting = product.read(again)
     assert waiting["status"] == "queued"
     assert "Waits for a worker that has plugin_task.cross" in waiting["waiting_reason"]
     assert f"{worker['name']} has another version" in waiting["waiting_reason"]
     shutil.copy(EXAMPLE, module)
-    finished = place.wait(again, "finished", seconds=240)
+    finished = product.wait(again, "finished", seconds=240)
     assert finished["attempt"] == 1
-    assert place.archive(again) == place.archive(run)
+    assert product.archive(again) == product.archive(run)

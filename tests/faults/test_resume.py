@@ -11,7 +11,7 @@ from contextlib import suppress
 
 import h5py
 import pytest
-from databases import Missing, services
+from databases import Missing, service_settings
 from drive import interrupt, kill_job, kill_worker, pause_and_resume, stop_worker, wait_until
 
 from microcosmos.archive import file
@@ -24,34 +24,36 @@ LATEST = 9
 
 @pytest.mark.parametrize("faults", [FEW, pytest.param(MANY, marks=pytest.mark.long)])
 def test_a_run_that_is_killed_stopped_and_paused_ends_with_the_same_archive(
-    place, spec, undisturbed, faults
+    product, spec, undisturbed, faults
 ):
     moments = sorted(random.choices(range(LATEST), k=len(faults)))
-    run = place.submit(spec)
-    interrupt(place, run, zip(moments, faults, strict=True))
-    assert place.wait(run, "finished")["attempt"] == 1 + len(faults)
-    assert place.results(run) == undisturbed, f"interrupted at {moments}"
+    run = product.submit(spec)
+    interrupt(product, run, zip(moments, faults, strict=True))
+    assert product.wait(run, "finished")["attempt"] == 1 + len(faults)
+    assert product.results(run) == undisturbed, f"interrupted at {moments}"
 
 
 @pytest.mark.long
-def test_a_run_goes_on_while_redis_is_killed_and_started_again(place, spec, undisturbed):
-    run = place.submit(spec)
-    attempt = place.reach(run, 1)
-    place.signal("redis-server", signal.SIGKILL)
-    assert place.wait(run, "finished")["attempt"] == attempt
-    assert place.results(run) == undisturbed
-    place.wait(place.submit(spec), "finished")
+def test_a_run_goes_on_while_redis_is_killed_and_started_again(product, spec, undisturbed):
+    run = product.submit(spec)
+    attempt = product.reach(run, 1)
+    product.signal("redis-server", signal.SIGKILL)
+    assert product.wait(run, "finished")["attempt"] == attempt
+    assert product.results(run) == undisturbed
+    product.wait(product.submit(spec), "finished")
 
 
 @pytest.mark.long
-def test_a_frozen_worker_is_replaced_and_writes_nothing_when_it_wakes(place, spec, undisturbed):
-    run = place.submit(spec)
-    attempt = place.reach(run, 2)
-    owner = place.owner(run)
-    with place.frozen([owner, *owner.children(recursive=True)]):
-        successor = place.reach(run, 0, after=attempt)
-    assert place.wait(run, "finished")["attempt"] == successor == attempt + 1
-    assert place.results(run) == undisturbed
+def test_a_frozen_worker_is_replaced_and_writes_nothing_when_it_wakes(
+    product, spec, undisturbed
+):
+    run = product.submit(spec)
+    attempt = product.reach(run, 2)
+    owner = product.owner(run)
+    with product.frozen([owner, *owner.children(recursive=True)]):
+        successor = product.reach(run, 0, after=attempt)
+    assert product.wait(run, "finished")["attempt"] == successor == attempt + 1
+    assert product.results(run) == undisturbed
     wait_until(lambda: not owner.children(), 10, "the woken job has ended")
     assert owner.is_running()
 
@@ -61,15 +63,15 @@ def test_a_frozen_worker_is_replaced_and_writes_nothing_when_it_wakes(place, spe
     ("sent", "status", "seconds"), [(signal.SIGINT, 0, 0), (signal.SIGKILL, -9, 30)]
 )
 def test_the_end_of_the_root_ends_all_and_the_next_start_resumes(
-    place, spec, undisturbed, sent, status, seconds
+    product, spec, undisturbed, sent, status, seconds
 ):
-    run = place.submit(spec)
-    place.reach(run, 3)
-    assert place.end(sent) == status
-    wait_until(lambda: not list(place.processes()), seconds, "all processes have ended")
-    place.start()
-    place.wait(run, "finished")
-    assert place.results(run) == undisturbed
+    run = product.submit(spec)
+    product.reach(run, 3)
+    assert product.end(sent) == status
+    wait_until(lambda: not list(product.processes()), seconds, "all processes have ended")
+    product.start()
+    product.wait(run, "finished")
+    assert product.results(run) == undisturbed
 
 
 SWEEP = {
@@ -83,14 +85,14 @@ SWEEP = {
 
 
 @pytest.mark.long
-def test_a_sweep_that_is_killed_and_paused_ends_with_the_same_table(place):
-    undisturbed, disturbed = place.submit(SWEEP), place.submit(SWEEP)
-    interrupt(place, disturbed, [(0, kill_job), (1, pause_and_resume)])
+def test_a_sweep_that_is_killed_and_paused_ends_with_the_same_table(product):
+    undisturbed, disturbed = product.submit(SWEEP), product.submit(SWEEP)
+    interrupt(product, disturbed, [(0, kill_job), (1, pause_and_resume)])
 
     def results(run):
-        place.wait(run, "finished", seconds=300)
-        table = place.http.get(f"/api/v1/runs/{run}/results.csv").raise_for_status().text
-        return place.get(f"runs/{run}/results"), table, place.archive(run)
+        product.wait(run, "finished", seconds=300)
+        table = product.http.get(f"/api/v1/runs/{run}/results.csv").raise_for_status().text
+        return product.get(f"runs/{run}/results"), table, product.archive(run)
 
     whole, *others = results(undisturbed)
     assert [row["swimmer"] for row in whole["rows"][::2]] == SWEEP["swimmers"]
@@ -98,10 +100,10 @@ def test_a_sweep_that_is_killed_and_paused_ends_with_the_same_table(place):
 
 
 @pytest.fixture
-def elsewhere():
+def postgresql_and_redis():
     """The settings of an installation on this machine's PostgreSQL and Redis."""
     try:
-        with services() as settings:
+        with service_settings() as settings:
             yield settings
     except Missing as missing:
         pytest.skip(str(missing))
@@ -109,32 +111,32 @@ def elsewhere():
 
 @pytest.mark.long
 def test_postgresql_and_a_redis_server_give_the_same_bytes(
-    elsewhere, installation, spec, undisturbed
+    postgresql_and_redis, start_product, spec, undisturbed
 ):
     """`undisturbed` is of SQLite and the embedded Redis."""
-    place = installation(**elsewhere)
-    assert "the one that MICROCOSMOS_REDIS_URL names" in place.output.read_text()
-    assert not place.named("redis-server")
-    assert not list(place.folder.glob("*.sqlite"))
-    run = place.submit(spec)
-    interrupt(place, run, [(1, kill_job), (4, kill_worker), (7, stop_worker)])
-    assert place.wait(run, "finished")["attempt"] == 4
-    assert place.results(run) == undisturbed
+    product = start_product(**postgresql_and_redis)
+    assert "the one that MICROCOSMOS_REDIS_URL names" in product.output.read_text()
+    assert not product.named("redis-server")
+    assert not list(product.folder.glob("*.sqlite"))
+    run = product.submit(spec)
+    interrupt(product, run, [(1, kill_job), (4, kill_worker), (7, stop_worker)])
+    assert product.wait(run, "finished")["attempt"] == 4
+    assert product.results(run) == undisturbed
 
 
 @pytest.mark.long
-def test_a_run_changes_device_only_when_resumed_by_a_person(installation, spec):
-    place = installation()
-    run = place.submit(spec)
-    place.reach(run, 3)
-    place.end()
-    place.environment["XLA_FLAGS"] = "--xla_cpu_enable_fast_math=false"  # Another kind.
-    place.start()
-    waiting = place.wait(run, "paused")
+def test_a_run_changes_device_only_when_resumed_by_a_person(start_product, spec):
+    product = start_product()
+    run = product.submit(spec)
+    product.reach(run, 3)
+    product.end()
+    product.environment["XLA_FLAGS"] = "--xla_cpu_enable_fast_math=false"  # Another kind.
+    product.start()
+    waiting = product.wait(run, "paused")
     assert "Resume the run to continue" in waiting["warning"]
-    place.ask(run, "resume")
-    place.wait(run, "finished")
-    _, attributes = file.load(place.archive(run))
+    product.ask(run, "resume")
+    product.wait(run, "finished")
+    _, attributes = file.load(product.archive(run))
     first, second = json.loads(attributes["device"])
     assert first != second
     assert second.endswith("--xla_cpu_enable_fast_math=false")
@@ -164,31 +166,31 @@ def fill(folder):
 
 @pytest.mark.long
 def test_a_full_disk_leaves_the_last_checkpoint_and_the_run_says_so(
-    small_disk, installation, spec, undisturbed
+    small_disk, start_product, spec, undisturbed
 ):
-    place = installation(MICROCOSMOS_ARTIFACTS_URL=str(small_disk))
-    run = place.submit(spec)
-    place.reach(run, 3)
+    product = start_product(MICROCOSMOS_ARTIFACTS_URL=str(small_disk))
+    run = product.submit(spec)
+    product.reach(run, 3)
     ballast = fill(small_disk)
-    paused = place.wait(run, "paused")
+    paused = product.wait(run, "paused")
     assert "No space left on device" in paused["warning"]
-    with h5py.File(io.BytesIO(place.archive(run))) as archive:
+    with h5py.File(io.BytesIO(product.archive(run))) as archive:
         assert 0 < archive["loop/generation"][()] < spec["search"]["generations"]
     ballast.unlink()
-    place.ask(run, "resume")
-    assert place.wait(run, "finished")["warning"] is None
-    assert place.results(run) == undisturbed
+    product.ask(run, "resume")
+    assert product.wait(run, "finished")["warning"] is None
+    assert product.results(run) == undisturbed
 
 
 @pytest.mark.long
-def test_a_replay_is_made_though_its_renderer_is_killed(place, undisturbed):
+def test_a_replay_is_made_though_its_renderer_is_killed(product, undisturbed):
     creature = undisturbed["archive"]["creature"][0]
     address = f"/api/v1/creatures/{creature}/replay"
-    assert place.http.get(address).status_code == 202
-    place.signal("worker.renderer", signal.SIGKILL)
+    assert product.http.get(address).status_code == 202
+    product.signal("worker.renderer", signal.SIGKILL)
 
     def there():
-        answer = place.http.get(address)
+        answer = product.http.get(address)
         assert answer.status_code in (200, 202), answer.text
         return answer.content if answer.status_code == 200 else None
 

@@ -37,12 +37,12 @@ def refused(tmp_path):
     return start
 
 
-def test_a_taken_port_and_a_taken_data_folder_are_named(place, refused):
-    message = refused(PORT=str(place.port))
-    assert f"PORT must be one that is free on 127.0.0.1; got {place.port}" in message
-    assert f"PORT={place.port + 1}" in message
-    message = refused(MICROCOSMOS_DATA=str(place.folder))
-    assert f"The data folder {place.folder} is in use by another Microcosmos" in message
+def test_a_taken_port_and_a_taken_data_folder_are_named(product, refused):
+    message = refused(PORT=str(product.port))
+    assert f"PORT must be one that is free on 127.0.0.1; got {product.port}" in message
+    assert f"PORT={product.port + 1}" in message
+    message = refused(MICROCOSMOS_DATA=str(product.folder))
+    assert f"The data folder {product.folder} is in use by another Microcosmos" in message
 
 
 @pytest.mark.long
@@ -78,7 +78,7 @@ def test_a_server_without_an_admin_token_does_not_listen(tmp_path, refused):
     assert "there is none: create one with `python -m server.auth create" in message
 
 
-def test_a_killed_server_is_started_again(place, undisturbed):
-    place.signal("server.main", signal.SIGKILL)
-    wait_until(lambda: "server     died (signal SIGKILL)" in place.output.read_text(), 10, "")
-    wait_until(place.answers, 30, "the server answers again")
+def test_a_killed_server_is_started_again(product, undisturbed):
+    product.signal("server.main", signal.SIGKILL)
+    wait_until(lambda: "server     died (signal SIGKILL)" in product.output.read_text(), 10, "")
+    wait_until(product.answers, 30, "the server answers again")

@@ -21,7 +21,7 @@ from malformed import Case
 IN_ACCESS, IN_OPEN = 0x1, 0x20
 EVENT = struct.Struct("iIII")
 MEASURED = (["-m", "server.main"], ["-m", "server.creatures.sandbox_process"])
-OURS = ("Errno", "No module", "took too long", "cannot be read", "Traceback")
+INTERNAL_WORDS = ("Errno", "No module", "took too long", "cannot be read", "Traceback")
 """Words of internal errors, which a refusal must not contain."""
 
 
@@ -55,33 +55,35 @@ def all_cases(canary: Path) -> Iterable[Case]:
     return chain(malformed.cases(), malformed_hdf5.cases(canary))
 
 
-def send(place: Installation, cases: Iterable[Case]) -> Findings:
+def send(product: Installation, cases: Iterable[Case]) -> Findings:
     """Post each file as a creature; the server has to refuse it with the reason."""
-    found, valid, before = Findings(), malformed.good()["sha256"], None
+    found, valid, before = Findings(), malformed.valid_document()["sha256"], None
     for case in cases:
         began = time.monotonic()
-        answer = place.http.post(
+        answer = product.http.post(
             "/api/v1/creatures", content=case.body, headers={"Content-Type": case.kind}
         )
         if before is None:  # The first file has started the sandbox and warmed it up.
-            before = memory(place)
+            before = memory(product)
         else:
             found.slowest = max(found.slowest, time.monotonic() - began)
-            found.growth = max(found.growth, memory(place) - before)
+            found.growth = max(found.growth, memory(product) - before)
         if answer.is_success and case.harmless and answer.json()["creature"] == valid:
             continue
         found.refused += 1
         text = f"{answer.status_code}: {answer.text}"
-        reason = re.search(case.says, answer.text) and not any(word in text for word in OURS)
+        reason = re.search(case.says, answer.text) and not any(
+            word in text for word in INTERNAL_WORDS
+        )
         if answer.status_code not in (413, 422) or not reason:
             found.wrong.append(f"{case.name}: not {case.says!r} but {text:.200}")
     return found
 
 
-def memory(place: Installation) -> int:
+def memory(product: Installation) -> int:
     """Bytes in the memory of the server and its sandboxes."""
     total = 0
-    for process in place.processes():
+    for process in product.processes():
         with suppress(psutil.Error, OSError):  # A sandbox may end while it is measured.
             if process.cmdline()[1:] in MEASURED:
                 total += process.memory_info().rss
@@ -91,7 +93,7 @@ def memory(place: Installation) -> int:
 HEAD = (
     b"POST /api/v1/creatures HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
 )
-LIES = {
+FALSE_LENGTHS = {
     "too short a body": (b"Content-Length: 100\r\n\r\n{}", b""),
     "too long a body": (b"Content-Length: 1\r\nConnection: close\r\n\r\n{}", b" 4"),
     "no number": (b"Content-Length: many\r\n\r\n{}", b" 4"),
@@ -103,7 +105,7 @@ LIES = {
 """Requests with false lengths, and the beginning of the status of their answers."""
 
 
-def lie(port: int, sent: bytes) -> bytes:
+def send_false_length(port: int, sent: bytes) -> bytes:
     """The first line of the answer to a request with a wrong length."""
     with socket.create_connection(("127.0.0.1", port), timeout=20) as connection:
         try:

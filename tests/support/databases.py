@@ -66,7 +66,7 @@ def unused_redis() -> Iterator[str]:
 
 
 @contextmanager
-def services() -> Iterator[dict[str, str]]:
+def service_settings() -> Iterator[dict[str, str]]:
     """The settings of an installation on this machine's PostgreSQL and Redis."""
     with own_postgresql() as database, unused_redis() as messages:
         yield {

@@ -11,7 +11,7 @@ from server.runs.submission import IdempotentRequest, submit
 from server.tables import Base, Run
 
 
-def rows(services):
+def row_counts(services):
     with services.sessions.read() as session:
         return {
             table.name: session.scalar(select(func.count()).select_from(table))

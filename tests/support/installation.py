@@ -32,7 +32,7 @@ class Installation:
     def clean(self) -> None:
         with self.services.sessions.write.begin() as session:
             for left in session.scalars(select(Run.id)):
-                self.services.jobs.forget(str(left))
+                self.services.jobs.remove(str(left))
             for table in reversed(Base.metadata.sorted_tables):
                 session.execute(table.delete())
         empty_redis(self.services)

@@ -67,7 +67,9 @@ def hang_up(end: socket.socket) -> None:
 
 
 @contextmanager
-def foreign(*answers: tuple[int, dict[str, str], bytes]) -> Iterator[tuple[str, list[str]]]:
+def foreign_server(
+    *answers: tuple[int, dict[str, str], bytes],
+) -> Iterator[tuple[str, list[str]]]:
     """A server of another program, with its answers in order, the last one repeated."""
     left, asked = list(answers), []
 

@@ -15,13 +15,13 @@ from server.tables import FINISHED, Elite, Generation, Run
 GENERATIONS = 200
 
 
-def write_run(place: Services, of: str, side: int, filled: int, creatures: list[str]) -> str:
+def write_run(services: Services, of: str, side: int, filled: int, creatures: list[str]) -> str:
     """Write a run with an archive of side × side cells, some of them filled; return its id."""
     draw = np.random.default_rng(side)
     cells = np.sort(draw.choice(side * side, filled, replace=False))
     fitness = hill(cells, side) + draw.normal(0, 0.03, filled)
     entered = np.sort(draw.integers(1, GENERATIONS + 1, filled))
-    with place.sessions.write.begin() as session:
+    with services.sessions.write.begin() as session:
         run = copied(session.get_one(Run, UUID(of)), side, fitness)
         session.add(run)
         session.flush()
@@ -100,9 +100,9 @@ def curves(run: Run, fitness: np.ndarray, entered: np.ndarray) -> list[dict]:
     ]
 
 
-def creatures_of(place: Services, run: str) -> list[str]:
+def creatures_of(services: Services, run: str) -> list[str]:
     """All elites of a run, newest first."""
     mine = select(Elite.creature).where(Elite.run_id == UUID(run))
-    with place.sessions.read() as session:
+    with services.sessions.read() as session:
         found = session.scalars(mine.order_by(Elite.generation.desc(), Elite.cell))
         return list(dict.fromkeys(found))

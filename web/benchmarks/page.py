@@ -18,7 +18,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "faults"))
 
 from browser import launched
-from drive import ROOT, Installation, wait_until
+from drive import ROOT, Installation, running, wait_until
 from large import creatures_of, write_run
 from playwright.sync_api import Browser, Page, Response, ViewportSize
 from playwright.sync_api import TimeoutError as Late
@@ -88,22 +88,19 @@ BLOCKS = """
 
 def main() -> None:
     os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[:CORES])
-    with tempfile.TemporaryDirectory() as folder:
-        place = Installation(Path(folder) / "data", SETTINGS)
-        place.start()
-        try:
-            runs = prepare(place)
-            with launched() as browser:
-                Console(width=110).print(table(browser, place, runs))
-        finally:
-            place.end()
-            place.close()
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        running(Path(folder) / "data", SETTINGS) as product,
+    ):
+        runs = prepare(product)
+        with launched() as browser:
+            Console(width=110).print(table(browser, product, runs))
 
 
-def prepare(place: Installation) -> tuple[str, str, str]:
+def prepare(product: Installation) -> tuple[str, str, str]:
     """Carry out a search, fill archives with what it found, and have replays rendered."""
-    found = searched(place)
-    services = connect(Settings(data=place.folder))
+    found = searched(product)
+    services = connect(Settings(data=product.folder))
     creatures = creatures_of(services, found)[:CREATURES]
     side = round(len(creatures) ** 0.5)
     runs = (
@@ -113,28 +110,28 @@ def prepare(place: Installation) -> tuple[str, str, str]:
     )
     services.close()
     for creature in creatures:
-        ready = partial(is_ready, place, f"/api/v1/creatures/{creature}/replay")
+        ready = partial(is_ready, product, f"/api/v1/creatures/{creature}/replay")
         wait_until(ready, 300, f"creature {creature} is rendered")
     return runs
 
 
-def is_ready(place: Installation, path: str) -> bool:
-    return place.http.get(path).raise_for_status().status_code == 200
+def is_ready(product: Installation, path: str) -> bool:
+    return product.http.get(path).raise_for_status().status_code == 200
 
 
-def searched(place: Installation) -> str:
+def searched(product: Installation) -> str:
     """A run of the demonstration, long enough for a hundred creatures."""
-    experiments = place.http.get("/api/v1/experiments").raise_for_status().json()
+    experiments = product.http.get("/api/v1/experiments").raise_for_status().json()
     search = next(one for one in experiments if one["experiment"] == "quality-diversity")
     spec = search["presets"][0]["spec"]
     spec["search"]["generations"] = 40
-    run = place.submit(spec)
-    place.wait(run, "finished", seconds=600)
+    run = product.submit(spec)
+    product.wait(run, "finished", seconds=600)
     return run
 
 
-def table(browser: Browser, place: Installation, runs: tuple[str, str, str]) -> Table:
-    first, largest, hundred = (f"{place.url}/runs/{run}" for run in runs)
+def table(browser: Browser, product: Installation, runs: tuple[str, str, str]) -> Table:
+    first, largest, hundred = (f"{product.url}/runs/{run}" for run in runs)
     wall = f"{hundred}?view=gallery&tile={TILE}"
     measures: list[tuple[str, str, Callable[[], str]]] = [
         ("first paint of a run with 10,000 cells", "≤ 1 s", lambda: paint(browser, first)),
@@ -143,7 +140,7 @@ def table(browser: Browser, place: Installation, runs: tuple[str, str, str]) -> 
         ("playing their history", "", lambda: play(browser, largest)),
         ("pointer on a cell to its first frame", "≤ 100 ms", lambda: hover(browser, hundred)),
         (f"gallery of {CREATURES}", "≥ 30 frames/s", lambda: gallery(browser, wall)),
-        ("script of a page, gzipped", "≤ 100 kB", lambda: script(browser, place, runs[2])),
+        ("script of a page, gzipped", "≤ 100 kB", lambda: script(browser, product, runs[2])),
     ]
     rows = Table("", "bar", "found", title=f"The page in Chromium on {CORES} cores")
     for name, bar, measure in measures:
@@ -266,13 +263,11 @@ def gallery(browser: Browser, url: str) -> str:
     return f"{rate:.0f} frames/s, {len(fetched)} of them there, {moving} tiles moving"
 
 
-def script(browser: Browser, place: Installation, run: str) -> str:
+def script(browser: Browser, product: Installation, run: str) -> str:
     """Size of the scripts that each page loads, gzipped."""
-    built = ROOT / "web" / "dist"
-    sizes = {
-        file.name: len(gzip.compress(file.read_bytes())) / 1000 for file in built.rglob("*.js")
-    }
-    archive = place.http.get(f"/api/v1/runs/{run}/archive").raise_for_status().json()
+    files = (ROOT / "web" / "dist").rglob("*.js")
+    sizes = {file.name: len(gzip.compress(file.read_bytes())) / 1000 for file in files}
+    archive = product.http.get(f"/api/v1/runs/{run}/archive").raise_for_status().json()
     paths = {
         "a run": f"/runs/{run}",
         "a creature": f"/creatures/{archive['creature'][0]}?run={run}",
@@ -281,7 +276,7 @@ def script(browser: Browser, place: Installation, run: str) -> str:
         "the runs": "/",
     }
     loaded = {
-        name: sum(sizes[file] for file in scripts(browser, place.url + path) & sizes.keys())
+        name: sum(sizes[file] for file in scripts(browser, product.url + path) & sizes.keys())
         for name, path in paths.items()
     }
     each = ", ".join(f"{size:.1f} kB for {name}" for name, size in loaded.items())

@@ -27,7 +27,7 @@ def gradient(
     """Return measures of a creature, and for each its derivatives by parts of the creature.
 
     Names are those of `search.gradients.parts` and of the measures. `horizon` is the number of
-    steps; with `segment`, reverse mode keeps so many steps in memory and repeats the others.
+    steps; with `segment`, reverse mode keeps that number of steps in memory.
     Raises `creature.CreatureError` for an invalid file and `ValueError` for unknown names.
     """
     task, actuator = _creature(file, jnp.dtype("float32"))

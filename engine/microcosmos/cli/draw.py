@@ -74,7 +74,7 @@ def of_file(
 ) -> None:
     """Draw a picture or a film of a creature or its replay, or the figure of a run.
 
-    This is meant where no command is named: `figure FILE OUT`.
+    `figure FILE OUT` without a command name runs this command.
     """
     load_modules(module)
     with failing(file):
@@ -85,20 +85,20 @@ def of_file(
 @figures.command()
 @with_options(_printed)
 def archive(
-    how: drawing.Print,
+    options: drawing.Print,
     file: File,
     out: Out = None,
     axes: Axes = None,
     colour: Annotated[str, Option(help="fitness, or a measure.")] = "fitness",
 ) -> None:
     """Draw the map of an archive: bins, or the cells of a tessellation."""
-    _print(drawing.archive(file, _beside(file, out, "archive"), how, _names(axes), colour))
+    _print(drawing.archive(file, _beside(file, out, "archive"), options, _names(axes), colour))
 
 
 @figures.command()
 @with_options(_printed, omit="palette", width="double")
 def curves(
-    how: drawing.Print,
+    options: drawing.Print,
     files: Annotated[
         list[Path],
         Argument(metavar="FILE... OUT", help="Archive files, then the figure to write."),
@@ -114,13 +114,13 @@ def curves(
         fail(f"FILE... OUT needs an archive file and a figure to write; got only {out}")
     if missing := [str(file) for file in given if not file.is_file()]:
         fail(f"FILE must exist; not found: {', '.join(missing)}")
-    _print(drawing.progress(given, out, how, _names(shown) or [], against))
+    _print(drawing.progress(given, out, options, _names(shown) or [], against))
 
 
 @figures.command()
 @with_options(_printed, width="double")
 def sheet(
-    how: drawing.Print,
+    options: drawing.Print,
     file: File,
     out: Out = None,
     axes: Axes = None,
@@ -137,7 +137,7 @@ def sheet(
             drawing.contact(
                 file,
                 _beside(file, out, "sheet"),
-                how,
+                options,
                 _names(axes),
                 (columns, rows),
                 moments,
@@ -149,7 +149,7 @@ def sheet(
 @figures.command()
 @with_options(_printed, width="double")
 def lineage(
-    how: drawing.Print,
+    options: drawing.Print,
     file: File,
     out: Out = None,
     cell: Annotated[
@@ -158,7 +158,7 @@ def lineage(
     ] = None,
 ) -> None:
     """Draw the pedigree of an archive's elites, and the ancestors of one of them."""
-    _print(drawing.tree(file, _beside(file, out, "lineage"), how, cell))
+    _print(drawing.tree(file, _beside(file, out, "lineage"), options, cell))
 
 
 def _print(written: list[Path]) -> None:

@@ -32,7 +32,7 @@ def prepare_engine(files: list[Path] | None) -> None:
 
 
 @app.command("plugins")
-def show(module: Modules = None) -> None:
+def list_plugins(module: Modules = None) -> None:
     """List plug-ins: names, titles, versions."""
     load_modules(module)
     for plugin in plugins.loaded():

@@ -22,7 +22,7 @@ from ..archive.file import read_table
 from ..doctor.machine import memory_bytes
 from ..spec import Archive, Refinement, Spec, estimate
 from .app import CACHE, CreaturePath, OtherDevice, Set, app, console, fail, failing
-from .fork import From, with_initial
+from .initial import From, with_initial
 from .modules import Modules, load_modules
 from .specs import changed, presets, read_spec, with_generations
 
@@ -59,7 +59,7 @@ def evolve(
 
     chosen, initial = with_initial(chosen, begin_from or (), path)
     console.print(f"{evaluations:,} evaluations on {device_kind()} into {path}")
-    carry_on(chosen, path, checkpoint_seconds, other_device, initial)
+    run_with_progress(chosen, path, checkpoint_seconds, other_device, initial)
     best = path.with_suffix(".best.json")
     console.print(f"Done: {path}" + (f"; the best creature: {best}" if best.exists() else ""))
 
@@ -98,7 +98,7 @@ def refine(
             segment=segment,
         )
     prepare_run(spec, path)
-    carry_on(spec, path, 60.0, other_device)
+    run_with_progress(spec, path, 60.0, other_device)
     _print_comparison(path)
 
 
@@ -118,7 +118,7 @@ def prepare_run(spec: Spec, path: Path) -> int:
     return need.evaluations
 
 
-def carry_on(
+def run_with_progress(
     spec: Spec,
     archive: Path,
     checkpoint_seconds: float,

@@ -133,7 +133,7 @@ class Client:
         return (Run(self.connection, one) for one in found)
 
     def run(self, id: str, *, deleted: bool = False) -> Run:
-        """Return the run whose id begins so. Raise `NotFound`, and `Refused` for several."""
+        """Return the run whose id begins with `id`; raise `NotFound`, `Refused` for several."""
         found = self.connection.items("runs", q=id, deleted=deleted or None, limit=200)
         return Run(self.connection, find(self.connection, "runs", id, found))
 
@@ -149,7 +149,7 @@ class Client:
         return (Sweep(self.connection, one) for one in self.connection.items("sweeps"))
 
     def sweep(self, id: str, *, deleted: bool = False) -> Sweep:
-        """Return the sweep whose id begins so, from the bin too if `deleted`.
+        """Return the sweep whose id begins with `id`, from the bin too if `deleted`.
 
         Raise `NotFound`, and `Refused` for several.
         """
@@ -209,7 +209,7 @@ class Client:
         return self.connection.send("POST", "tokens", document)
 
     def revoke_token(self, id: str) -> None:
-        """Revoke the token whose id begins so."""
+        """Revoke the token whose id begins with `id`."""
         tokens = self.connection.items("tokens")
         found = find(self.connection, "tokens", id, tokens, fetch=False)
         self.connection.send("DELETE", f"tokens/{found['id']}")

@@ -39,7 +39,7 @@ class Connection:
         patience: float = 30.0,
         transport: httpx.BaseTransport | None = None,
     ):
-        self.url, self.patience = normal(url), patience
+        self.url, self.patience = normal_url(url), patience
         self.answered = False
         headers = {"User-Agent": f"microcosmos/{VERSION}", "Accept": "*/*"}
         if token:
@@ -104,7 +104,7 @@ class Connection:
             return answer.json() if answer.content else None
         except ValueError:
             kind = answer.headers.get("content-type", "")
-            raise errors.stranger(answer, self.url, kind) from None
+            raise errors.foreign_answer(answer, self.url, kind) from None
 
     def ask(self, method: str, path: str, **options: Any) -> httpx.Response:
         """Return a successful answer, else raise `ServerError`."""
@@ -197,7 +197,7 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"JSON cannot express {type(value).__name__}; got {value!r:.80}")
 
 
-def normal(url: str) -> str:
+def normal_url(url: str) -> str:
     """Complete the address of a server: with a scheme, without the path of the API."""
     whole = url.strip() if "://" in url else f"http://{url.strip()}"
     try:

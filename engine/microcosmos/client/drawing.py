@@ -18,7 +18,7 @@ VIRIDIS = np.array(
 
 
 def braille(values: Sequence[float | None], width: int, height: int) -> list[str]:
-    """Draw a curve in Braille signs, so many a line; an unknown value leaves a gap."""
+    """Draw a curve in `height` lines of `width` Braille signs; unknown values leave gaps."""
     columns, rows = 2 * width, 4 * height
     signs = [[EMPTY] * width for _ in range(height)]
     before: int | None = None

@@ -53,7 +53,7 @@ def checked(answer: httpx.Response, url: str) -> httpx.Response:
         return answer
     answer.read()
     if kind != PROBLEM:
-        raise stranger(answer, url, kind)
+        raise foreign_answer(answer, url, kind)
     raise of(answer)
 
 
@@ -80,8 +80,8 @@ def sentence(detail: str, errors: Sequence[Mapping[str, Any]]) -> str:
     return text if text.endswith((".", "!", "?")) else f"{text}."
 
 
-def stranger(answer: httpx.Response, url: str, kind: str) -> ServerError:
-    """Explain an answer that no Microcosmos server would give."""
+def foreign_answer(answer: httpx.Response, url: str, kind: str) -> ServerError:
+    """Return the error for an answer that no Microcosmos server would give."""
     status = f"{answer.status_code} {answer.reason_phrase}".strip()
     if answer.status_code in (502, 503, 504):
         text = "the server behind it is down or starting. Try again in a moment."

@@ -72,7 +72,7 @@ def find(
     candidates: Iterable[dict[str, Any]],
     fetch: bool = True,
 ) -> dict[str, Any]:
-    """Return the only candidate whose id begins so; `fetch` a whole id directly.
+    """Return the only candidate whose id begins with `id`; `fetch` a whole id directly.
 
     Raise `NotFound`, and `Refused` for several.
     """

@@ -109,7 +109,7 @@ def thinning(motion: replay_file.Replay) -> tuple[int, int]:
 
 
 def coarse(levels: np.ndarray, cells: int) -> np.ndarray:
-    """Return (frame, x, y) means over squares of so many cells."""
+    """Return (frame, x, y) means over squares of `cells` × `cells`."""
     if cells == 1:
         return levels
     frames, width, height = levels.shape

@@ -43,7 +43,7 @@ class Run(Record):
         return self.status in polling.ENDED
 
     def wait(self, timeout: float | None = None) -> str:
-        """Return the status at the end; raise `TimeoutError` after so many seconds."""
+        """Return the status at the end; raise `TimeoutError` after `timeout` seconds."""
         self.record = polling.wait(self._connection, self.id, timeout)
         return self.status
 

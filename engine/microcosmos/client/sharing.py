@@ -39,7 +39,7 @@ def publish(
     listed: bool = False,
     **texts: str | None,
 ) -> Share:
-    """Share a creature or an archive; the link expires after so many `days`.
+    """Share a creature or an archive; the link expires after `days`.
 
     `texts` are `title`, `credit` and `licence`. The commons show it if it is `listed`.
     """
@@ -50,7 +50,7 @@ def publish(
 
 
 def expiry(days: float | None) -> str | None:
-    """Return the time so many days from now."""
+    """Return the time `days` from now."""
     if days is None:
         return None
     if days <= 0:

@@ -16,9 +16,9 @@ SILENCE = 40.0
 
 @dataclass(frozen=True)
 class Event:
-    """Of kind `run`, `generation`, `elites`, `results`, `rewind` or `reset`.
+    """An event of the kind `run`, `generation`, `elites`, `results`, `rewind` or `reset`.
 
-    A `beat` shows only that the stream is alive.
+    A `beat` only shows that the stream is alive.
     """
 
     kind: str

@@ -14,7 +14,7 @@ from .finding import Finding, ok, problem, warning
 
 PATIENCE = 120.0
 """Seconds; a healthy driver needs a few."""
-CPU = "JAX_PLATFORMS=cpu leaves the GPU out"
+USE_CPU = "JAX_PLATFORMS=cpu leaves the GPU out"
 
 
 def devices(cache: Path, patience: float = PATIENCE) -> Iterator[Finding]:
@@ -24,11 +24,11 @@ def devices(cache: Path, patience: float = PATIENCE) -> Iterator[Finding]:
         found = probed(cache, patience)
     except subprocess.TimeoutExpired:
         text = f"JAX did not answer within {patience:.0f} s: a driver hangs"
-        advice = f"look at nvidia-smi, restart the machine; until then {CPU}"
+        advice = f"look at nvidia-smi, restart the machine; until then {USE_CPU}"
         yield problem("devices", text, advice)
         return
     except RuntimeError as error:
-        yield problem("devices", f"JAX fails: {error}", f"make install; {CPU}")
+        yield problem("devices", f"JAX fails: {error}", f"make install; {USE_CPU}")
         return
     yield from _devices(found)
     program = found["cache"]
@@ -56,9 +56,9 @@ def _devices(found: dict[str, Any]) -> Iterator[Finding]:
     for one in found["devices"]:
         name = f"{one['platform']} {one['id']} ({one['model']})"
         if "error" in one:
-            yield problem("devices", f"{name}: {one['error']}", CPU)
-        elif not one["right"]:
-            yield problem("devices", f"{name} computes wrong numbers", f"do not use it: {CPU}")
+            yield problem("devices", f"{name}: {one['error']}", USE_CPU)
+        elif not one["correct"]:
+            yield problem("devices", f"{name} computes wrong numbers", f"avoid it: {USE_CPU}")
         elif one["memory_bytes"]:
             free = one["memory_bytes"] - one["memory_used_bytes"]
             text = f"{name}: {size(free)} of {size(one['memory_bytes'])} free to JAX"
@@ -77,7 +77,7 @@ def _devices(found: dict[str, Any]) -> Iterator[Finding]:
 
 def _folder(cache: Path) -> Iterator[Finding]:
     """Check the folder of compiled programs; make it if it is missing."""
-    advice = f"let it be written to (chown, chmod {cache}), or set JAX_COMPILATION_CACHE_DIR"
+    advice = f"make it writable (chown, chmod {cache}), or set JAX_COMPILATION_CACHE_DIR"
     try:
         cache.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -58,14 +58,15 @@ def satisfied(found: str, needed: SpecifierSet) -> bool:
 
 
 MEMINFO = Path("/proc/meminfo")
-LIMIT = Path("/sys/fs/cgroup/memory.max")
+CONTROL_GROUP = Path("/sys/fs/cgroup")
+"""Root of control groups, version 2; in a container, its own group."""
 MIN_BYTES = 2 << 30
 """Bytes that JAX, its compiler and a small run need."""
 
 
-def memory(meminfo: Path = MEMINFO, limit: Path = LIMIT) -> Iterator[Finding]:
+def memory(meminfo: Path = MEMINFO, group: Path = CONTROL_GROUP) -> Iterator[Finding]:
     """Check the available memory, and list the presets that need more than there is."""
-    whole, free = memory_bytes(meminfo, limit)
+    whole, free = memory_bytes(meminfo, group)
     found = f"{size(free)} of {size(whole)} available"
     if free < MIN_BYTES:
         advice = "end other programs, or run fewer workers: make run WORKERS=1"
@@ -80,14 +81,23 @@ def memory(meminfo: Path = MEMINFO, limit: Path = LIMIT) -> Iterator[Finding]:
                 yield warning("memory", found, "use a smaller block, or a larger machine")
 
 
-def memory_bytes(meminfo: Path = MEMINFO, limit: Path = LIMIT) -> tuple[int, int]:
+def memory_bytes(meminfo: Path = MEMINFO, group: Path = CONTROL_GROUP) -> tuple[int, int]:
     """Return total and available bytes of the machine, or of the container around us."""
     if meminfo.exists():
-        lines = (line.partition(":") for line in meminfo.read_text().splitlines())
-        kibibytes = {name: int(rest.split()[0]) for name, _, rest in lines if rest.split()}
-        whole, free = 1024 * kibibytes["MemTotal"], 1024 * kibibytes["MemAvailable"]
+        kibibytes = _numbers(meminfo)
+        whole, free = 1024 * kibibytes["MemTotal:"], 1024 * kibibytes["MemAvailable:"]
     else:
         whole = free = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    limit = group / "memory.max"
     if limit.exists() and (text := limit.read_text().strip()).isdigit():
-        whole, free = min(whole, int(text)), min(free, int(text))
+        # The kernel gives up cached files before a process runs out of memory.
+        cached = _numbers(group / "memory.stat")["inactive_file"]
+        used = int((group / "memory.current").read_text()) - cached
+        whole, free = min(whole, int(text)), min(free, int(text) - used)
     return whole, free
+
+
+def _numbers(table: Path) -> dict[str, int]:
+    """Read the first number of each line, by name."""
+    lines = map(str.split, table.read_text().splitlines())
+    return {name: int(number) for name, number, *_ in lines}

@@ -31,7 +31,7 @@ def _device(device: Any) -> dict[str, Any]:
         return record | {"error": f"{type(error).__name__}: {error}"[:300]}
     memory = device.memory_stats() or {}
     return record | {
-        "right": computed == float(numbers @ numbers),
+        "correct": computed == float(numbers @ numbers),
         "memory_bytes": memory.get("bytes_limit"),
         "memory_used_bytes": memory.get("bytes_in_use"),
     }
@@ -39,14 +39,14 @@ def _device(device: Any) -> dict[str, Any]:
 
 def _cache(folder: Path) -> dict[str, Any]:
     """Compile a program twice; return whether it was stored, and loaded again."""
-    hits: list[str] = []
-    jax.monitoring.register_event_listener(lambda event, **_: hits.append(event))
+    events: list[str] = []
+    jax.monitoring.register_event_listener(lambda event, **_: events.append(event))
     with tempfile.TemporaryDirectory(prefix="doctor-", dir=folder) as place:
         jax.config.update("jax_compilation_cache_dir", place)
         for _ in range(2):
             jax.clear_caches()
             jax.block_until_ready(jax.jit(lambda x: jnp.cos(x) + 1)(jnp.arange(7.0)))
-        return {"stored": bool(list(Path(place).iterdir())), "loaded": HIT in hits}
+        return {"stored": bool(list(Path(place).iterdir())), "loaded": HIT in events}
 
 
 if __name__ == "__main__":

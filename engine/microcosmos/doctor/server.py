@@ -139,7 +139,7 @@ def workers(found: list[dict[str, Any]], now: datetime) -> Iterator[Finding]:
     """Check that there are workers, and that each has reported lately."""
     if not found:
         advice = "runs wait: start workers with `make run`, several with WORKERS=n"
-        yield warning("workers", "none is alive", advice)
+        yield warning("workers", "no worker is alive", advice)
     for one in found:
         age = max(0.0, (now - datetime.fromisoformat(one["heartbeat_at"])).total_seconds())
         text = f"{one['name']} on {one['device']}, {one['status']}, reported {age:.0f} s ago"

@@ -11,5 +11,5 @@ from .declaration import (
     gait,
     is_plugin,
 )
-from .loading import Unloaded, load, load_all
+from .loading import FailedModule, load, load_all
 from .registry import LOADED, Broken, Catalogue, Missing, Plugin, find, loaded

@@ -20,7 +20,7 @@ GROUP = "microcosmos.plugins"
 
 
 @dataclass(frozen=True)
-class Unloaded:
+class FailedModule:
     """A module that could not be loaded, and the reason."""
 
     module: str
@@ -58,7 +58,7 @@ def _run(path: Path | str, file: Path, source: bytes) -> ModuleType:
             sys.modules[name] = before
         if isinstance(error, KeyboardInterrupt):
             raise
-        where = registry.line_of(error, str(file))
+        where = registry.line_suffix(error, str(file))
         raise ValueError(f"{path}{where} fails with {type(error).__name__}: {error}") from error
     return module
 
@@ -80,7 +80,7 @@ def _register(module: ModuleType, namespace: str, source: str) -> tuple[Declarat
     return tuple(one.declaration for one in found)
 
 
-def load_all(paths: Iterable[Path | str]) -> tuple[Unloaded, ...]:
+def load_all(paths: Iterable[Path | str]) -> tuple[FailedModule, ...]:
     """Load files and the modules of installed packages; return those that failed.
 
     A failing module must not end the process.
@@ -90,14 +90,14 @@ def load_all(paths: Iterable[Path | str]) -> tuple[Unloaded, ...]:
         *((str(path), load, path) for path in paths),
         *((f"{entry.name} ({entry.value})", _load_entry, entry) for entry in entries),
     ]
-    unloaded = []
+    failed = []
     for module, load_one, source in loaders:
         try:
             load_one(source)
         except (Exception, SystemExit) as error:
             kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
-            unloaded.append(Unloaded(module, f"{kind}{error}"))
-    return tuple(unloaded)
+            failed.append(FailedModule(module, f"{kind}{error}"))
+    return tuple(failed)
 
 
 def digest(file: Path) -> str:

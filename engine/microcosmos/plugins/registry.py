@@ -36,8 +36,9 @@ class Plugin:
             chosen = () if self.model is None else (self.model.model_validate(dict(settings)),)
             return self.function(*given, *chosen)
         except Exception as error:
-            place = f"{self.declaration.name} ({self.location}{line_of(error, self.location)})"
-            raise Broken(f"{place} failed with {type(error).__name__}: {error}") from error
+            place = f"{self.location}{line_suffix(error, self.location)}"
+            text = f"failed with {type(error).__name__}: {error}"
+            raise Broken(f"{self.declaration.name} ({place}) {text}") from error
 
 
 class Catalogue(Protocol):
@@ -56,8 +57,8 @@ class Catalogue(Protocol):
         ...
 
 
-def line_of(error: BaseException, file: str) -> str:
-    """Return the line of a file in which an error arose, if it arose there."""
+def line_suffix(error: BaseException, file: str) -> str:
+    """Return ", line N" for an error that arose in the file, else an empty text."""
     lines = [one.lineno for one in extract_tb(error.__traceback__) if one.filename == file]
     return f", line {lines[-1]}" if lines else ""
 

@@ -11,21 +11,14 @@ from importlib import import_module
 
 import httpx
 import pytest
+from small_spec import SMALL_SCENE
 
 from microcosmos.archive.file import read_table
 from microcosmos.cli import pictures
 
 run_command = import_module("microcosmos.cli.run")
 
-SPEC = {
-    "experiment": "quality-diversity",
-    "seed": 5,
-    "world": {"width": 32, "height": 32},
-    "body": {"nodes": 12},
-    "control": {"period": 30},
-    "task": {"steps": 60},
-    "search": {"generations": 12, "batch": 16},
-}
+SPEC = SMALL_SCENE | {"seed": 5, "search": {"generations": 12, "batch": 16}}
 
 
 @pytest.fixture
@@ -89,7 +82,7 @@ def test_mistakes_are_refused_with_their_reason(command, words, invoke, tmp_path
 
 def test_evolve_sets_fields_and_makes_the_folder_of_its_file(invoke, tmp_path, monkeypatch):
     carried = []
-    monkeypatch.setattr(run_command, "carry_on", lambda *given: carried.append(given) or True)
+    monkeypatch.setattr(run_command, "run_with_progress", lambda *given: carried.append(given))
     (tmp_path / "spec.json").write_text(json.dumps(SPEC))
     command = ["evolve", "spec.json", "--out", "new/folder/x.h5"]
     invoke(*command, "--set", "world.viscosity=0.07")

@@ -52,8 +52,8 @@ LOST = ("warning", "is not loaded again")
     ("device", "loaded", "expected"),
     [
         ({"error": "CUDA_ERROR_UNKNOWN"}, False, [("problem", "CUDA_ERROR_UNKNOWN"), LOST]),
-        ({"right": False, "memory_bytes": None}, False, [("problem", "wrong numbers"), LOST]),
-        ({"right": True} | MEMORY, True, [("ok", "6.44 GB of 8.59 GB free")]),
+        ({"correct": False, "memory_bytes": None}, False, [("problem", "wrong numbers"), LOST]),
+        ({"correct": True} | MEMORY, True, [("ok", "6.44 GB of 8.59 GB free")]),
     ],
 )
 def test_a_device_is_reported_with_its_faults(tmp_path, monkeypatch, device, loaded, expected):
@@ -102,14 +102,16 @@ def test_this_installation_is_as_it_should_be():
     assert levels([*machine.python(), *machine.packages()]) == {"ok"}
 
 
-def test_a_container_has_the_memory_that_it_is_given(tmp_path):
-    meminfo, limit = tmp_path / "meminfo", tmp_path / "max"
+def test_a_container_has_the_memory_that_is_left_of_its_limit(tmp_path):
+    meminfo = tmp_path / "meminfo"
     meminfo.write_text("MemTotal:  8388608 kB\nMemAvailable:  4194304 kB\nHugePages: 0\n")
-    limit.write_text("max\n")
-    assert machine.memory_bytes(meminfo, limit) == (8 * GIB, 4 * GIB)
-    limit.write_text(f"{1 << 20}\n")
-    small, *presets = machine.memory(meminfo, limit)
-    assert (small.level, small.found) == ("warning", "1.05 MB of 1.05 MB available")
+    (tmp_path / "memory.max").write_text("max\n")
+    assert machine.memory_bytes(meminfo, tmp_path) == (8 * GIB, 4 * GIB)
+    (tmp_path / "memory.max").write_text("5000000\n")
+    (tmp_path / "memory.current").write_text("4500000\n")
+    (tmp_path / "memory.stat").write_text("anon 1500000\ninactive_file 3000000\n")
+    small, *presets = machine.memory(meminfo, tmp_path)
+    assert (small.level, small.found) == ("warning", "3.5 MB of 5 MB available")
     assert any("quality-diversity/demo needs" in one.found for one in presets)
 
 

@@ -8,21 +8,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from small_spec import SMALL_SCENE
 
 from microcosmos.archive import creature
 from microcosmos.build import build
 from microcosmos.build.experiments import with_initial
 from microcosmos.spec import parse
 
-SMALL = {
-    "experiment": "quality-diversity",
-    "seed": 3,
-    "world": {"width": 32, "height": 32},
-    "body": {"nodes": 12},
-    "control": {"period": 30},
-    "task": {"steps": 60},
-    "search": {"generations": 4, "batch": 16, "block": 8},
-}
+SMALL = SMALL_SCENE | {"seed": 3, "search": {"generations": 4, "batch": 16, "block": 8}}
 NEUROEVOLUTION = SMALL | {
     "experiment": "neuroevolution",
     "seed": 5,
@@ -145,7 +138,7 @@ def lasting():
 
 @pytest.fixture(scope="session")
 def elite_files():
-    """A function that gives creature files of elites at the end of a run, at most so many."""
+    """A function that gives creature files of elites at the end of a run, at most `most`."""
 
     def files(course, most=None):
         state = course.states[-1]

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from microcosmos.archive import creature, creature_h5, file
-from microcosmos.cli.fork import creatures, with_initial
+from microcosmos.cli.initial import creatures, with_initial
 
 
 @pytest.fixture(scope="module")

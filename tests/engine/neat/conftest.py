@@ -15,7 +15,7 @@ INPUTS, OUTPUTS, NODES, CONNECTIONS, BATCH = 3, 2, 12, 30, 60
 
 @pytest.fixture(scope="session")
 def settings():
-    """The paper's, with so much growth that small networks soon fill their room."""
+    """The paper's, with so much growth that small networks soon are full."""
     paper = neat.PRESETS["paper"]
     rates = replace(paper.rates, add_node=0.3, add_connection=0.4, toggle=0.05, weight_step=0.5)
     grown = replace(paper, rates=rates, coefficients=neat.Coefficients(1.0, 1.0, 0.4))

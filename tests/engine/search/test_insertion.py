@@ -28,7 +28,7 @@ def cells(request):
 
 @pytest.fixture(params=["networks", "vectors"])
 def genotypes(request):
-    """A function that makes so many genotypes of either kind, few of them different."""
+    """A function that makes `count` genotypes of either kind, few of them different."""
 
     def networks(random, count):
         found = genomes.empty(4, 4, (count,))

@@ -7,7 +7,7 @@ import socket
 
 import httpx
 import pytest
-from relay import foreign
+from relay import foreign_server
 
 from microcosmos.client import (
     Client,
@@ -83,7 +83,7 @@ HTML = {"Content-Type": "text/html"}
     ],
 )
 def test_a_foreign_server_is_recognised(answer, message, no_sleep):
-    with foreign(answer) as (url, _), pytest.raises(NotMicrocosmos, match=message):
+    with foreign_server(answer) as (url, _), pytest.raises(NotMicrocosmos, match=message):
         list(Client(url).runs())
 
 
@@ -93,7 +93,7 @@ PROBLEM = {"Content-Type": "application/problem+json"}
 def test_a_busy_server_is_asked_again_after_its_delay(no_sleep):
     empty = (200, {"Content-Type": "application/json"}, b'{"items": [], "next": null}')
     busy = (503, PROBLEM | {"Retry-After": "2"}, b'{"detail": "The database does not answer."}')
-    with foreign(busy, busy, empty) as (url, asked):
+    with foreign_server(busy, busy, empty) as (url, asked):
         assert list(Client(url).runs()) == []
     assert (no_sleep, asked) == ([2.0, 2.0], ["GET"] * 3)
 
@@ -116,13 +116,13 @@ def test_patience_includes_the_length_of_silences(no_sleep, monkeypatch):
 
 def test_patience_ends_with_the_servers_own_words(no_sleep):
     body = b'{"detail": "The database does not answer; try again."}'
-    with foreign((503, PROBLEM | {"Retry-After": "4"}, body)) as (url, asked):
+    with foreign_server((503, PROBLEM | {"Retry-After": "4"}, body)) as (url, asked):
         with pytest.raises(ServerError, match="The database does not answer; try again"):
             list(Client(url, patience=10.0).runs())
         assert len(asked) == 3
     gateway = (502, HTML, b"Bad Gateway")
     message = "the server behind it is down or starting"
-    with foreign(gateway) as (url, _), pytest.raises(NoAnswer, match=message):
+    with foreign_server(gateway) as (url, _), pytest.raises(NoAnswer, match=message):
         list(Client(url).runs())
 
 
@@ -140,7 +140,10 @@ def test_patience_ends_with_the_servers_own_words(no_sleep):
     ],
 )
 def test_problems_are_sentences(status, body, kind, message):
-    with foreign((status, PROBLEM, body)) as (url, _), pytest.raises(kind, match=message):
+    with (
+        foreign_server((status, PROBLEM, body)) as (url, _),
+        pytest.raises(kind, match=message),
+    ):
         Client(url).workers()
 
 

@@ -54,7 +54,7 @@ def test_a_run_is_found_by_the_beginning_of_its_id(client, run, spec):
         client.run("00000000")
     with pytest.raises(Refused, match="got 'a name'"):
         client.run("a name")
-    for _ in range(20):  # Of so many, two begin alike.
+    for _ in range(20):  # More than 16 ids: two begin alike.
         client.submit(spec)
     ids = [one.id for one in client.runs()]
     twice = next(i[0] for i in ids if sum(j[0] == i[0] for j in ids) > 1)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from answers import detail
-from deletion import delete_for_good, files, finish, let_time_pass, rows, submit_another
+from deletion import delete_for_good, files, finish, let_time_pass, row_counts, submit_another
 from sqlalchemy import select
 
 from microcosmos.archive import creature
@@ -71,9 +71,9 @@ def test_only_idle_runs_are_deleted_and_restored_in_time(api, services, run_id):
 def test_the_bin_keeps_runs_for_a_day(api, services, run_id, report):
     finish(services, run_id, report(1, {0: 1.0}))
     api.delete(f"runs/{run_id}")
-    before = rows(services), files(services)
+    before = row_counts(services), files(services)
     reconcile(services)
-    assert (rows(services), files(services)) == before
+    assert (row_counts(services), files(services)) == before
     with services.sessions.read() as session:
         run = session.get_one(Run, run_id)
     assert (run.purge_at - run.deleted_at).total_seconds() == 86_400
@@ -103,7 +103,7 @@ def child(identity):
 def test_a_purge_leaves_no_row_or_file(api, services, spec, report, run_id):
     other = submit_another(services, spec, 7)
     finish(services, other, report(1, {3: 1.0}))
-    before = rows(services), files(services)
+    before = row_counts(services), files(services)
     doomed = submit_another(services, spec, 8, key="a key")
     attempt = claim(services, doomed, "worker")
     attempt.record(report(1, {0: 1.0, 1: 2.0}), 1.0)
@@ -118,11 +118,11 @@ def test_a_purge_leaves_no_row_or_file(api, services, spec, report, run_id):
         save(services, name, REPLAY, name.encode())
     stray = Path(services.settings.artifacts) / f"runs/{doomed}/stray.part"
     stray.write_bytes(b"of a process that was killed")
-    during = rows(services)
+    during = row_counts(services)
     assert during["creatures"] == before[0]["creatures"] + 4
     assert during["artifacts"] == before[0]["artifacts"] + 2 + len(named)
     delete_for_good(api, services, doomed)
-    assert (rows(services), files(services)) == before
+    assert (row_counts(services), files(services)) == before
     assert not stray.parent.exists()
     assert api.get(f"creatures/{next(iter(named))}").status_code == 404
 
@@ -167,13 +167,13 @@ def test_a_purge_may_be_killed_anywhere(api, services, spec, report, run_id, mon
     """Stop it after every transaction. A partly purged run cannot be restored."""
     monkeypatch.setattr(purge, "ROWS_PER_TRANSACTION", 2)
     monkeypatch.setattr("server.deletion.garbage.CREATURES_PER_TRANSACTION", 2)
-    before = rows(services), files(services)
+    before = row_counts(services), files(services)
     doomed = submit_another(services, spec, 3)
     finish(services, doomed, *(report(g, {0: g, 1: g, 2: g}) for g in range(1, 4)))
     api.delete(f"runs/{doomed}")
     let_time_pass(services, doomed)
     passes = 0
-    while (rows(services), files(services)) != before:
+    while (row_counts(services), files(services)) != before:
         purge.purge(services, steps=1)
         assert api.post(f"runs/{doomed}/restore").status_code in (404, 409)
         passes += 1
@@ -191,10 +191,10 @@ def test_a_file_that_cannot_be_removed_is_removed_later(
     with monkeypatch.context() as patch:
         patch.setattr(services.artifacts, "delete", refuse)
         delete_for_good(api, services, run_id)
-    assert len(files(services)) == rows(services)["garbage_files"] == 1
+    assert len(files(services)) == row_counts(services)["garbage_files"] == 1
     reconcile(services)
     assert files(services) == []
-    assert rows(services)["garbage_files"] == 0
+    assert row_counts(services)["garbage_files"] == 0
 
 
 def test_a_rendering_that_was_made_again_stays(services, run_id, report, identity):
@@ -205,7 +205,7 @@ def test_a_rendering_that_was_made_again_stays(services, run_id, report, identit
         session.add(GarbageFile(path=rendering_path(name, AUDIT)))
     reconcile(services)
     assert files(services) == [rendering_path(name, AUDIT)]
-    assert rows(services)["garbage_files"] == 0
+    assert row_counts(services)["garbage_files"] == 0
 
 
 def test_a_restored_run_is_not_purged_and_a_purged_one_is_not_restored(
@@ -233,7 +233,7 @@ def test_a_creature_that_comes_into_use_during_a_purge_stays(
     let_time_pass(services, run_id)
     while purge.purge_rows(services):
         pass
-    assert rows(services)["garbage_creatures"] == 1
+    assert row_counts(services)["garbage_creatures"] == 1
     claim(services, other, "worker").record(report(1, {0: 1.0}), 1.0)
     reconcile(services)
     with services.sessions.read() as session:

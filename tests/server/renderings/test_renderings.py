@@ -29,7 +29,7 @@ def test_a_refused_replay_answers_with_the_engines_reason(api, services, known):
 def test_a_rendering_job_that_vanishes_is_no_error(services, known, monkeypatch):
     services.jobs.render(known)
     job = services.jobs.find(services.jobs.rendering_id(known))
-    services.jobs.forget(job.id)
+    services.jobs.remove(job.id)
     monkeypatch.setattr(services.jobs, "find", lambda _: job)
     renderings.enqueue(services, known)
 
@@ -162,7 +162,7 @@ def test_a_creature_is_measured_again_on_request_and_repeatedly(api, services, m
         assert api.get(path).status_code == 202
     (job,) = services.jobs.audits.get_jobs()
     assert job.args == [measured, MEASUREMENT]
-    services.jobs.forget(job.id)
+    services.jobs.remove(job.id)
     renderings.save(services, measured, MEASUREMENT, b'{"exact": true}')
     assert api.get(path).json() == {"exact": True}
     api.post(f"creatures/{measured}/measure")

@@ -729,7 +729,7 @@ export interface paths {
         };
         /**
          * Read Generations
-         * @description Return all generations, or about so many of them, evenly spaced.
+         * @description Return all generations, or about `points` of them, evenly spaced.
          *
          *     `summary` has the newest values since the previous point.
          */
@@ -867,7 +867,7 @@ export interface paths {
         };
         /**
          * Read Species
-         * @description Return the sizes of the species in about so many generations, evenly spaced.
+         * @description Return the sizes of the species in about `points` generations, evenly spaced.
          *
          *     The columns are empty if the search has no species.
          */

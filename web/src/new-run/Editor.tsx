@@ -26,7 +26,7 @@ interface Props {
   experiment: Experiment;
   view: View;
   show: (view: View) => void;
-  take: (text: string, file: string, typed?: boolean) => string | null;
+  open: (text: string, file: string, typed?: boolean) => string | null;
   replacing: boolean;
 }
 
@@ -79,7 +79,7 @@ interface SpecProps extends Props {
   onProblem: (problem: string | null) => void;
 }
 
-function SpecView({ editor, illegible, onProblem, draft, current, view, show, take, replacing }: SpecProps) {
+function SpecView({ editor, illegible, onProblem, draft, current, view, show, open, replacing }: SpecProps) {
   const { form, state, forking, errors } = editor;
   const parts = useMemo(() => partsOf(form), [form]);
   return (
@@ -99,7 +99,7 @@ function SpecView({ editor, illegible, onProblem, draft, current, view, show, ta
           key={draft.revision}
           spec={current.spec}
           errors={illegible ? [] : errors}
-          take={(text) => take(text, "", true)}
+          onText={(text) => open(text, "", true)}
           onProblem={onProblem}
           replace={replacing}
         />

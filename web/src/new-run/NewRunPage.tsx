@@ -10,7 +10,7 @@ import { BaseBar } from "./BaseBar";
 import { Editor } from "./Editor";
 import { usePresetCosts } from "./Costs";
 import { baseOfPreset } from "./sources";
-import { type Take, OpenFileButton, useDocument } from "./OpenDocument";
+import { type OpenDocument, OpenFileButton, useDocument } from "./OpenDocument";
 import { useDraft } from "./draftState";
 import { text } from "./text";
 import "./new-run.css";
@@ -29,7 +29,7 @@ function NewRunForm({ experiments, query }: { experiments: Experiment[]; query: 
   const experiment = experiments.find((one) => one.experiment === current?.spec.experiment);
   const selected = picked ?? experiment ?? experiments[0]!;
   useEffect(() => setPicked(null), [draft.revision]);
-  const { take, file } = useDocument(draft, experiments, selected, experiment);
+  const { open, file } = useDocument(draft, experiments, selected, experiment);
   const costs = usePresetCosts(selected);
   const view = query.get("view") === "json" ? "json" : "form";
   const show = (next: "form" | "json", replace = false) => {
@@ -38,7 +38,7 @@ function NewRunForm({ experiments, query }: { experiments: Experiment[]; query: 
   };
   const preset = current?.base.kind === "preset" ? current.base.name : null;
   return (
-    <Page title={text.newRun} actions={<SourceButtons take={take} onPaste={() => show("json", true)} />}>
+    <Page title={text.newRun} actions={<SourceButtons open={open} onPaste={() => show("json", true)} />}>
       {draft.problem && (
         <p class="banner wrong" role="alert">
           {draft.problem}
@@ -58,14 +58,14 @@ function NewRunForm({ experiments, query }: { experiments: Experiment[]; query: 
       {current && experiment && (
         <>
           <BaseBar {...{ draft, current, experiments, file }} />
-          <Editor {...{ draft, current, view, show, take, replacing }} experiment={experiment} />
+          <Editor {...{ draft, current, view, show, open, replacing }} experiment={experiment} />
         </>
       )}
     </Page>
   );
 }
 
-function SourceButtons({ take, onPaste }: { take: Take; onPaste: () => void }) {
+function SourceButtons({ open, onPaste }: { open: OpenDocument; onPaste: () => void }) {
   return (
     <>
       <span class="spring" />
@@ -74,7 +74,7 @@ function SourceButtons({ take, onPaste }: { take: Take; onPaste: () => void }) {
         <button type="button" onClick={onPaste}>
           {text.pasteSpec}
         </button>
-        <OpenFileButton take={take} />
+        <OpenFileButton open={open} />
       </span>
     </>
   );

@@ -11,8 +11,8 @@ import type { DraftState } from "./draftState";
 import { readText, completeSpec, baseOfDocument } from "./sources";
 import { text } from "./text";
 
-/** Take a document; return what is wrong with it, or null. */
-export type Take = (text: string, name: string, typed?: boolean) => string | null;
+/** Start from a document; return what is wrong with it, or null. */
+export type OpenDocument = (text: string, name: string, typed?: boolean) => string | null;
 
 /** Start from documents; JSON typed in the editor changes the spec and keeps its source. */
 export function useDocument(
@@ -20,9 +20,9 @@ export function useDocument(
   experiments: Experiment[],
   selected: Experiment,
   current: Experiment | undefined,
-): { take: Take; file: CreatureFile | null } {
+): { open: OpenDocument; file: CreatureFile | null } {
   const [file, setFile] = useState<CreatureFile | null>(null);
-  const take: Take = (text, name, typed = false) => {
+  const open: OpenDocument = (text, name, typed = false) => {
     try {
       const read = readText(text, selected.experiment === "refinement");
       const same = typed && read.kind === "spec" && read.spec.experiment === current?.experiment;
@@ -38,33 +38,33 @@ export function useDocument(
       return messageOf(error);
     }
   };
-  useDocumentDrop(take);
-  return { take, file };
+  useDocumentDrop(open);
+  return { open, file };
 }
 
 /** Handle text pasted outside fields, and dropped files. */
-function useDocumentDrop(take: Take): void {
-  useFileDrop(text.dropDocument, (file) => void readFile(take, file));
+function useDocumentDrop(open: OpenDocument): void {
+  useFileDrop(text.dropDocument, (file) => void readFile(open, file));
   useListener("paste", (event: ClipboardEvent) => {
     if ((event.target as Element).closest?.("input, textarea, select")) return;
     const pasted = event.clipboardData?.getData("text") ?? "";
     if (!pasted.trim()) return;
     event.preventDefault();
-    showProblem(take(pasted, ""), text.pasted);
+    showProblem(open(pasted, ""), text.pasted);
   });
 }
 
-async function readFile(take: Take, file: File): Promise<void> {
-  showProblem(take(await file.text(), file.name), file.name);
+async function readFile(open: OpenDocument, file: File): Promise<void> {
+  showProblem(open(await file.text(), file.name), file.name);
 }
 
 function showProblem(problem: string | null, what: string): void {
   if (problem) showToast({ kind: "wrong", text: `${what}: ${problem}` });
 }
 
-export function OpenFileButton({ take }: { take: Take }) {
+export function OpenFileButton({ open }: { open: OpenDocument }) {
   return (
-    <FileButton name={text.documentFile} take={(file) => void readFile(take, file)}>
+    <FileButton name={text.documentFile} onFile={(file) => void readFile(open, file)}>
       {text.openFile}
     </FileButton>
   );

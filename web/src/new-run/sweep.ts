@@ -85,7 +85,7 @@ export function readValues(field: Leaf, input: string): ParsedValues {
   return { values, problem: error ?? repeated };
 }
 
-const COMPOUND = ["list", "several", "nested"];
+const COMPOUND = ["list", "multiple", "nested"];
 
 function valuesOf(field: Leaf, text: string): Json[] | null {
   if (text.startsWith("[") || COMPOUND.includes(field.kind)) return listOf(text);

@@ -20,20 +20,20 @@ export async function openCreature(file: File): Promise<void> {
 
 interface DropHandler {
   prompt: string;
-  take: (file: File) => void;
+  onFile: (file: File) => void;
 }
 
 const OPEN_CREATURE: DropHandler = {
   prompt: text.dropCreature,
-  take: (file) => void openCreature(file),
+  onFile: (file) => void openCreature(file),
 };
 
 let handler = OPEN_CREATURE;
 
 /** Handle dropped files while a component is shown. */
-export function useFileDrop(prompt: string, take: DropHandler["take"]): void {
+export function useFileDrop(prompt: string, onFile: DropHandler["onFile"]): void {
   useEffect(() => {
-    handler = { prompt, take };
+    handler = { prompt, onFile };
     return () => {
       handler = OPEN_CREATURE;
     };
@@ -42,7 +42,7 @@ export function useFileDrop(prompt: string, take: DropHandler["take"]): void {
 
 export function OpenButton() {
   return (
-    <FileButton kind="plain" name={text.creatureFile} take={OPEN_CREATURE.take}>
+    <FileButton kind="plain" name={text.creatureFile} onFile={OPEN_CREATURE.onFile}>
       {text.openCreature}
       <span class="wide-only"> {text.file}</span>
     </FileButton>
@@ -52,12 +52,12 @@ export function OpenButton() {
 interface ButtonProps {
   kind?: string;
   name: string;
-  take: DropHandler["take"];
+  onFile: DropHandler["onFile"];
   children: ComponentChildren;
 }
 
 /** A button that asks for a creature file or another JSON file. */
-export function FileButton({ kind = "", name, take, children }: ButtonProps) {
+export function FileButton({ kind = "", name, onFile, children }: ButtonProps) {
   const input = useRef<HTMLInputElement>(null);
   return (
     <>
@@ -73,7 +73,7 @@ export function FileButton({ kind = "", name, take, children }: ButtonProps) {
         accept="application/json,.json,.h5"
         onChange={({ currentTarget }) => {
           const file = currentTarget.files?.[0];
-          if (file) take(file);
+          if (file) onFile(file);
           currentTarget.value = "";
         }}
       />
@@ -93,7 +93,7 @@ export function DropTarget() {
     event.preventDefault();
     setOver(false);
     const file = event.dataTransfer?.files[0];
-    if (file) handler.take(file);
+    if (file) handler.onFile(file);
   });
   return over ? (
     <div class="drop-target" aria-hidden="true">

@@ -29,33 +29,33 @@ class Print:
 
 
 def archive(
-    file: Path, out: Path, how: Print, axes: list[str] | None, colour: str
+    file: Path, out: Path, options: Print, axes: list[str] | None, colour: str
 ) -> list[Path]:
     """Draw the map of an archive file."""
     saving.kind(out)
     found = open_archive(file)
     with styled():
-        width = millimetres(how.width)
-        figure = maps.archive(found, axes=axes, colour=colour, colours=how.palette, width=width)
-        return how.publish(figure, out, caption.of_archive(found, axes))
+        width, palette = millimetres(options.width), options.palette
+        figure = maps.archive(found, axes=axes, colour=colour, colours=palette, width=width)
+        return options.publish(figure, out, caption.of_archive(found, axes))
 
 
 def progress(
-    files: Sequence[Path], out: Path, how: Print, shown: Sequence[str], against: str
+    files: Sequence[Path], out: Path, options: Print, shown: Sequence[str], against: str
 ) -> list[Path]:
     """Draw the curves of one run or several."""
     saving.kind(out)
     found = groups.grouped([open_archive(file) for file in files])
     with styled():
-        width = millimetres(how.width)
+        width = millimetres(options.width)
         figure = curves.curves(found, shown=shown, against=against, width=width)
-        return how.publish(figure, out, caption.of_curves(found, shown))
+        return options.publish(figure, out, caption.of_curves(found, shown))
 
 
 def contact(
     file: Path,
     out: Path,
-    how: Print,
+    options: Print,
     axes: list[str] | None,
     grid: tuple[int, int],
     moments: int,
@@ -70,21 +70,21 @@ def contact(
     cells = [int(found.cells[region.elite]) for region in plan.regions]
     moved = motions.motions(file.read_bytes(), cells, lambda done: tell(done, len(cells)))
     with styled():
-        look = {"colours": how.palette, "width": millimetres(how.width), "moments": moments}
-        figure = sheet.sheet(found, plan, moved, **look)
-        return how.publish(figure, out, caption.of_sheet(found, plan, moments))
+        width, palette = millimetres(options.width), options.palette
+        figure = sheet.sheet(found, plan, moved, moments=moments, colours=palette, width=width)
+        return options.publish(figure, out, caption.of_sheet(found, plan, moments))
 
 
-def tree(file: Path, out: Path, how: Print, cell: int | None) -> list[Path]:
+def tree(file: Path, out: Path, options: Print, cell: int | None) -> list[Path]:
     """Draw the descent of an archive's elites, and of one of them."""
     saving.kind(out)
     found = open_archive(file)
     related = family(found)
     ancestors = len(related.ancestors([related.tips[found.row(cell)]])) - 1
     with styled():
-        width = millimetres(how.width)
-        figure = lineage.lineage(found, cell=cell, colours=how.palette, width=width)
-        return how.publish(figure, out, caption.of_lineage(found, cell, ancestors))
+        width = millimetres(options.width)
+        figure = lineage.lineage(found, cell=cell, colours=options.palette, width=width)
+        return options.publish(figure, out, caption.of_lineage(found, cell, ancestors))
 
 
 def open_archive(file: Path) -> Archive:

@@ -43,7 +43,7 @@ class Network:
     only if its source has a value, and a node without messages has none: NaN. Under `always`
     (ours), a node without links computes activation(bias).
 
-    `steps` is None for feed-forward; else all nodes are updated together, so many times.
+    `steps` is None for feed-forward; else the number of updates of all nodes together.
     """
 
     inputs: int

@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from small_spec import SMALL_SCENE
 
 from microcosmos import spec
 from microcosmos.build import local
@@ -16,12 +17,7 @@ from microcosmos.viz.figures import drawing, motions, reading
 pytestmark = pytest.mark.long
 
 BINS = {"bending_effort": 6, "stretching_effort": 6, "straightness": 2}
-TINY = {
-    "experiment": "quality-diversity",
-    "world": {"width": 32, "height": 32},
-    "body": {"nodes": 12},
-    "control": {"period": 30},
-    "task": {"steps": 60},
+TINY = SMALL_SCENE | {
     "archive": {"descriptors": [{"name": n, "bins": b} for n, b in BINS.items()]},
     "search": {"generations": 3, "batch": 16, "block": 8},
 }

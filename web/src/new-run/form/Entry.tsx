@@ -4,7 +4,7 @@ import type { Json } from "../../api/types";
 import { count, number } from "../../ui/format";
 import { Term } from "../../ui/Term";
 import { valueAt, typed, typedJson, typedList } from "./document";
-import type { Leaf, NumberField, Range, Choice, Several } from "./fields";
+import type { Leaf, NumberField, Range, Choice, Multiple } from "./fields";
 import { text } from "./text";
 import { useEffect, useState } from "preact/hooks";
 import { Options } from "../../ui/Select";
@@ -19,7 +19,7 @@ export interface FormState {
   close: (path: string, closed: boolean) => void;
 }
 
-const WIDE = ["list", "several", "nested"];
+const WIDE = ["list", "multiple", "nested"];
 
 export function Entry({ field, state }: { field: Leaf; state: FormState }) {
   const { path, kind, title, help } = field;
@@ -29,7 +29,7 @@ export function Entry({ field, state }: { field: Leaf; state: FormState }) {
   const id = `field-${path}`;
   return (
     <div class={`entry ${WIDE.includes(kind) ? "wide" : ""}`}>
-      <EntryName {...{ path, title, state }} target={kind === "several" ? undefined : id} />
+      <EntryName {...{ path, title, state }} target={kind === "multiple" ? undefined : id} />
       <Input
         {...{ field, value, unit, id }}
         aria-invalid={messages.length > 0}
@@ -145,7 +145,7 @@ interface InputProps<Kind extends Leaf = Leaf> {
 export function Input(props: InputProps) {
   const { field, value, unit: _, onChange, ...attributes } = props;
   if (field.kind === "choice") return <ChoiceInput {...props} field={field} />;
-  if (field.kind === "several") return <SeveralInput {...props} field={field} />;
+  if (field.kind === "multiple") return <MultipleInput {...props} field={field} />;
   if (field.kind !== "flag") return <WrittenInput {...props} />;
   return (
     <input
@@ -176,12 +176,12 @@ function ChoiceInput({ field, value, unit: _, onChange, ...attributes }: InputPr
 }
 
 /** A check box for each option; the selected ones stay in the order of the schema. */
-function SeveralInput({ field, value, onChange, id, "aria-invalid": invalid }: InputProps<Several>) {
+function MultipleInput({ field, value, onChange, id, "aria-invalid": invalid }: InputProps<Multiple>) {
   const selected = Array.isArray(value) ? value : [];
   const toggle = (option: Json, on: boolean) =>
     onChange(field.options.filter((each) => (each === option ? on : selected.includes(each))));
   return (
-    <div class="several row" role="group" aria-labelledby={`${id}-label`}>
+    <div class="multiple row" role="group" aria-labelledby={`${id}-label`}>
       {field.options.map((option) => (
         <label key={String(option)}>
           <input

@@ -7,15 +7,15 @@ import { text } from "./text";
 interface Props {
   spec: Spec;
   errors: FieldError[];
-  /** Take the written text; return its error, or null. */
-  take: (text: string) => string | null;
+  /** Use the written text; return its error, or null. */
+  onText: (text: string) => string | null;
   /** Called with the error of the text, or null. */
   onProblem: (problem: string | null) => void;
   /** True if all text is selected at first, so that pasting replaces it. */
   replace: boolean;
 }
 
-export function JsonView({ spec, errors, take, onProblem, replace }: Props) {
+export function JsonView({ spec, errors, onText, onProblem, replace }: Props) {
   const area = useRef<HTMLTextAreaElement>(null);
   const typed = useRef<string | null>(null);
   const [json, setJson] = useState(() => written(spec));
@@ -54,7 +54,7 @@ export function JsonView({ spec, errors, take, onProblem, replace }: Props) {
         onInput={(event) => {
           typed.current = event.currentTarget.value;
           setJson(typed.current);
-          const error = take(typed.current);
+          const error = onText(typed.current);
           if (error) typed.current = null;
           report(error);
         }}

@@ -60,7 +60,7 @@ interface PartProps {
 function Part({ part, state, kind, open = true, children }: PartProps) {
   const off = part.kind === "section" && isOff(part, state.document);
   const section = part.kind === "union" ? partOf(part, state.document) : part;
-  const switchable = part.kind === "section" && part.fresh !== undefined;
+  const switchable = part.kind === "section" && part.initial !== undefined;
   return (
     <fieldset class={kind} aria-label={part.title}>
       {!switchable && (
@@ -82,7 +82,7 @@ function Part({ part, state, kind, open = true, children }: PartProps) {
 
 /** A switch for a section; its first values are those of the preset, or defaults. */
 function PartSwitch({ part, off, state }: { part: Section; off: boolean; state: FormState }) {
-  const fresh = valueAt(state.original, part.path) ?? part.fresh!;
+  const initial = valueAt(state.original, part.path) ?? part.initial!;
   const id = `field-${part.path}`;
   return (
     <div class="entry heading">
@@ -92,7 +92,7 @@ function PartSwitch({ part, off, state }: { part: Section; off: boolean; state: 
         type="checkbox"
         class="switch"
         checked={!off}
-        onChange={() => state.change(part.path, off ? fresh : null)}
+        onChange={() => state.change(part.path, off ? initial : null)}
       />
     </div>
   );
@@ -107,7 +107,7 @@ function KindSelect({ union, state }: { union: Union; state: FormState }) {
   const at = state.changed.has(path) ? path : union.path;
   const choose = (name: string) => {
     const before = valueAt(state.original, path) === name;
-    state.change(union.path, before ? original : union.parts.get(name)!.fresh!);
+    state.change(union.path, before ? original : union.parts.get(name)!.initial!);
   };
   return (
     <div class="entry">
@@ -162,7 +162,7 @@ function RowList({ rows, state }: { rows: Rows; state: FormState }) {
         </Part>
       ))}
       {items.length < rows.maxItems && (
-        <button type="button" class="plain" onClick={() => state.change(rows.path, [...items, rows.fresh])}>
+        <button type="button" class="plain" onClick={() => state.change(rows.path, [...items, rows.initial])}>
           {text.addTo(lower(rows.title))}
         </button>
       )}

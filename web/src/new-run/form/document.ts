@@ -3,7 +3,7 @@
 import type { FieldError, Json, Spec, Experiment, Preset } from "../../api/types";
 import { isObject } from "../../run/spec/difference";
 import { number } from "../../ui/format";
-import type { Field, List, NumberField, Section, Several, Union } from "./fields";
+import type { Field, List, NumberField, Section, Multiple, Union } from "./fields";
 import { join } from "./schema";
 import { text } from "./text";
 
@@ -90,7 +90,7 @@ export function schemaErrors(form: Section, document: Json): FieldError[] {
 function leafError(field: Field, value: Json): string | null {
   if (field.kind === "number") return numberError(field, value);
   if (field.kind === "list") return listError(field, value);
-  if (field.kind === "several") return severalError(field, value);
+  if (field.kind === "multiple") return multipleError(field, value);
   if (field.kind === "nested" && !Array.isArray(value)) return text.needsNested;
   return null;
 }
@@ -103,7 +103,7 @@ function listError({ item, minItems, maxItems }: List, value: Json): string | nu
   return items.length > maxItems ? text.tooManyNumbers(maxItems) : null;
 }
 
-function severalError({ minItems }: Several, value: Json): string | null {
+function multipleError({ minItems }: Multiple, value: Json): string | null {
   const selected = Array.isArray(value) ? value.length : 0;
   return selected < minItems ? text.selectMore(minItems) : null;
 }
@@ -124,9 +124,9 @@ export function withChoice(document: Json, section: Section, field: Field, value
 /** Add or remove the settings of a plug-in with its name. */
 function withPlugin(document: Json, { path, settings }: Section, field: Field, value: Json): Json {
   const plugin = join(path, "plugin");
-  const fresh = settings?.path === field.path ? settings.fresh[String(value)] : undefined;
-  if (fresh === undefined && valueAt(document, plugin) === null) return document;
-  return withValue(document, plugin, fresh ?? null);
+  const initial = settings?.path === field.path ? settings.initial[String(value)] : undefined;
+  if (initial === undefined && valueAt(document, plugin) === null) return document;
+  return withValue(document, plugin, initial ?? null);
 }
 
 /** True if a field belongs to the choices of a document. */
@@ -135,7 +135,7 @@ export function isApplicable({ when }: Field, document: Json): boolean {
 }
 
 export function isOff(section: Section, document: Json): boolean {
-  return section.fresh !== undefined && valueAt(document, section.path) === null;
+  return section.initial !== undefined && valueAt(document, section.path) === null;
 }
 
 /** Fields within a field, as far as the document has them. */

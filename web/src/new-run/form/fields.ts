@@ -27,9 +27,9 @@ export interface Section extends Common {
   /** Names of fields whose missing values follow from other fields. */
   following: string[];
   /** The settings of each plug-in of a choice when it is selected. */
-  settings?: { path: string; fresh: Record<string, Json> };
+  settings?: { path: string; initial: Record<string, Json> };
   /** The first value after switching it on; undefined if it cannot be switched off. */
-  fresh?: Json;
+  initial?: Json;
   /** True if its values are seldom changed. */
   seldom?: boolean;
 }
@@ -46,7 +46,7 @@ export interface Rows extends Common {
   row: (index: number) => Section | Union;
   minItems: number;
   maxItems: number;
-  fresh: Json;
+  initial: Json;
 }
 
 export interface NumberField extends Common {
@@ -73,8 +73,8 @@ export interface List extends Common {
   maxItems: number;
 }
 
-export interface Several extends Common {
-  kind: "several";
+export interface Multiple extends Common {
+  kind: "multiple";
   options: Json[];
   minItems: number;
 }
@@ -88,7 +88,7 @@ interface Constant extends Common {
   kind: "constant";
 }
 
-export type Leaf = NumberField | Choice | List | Several | Plain;
+export type Leaf = NumberField | Choice | List | Multiple | Plain;
 export type Field = Section | Union | Rows | Constant | Leaf;
 
 export function formOf(schema: Schema): Section {
@@ -107,7 +107,7 @@ function sectionOf(schema: Schema, root: Schema, common: Common): Section {
     return property.inline === true ? (field as Section).fields : [field];
   });
   const seldom = schema.seldom === true && { seldom: true };
-  return { ...common, kind: "section", fields, following, ...seldom, ...freshSettings(schema, common.path) };
+  return { ...common, kind: "section", fields, following, ...seldom, ...pluginSettings(schema, common.path) };
 }
 
 /** The settings of the plug-ins of a choice, each shown with its plug-in. */
@@ -121,12 +121,12 @@ function settingsOf(property: Schema, root: Schema, beside: string, path: string
   );
 }
 
-function freshSettings(schema: Schema, path: string): Pick<Section, "settings"> {
+function pluginSettings(schema: Schema, path: string): Pick<Section, "settings"> {
   const plugin = (schema.properties as Record<string, Schema> | undefined)?.plugin;
   if (!plugin?.parts) return {};
   const parts = Object.entries(plugin.parts as Record<string, Schema>);
-  const fresh = Object.fromEntries(parts.map(([name, part]) => [name, part.default!]));
-  return { settings: { path: join(path, String(plugin.settings_of)), fresh } };
+  const initial = Object.fromEntries(parts.map(([name, part]) => [name, part.default!]));
+  return { settings: { path: join(path, String(plugin.settings_of)), initial } };
 }
 
 /** Names of optional fields without a default. */
@@ -153,7 +153,7 @@ function fieldOf(property: Schema, root: Schema, key: string, path: string, foll
     case "object": {
       const section = sectionOf({ ...inner, unit: schema.unit ?? inner.unit! }, root, common);
       if (inner === schema) return section;
-      return { ...section, fresh: schema.default ?? defaultOf(inner, root) };
+      return { ...section, initial: schema.default ?? defaultOf(inner, root) };
     }
     case "array":
       return arrayOf(inner, root, common);
@@ -184,7 +184,7 @@ function numberOf(schema: Schema, type: Json, common: Common & { nullable: boole
 function arrayOf(schema: Schema, root: Schema, common: Common): Field {
   const item = resolve((schema.items ?? {}) as Schema, root);
   const [minItems, maxItems] = [Number(schema.minItems ?? 0), Number(schema.maxItems ?? Infinity)];
-  if (Array.isArray(item.enum)) return { ...common, kind: "several", options: item.enum, minItems };
+  if (Array.isArray(item.enum)) return { ...common, kind: "multiple", options: item.enum, minItems };
   if (item.type === "array") return { ...common, kind: "nested" };
   if (item.type !== "integer" && item.type !== "number") return rowsOf(schema, root, common);
   return {
@@ -204,8 +204,8 @@ function unionOf(schema: Schema, root: Schema, common: Common): Union {
     const { [tag]: names, ...properties } = part.properties as Record<string, Schema>;
     const rest = { ...part, properties };
     return ((names!.enum ?? [names!.const]) as string[]).map((name): [string, Section] => {
-      const fresh = { [tag]: name, ...(defaultOf(rest, root) as Spec | null) };
-      return [name, { ...sectionOf(rest, root, common), help: text(part.description), fresh }];
+      const initial = { [tag]: name, ...(defaultOf(rest, root) as Spec | null) };
+      return [name, { ...sectionOf(rest, root, common), help: text(part.description), initial }];
     });
   });
   return { ...common, kind: "union", tag, parts: new Map(named) };
@@ -225,11 +225,11 @@ function rowsOf(schema: Schema, root: Schema, common: Common): Rows {
     row,
     minItems: Number(schema.minItems ?? 0),
     maxItems: Number(schema.maxItems ?? Infinity),
-    fresh: first.kind === "union" ? [...first.parts.values()][0]!.fresh! : freshOf(item, root, first),
+    initial: first.kind === "union" ? [...first.parts.values()][0]!.initial! : initialOf(item, root, first),
   };
 }
 
-function freshOf(item: Schema, root: Schema, { following }: Section): Json {
+function initialOf(item: Schema, root: Schema, { following }: Section): Json {
   const empty = Object.fromEntries(following.map((name) => [name, null]));
   return { ...(defaultOf(item, root) as Spec | null), ...empty };
 }

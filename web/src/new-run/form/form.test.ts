@@ -40,32 +40,34 @@ describe("a form", () => {
   });
 
   it("has a section that can be switched on with its defaults if null is allowed", () => {
-    expect(part(WORLD, "world.steric")).toMatchObject({ kind: "section", fresh: { strength: 4 } });
-    expect(WORLD.fresh).toBeUndefined();
+    expect(part(WORLD, "world.steric")).toMatchObject({ kind: "section", initial: { strength: 4 } });
+    expect(WORLD.initial).toBeUndefined();
   });
 
   it("has a part for each name of a union, with its defaults", () => {
     const union = part<Union>(FORM, "body");
     expect([union.tag, ...union.parts.keys()]).toEqual(["builder", "chain", "line", "worm", "ray"]);
     const chain = union.parts.get("chain")!;
-    expect(chain.fresh).toEqual({ builder: "chain", stretch: 1, nodes: 32 });
+    expect(chain.initial).toEqual({ builder: "chain", stretch: 1, nodes: 32 });
     expect(chain.help).toBe("A straight filament.");
     expect(chain.fields.map(({ path }) => path)).toEqual(["body.stretch", "body.nodes"]);
-    expect(JSON.stringify(union.parts.get("line")!.fresh)).toBe('{"builder":"line","points":[[0,0],[1,1]]}');
-    expect(union.parts.get("ray")!.fresh).toEqual({ builder: "ray" });
+    expect(JSON.stringify(union.parts.get("line")!.initial)).toBe(
+      '{"builder":"line","points":[[0,0],[1,1]]}',
+    );
+    expect(union.parts.get("ray")!.initial).toEqual({ builder: "ray" });
     expect(partOf(union, { body: { builder: "worm" } })).toBe(union.parts.get("worm"));
     expect(partOf(union, { body: { builder: "unheard of" } })).toBeNull();
   });
 
   it("has lists of numbers and of words for arrays of them", () => {
-    expect(part(FORM, "swimmers")).toMatchObject({ kind: "several", options: ["worm", "ray"] });
+    expect(part(FORM, "swimmers")).toMatchObject({ kind: "multiple", options: ["worm", "ray"] });
     expect(part(FORM, "viscosities")).toMatchObject({ kind: "list", minItems: 1, maxItems: 3 });
   });
 
-  it("has rows for arrays of objects, and a fresh row from their defaults", () => {
+  it("has rows for arrays of objects, and an initial row from their defaults", () => {
     const rows = part<Rows>(FORM, "axes");
-    const fresh = { name: "a", bins: 20, low: null, scale: null };
-    expect([rows.minItems, rows.maxItems, rows.fresh]).toEqual([1, 2, fresh]);
+    const initial = { name: "a", bins: 20, low: null, scale: null };
+    expect([rows.minItems, rows.maxItems, rows.initial]).toEqual([1, 2, initial]);
     const row = rows.row(1) as Section;
     const names = ["name", "bins", "low", "scale"];
     expect(row.fields.map(({ path }) => path)).toEqual(names.map((name) => `axes.1.${name}`));
@@ -86,11 +88,11 @@ describe("a form", () => {
 
   it("has rows of parts for arrays of a union, each row of its own kind", () => {
     const rows = part<Rows>(FORM, "emitters");
-    expect(rows.fresh).toEqual({ operator: "any" });
+    expect(rows.initial).toEqual({ operator: "any" });
     const row = rows.row(2) as Union;
     expect([row.path, row.tag]).toEqual(["emitters.2", "operator"]);
     const selected = row.parts.get("line")!;
-    expect(selected.fresh).toEqual({ operator: "line", step: 0.5 });
+    expect(selected.initial).toEqual({ operator: "line", step: 0.5 });
     expect(selected.fields.map(({ path }) => path)).toEqual(["emitters.2.step"]);
     const spec: Spec = { emitters: [{ operator: "any" }, { operator: "line", step: 0 }] };
     const wrong = schemaErrors(FORM, spec).filter(({ field }) => field.startsWith("emitters"));
@@ -169,7 +171,7 @@ describe("a body from a plug-in", () => {
     const body = form.fields.find(({ path }) => path === "body");
     const cross = body?.kind === "union" ? body.parts.get("mine.cross") : undefined;
     expect(cross?.fields.map(({ path }) => path)).toEqual(["body.plugin.settings.strictness"]);
-    expect(cross?.fresh).toEqual({ builder: "mine.cross", plugin: { settings: { strictness: 1 } } });
+    expect(cross?.initial).toEqual({ builder: "mine.cross", plugin: { settings: { strictness: 1 } } });
   });
 });
 

@@ -25,7 +25,7 @@ function retyped(field: Field, value: Json): Json {
       return typedJson(JSON.stringify(value));
     case "choice":
       return field.options.find((option) => option === value) ?? null;
-    case "several":
+    case "multiple":
       return field.options.filter((option) => (value as Json[]).includes(option));
     default:
       return value;

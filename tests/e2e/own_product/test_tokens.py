@@ -1,31 +1,31 @@
-"""A server that asks for tokens: its first one, others, and what happens when they end."""
+"""A server that requires tokens: the first one, further ones, and their revocation."""
 
 import re
 import stat
 
 import pytest
 from drive import Installation, running
-from looks import faults, violations
+from layout import faults, violations
 from playwright.sync_api import Page, expect
-from small import TINY
+from small_runs import TINY
 
 SECRET = re.compile(r"mc_[\w-]{43}")
 
 
 @pytest.fixture
-def guarded(common, tmp_path):
+def protected_product(product_settings, tmp_path):
     """A product without workers that needs a token even from this machine."""
     needed = {"MICROCOSMOS_AUTH": "required", "WORKERS": "0"}
-    with running(tmp_path / "data", common | needed) as place:
-        yield place
+    with running(tmp_path / "data", product_settings | needed) as product:
+        yield product
 
 
-def test_an_admin_signs_in_and_manages_tokens(guarded, new_page):
-    alice, admin, first = new_page(), new_page(), first_token(guarded)
-    sign_in(admin, guarded.url, first)
+def test_an_admin_signs_in_and_manages_tokens(protected_product, new_page):
+    alice, admin, first = new_page(), new_page(), first_token(protected_product)
+    sign_in(admin, protected_product.url, first)
     secret = make_a_token(admin)
-    use_it(alice, guarded.url, secret)
-    stay_within_its_scope(alice, guarded, first)
+    use_it(alice, protected_product.url, secret)
+    stay_within_its_scope(alice, protected_product, first)
     revoke_it(admin)
     # The event stream of the page ends, and the page asks for a token.
     expect(alice.get_by_role("heading", name="Sign in")).to_be_visible()
@@ -33,13 +33,13 @@ def test_an_admin_signs_in_and_manages_tokens(guarded, new_page):
     expect(admin.get_by_role("heading", name="Sign in")).to_be_visible()
 
 
-def first_token(place: Installation) -> str:
+def first_token(product: Installation) -> str:
     """The token, printed once and kept in a private file."""
-    (secret,) = SECRET.findall(place.output.read_text())
-    file = place.folder / "admin-token"
+    (secret,) = SECRET.findall(product.output.read_text())
+    file = product.folder / "admin-token"
     assert file.read_text().strip() == secret
     assert stat.S_IMODE(file.stat().st_mode) == 0o600
-    assert secret not in (place.folder / "logs" / "server.log").read_text()
+    assert secret not in (product.folder / "logs" / "server.log").read_text()
     return secret
 
 
@@ -88,22 +88,22 @@ def use_it(page: Page, address: str, secret: str) -> None:
     page.goto(address)
 
 
-def stay_within_its_scope(page: Page, place: Installation, first: str) -> None:
+def stay_within_its_scope(page: Page, product: Installation, first: str) -> None:
     """Another's run names its owner and has no buttons; one's own has them."""
     as_admin = {"Authorization": f"Bearer {first}"}
-    asked = place.http.post("/api/v1/runs", json=TINY, headers=as_admin).raise_for_status()
+    asked = product.http.post("/api/v1/runs", json=TINY, headers=as_admin).raise_for_status()
     theirs = asked.json()["id"]
     row = page.get_by_role("row", name=re.compile(theirs[:8]))
     expect(row.get_by_role("link", name=re.compile("^Clone"))).to_be_visible()
     expect(row.get_by_role("button")).to_have_count(0)
-    page.goto(f"{place.url}/runs/{theirs}")
+    page.goto(f"{product.url}/runs/{theirs}")
     expect(page.get_by_text("Only admin or an admin can change it.")).to_be_visible()
     buttons = page.get_by_role("button", name=re.compile("^(Cancel|Pause|Rename)"))
     expect(buttons).to_have_count(0)
-    own = page.request.post(f"{place.url}/api/v1/runs", data={**TINY, "seed": 1})
-    page.goto(f"{place.url}/runs/{own.json()['id']}")
+    own = page.request.post(f"{product.url}/api/v1/runs", data={**TINY, "seed": 1})
+    page.goto(f"{product.url}/runs/{own.json()['id']}")
     expect(page.get_by_role("button", name=re.compile("^Cancel"))).to_be_visible()
-    page.goto(place.url)
+    page.goto(product.url)
 
 
 def revoke_it(page: Page) -> None:

@@ -1,4 +1,4 @@
-"""Initial creatures in files, which `search.initial` names."""
+"""The option --from: initial creatures from creature files and archives."""
 
 from collections.abc import Sequence
 from pathlib import Path

@@ -17,7 +17,7 @@ from typing import Any
 import pytest
 from drive import ROOT, Installation, running, wait_until
 from playwright.sync_api import Page, expect
-from small import TINY
+from small_runs import TINY
 
 from microcosmos.client import Client, Run
 
@@ -63,23 +63,23 @@ def laptop(tmp_path, product):
 
 
 @pytest.fixture
-def elsewhere(common, tmp_path):
+def elsewhere(product_settings, tmp_path):
     with (
-        running(tmp_path / "elsewhere", common | {"WORKERS": "0"}) as place,
-        Client(place.url) as client,
+        running(tmp_path / "elsewhere", product_settings | {"WORKERS": "0"}) as product,
+        Client(product.url) as client,
     ):
         yield client
 
 
-def test_a_first_day(laptop, product, elsewhere, stranger):
+def test_a_first_day(laptop, product, elsewhere, anonymous_page):
     client = Client(product.url)
     first, *others = sweep(client, laptop)
     extend(laptop, first)
     fork = swim_in_another_viscosity(client, first)
     best = fork.archive().best()
     share = best.share(title="A first swimmer", credit="A. Founder", days=1)
-    open_as_a_stranger(stranger, share.url, best.sha)
-    travel(laptop, elsewhere, client, best.sha)
+    open_anonymously(anonymous_page, share.url, best.sha)
+    import_elsewhere(laptop, elsewhere, client, best.sha)
     draw_the_contact_sheet(laptop, fork)
     kept = {run.id: product.archive(run.id) for run in (fork, *others)}
     delete_for_good(client, laptop, product, first)
@@ -123,7 +123,7 @@ def swim_in_another_viscosity(client: Client, run: Run) -> Run:
     return fork
 
 
-def open_as_a_stranger(page: Page, link: str, sha: str) -> None:
+def open_anonymously(page: Page, link: str, sha: str) -> None:
     """The link shows the creature to a browser without any cookie."""
     page.goto(link)
     expect(page.get_by_role("heading", name="A first swimmer")).to_be_visible()
@@ -133,7 +133,7 @@ def open_as_a_stranger(page: Page, link: str, sha: str) -> None:
     assert sha[:8] in page.content()
 
 
-def travel(laptop: Laptop, elsewhere: Client, client: Client, sha: str) -> None:
+def import_elsewhere(laptop: Laptop, elsewhere: Client, client: Client, sha: str) -> None:
     """The file brings its name and its ancestors to another server."""
     whole = client.connection.read(f"creatures/{sha}", ancestors=True)
     assert whole["ancestors"]

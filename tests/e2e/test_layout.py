@@ -6,10 +6,10 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
-from looks import THEMES, WIDTHS, faults, violations
-from places import TOUR_TAKEN, Place, places, visit
+from layout import THEMES, WIDTHS, faults, violations
+from pages import TOUR_TAKEN, ProductPage, product_pages, visit
 from playwright.sync_api import Page, expect
-from small import CENTROIDS, TINY
+from small_runs import CENTROIDS, TINY
 
 DESK = 1280
 REDRAWN_MS = 150
@@ -19,40 +19,40 @@ def test_every_page_fits_its_window_and_axe_finds_nothing(page, shared, idle, co
     page.add_init_script(TOUR_TAKEN)
     page.emulate_media(reduced_motion="reduce")
     wrong = []
-    for address, place in every_place(shared, idle):
+    for address, target in every_page(shared, idle):
         page.set_viewport_size({"width": DESK, "height": WIDTHS[DESK]})
-        assert visit(page, address, place), f"there is no page at {place.path}"
-        wrong += [f"{place.name}, {fault}" for fault in faults_of(page)]
+        assert visit(page, address, target), f"there is no page at {target.path}"
+        wrong += [f"{target.name}, {fault}" for fault in faults_of(page)]
     assert wrong == []
     # Where nothing was shared, 404 is the page's status and the share's.
     complaints[:] = [text for text in complaints if not re.search("404.*/nothing$", text)]
 
 
-def every_place(shared: Any, idle: Any) -> Iterator[tuple[str, Place]]:
+def every_page(shared: Any, idle: Any) -> Iterator[tuple[str, ProductPage]]:
     """All pages of the shared product, and those that need a product without workers."""
     runs = {shared.finished(name): name for name in shared.submitted}
     voronoi = next(run for run, name in runs.items() if name == "voronoi")
     address = shared.product.url
-    for place in places(address, [run for run in runs if run != voronoi]):
-        yield address, place
-    yield address, Place("run-voronoi", f"/runs/{voronoi}")
-    yield address, Place("run-chosen", f"/runs/{voronoi}?cells=0-{CENTROIDS // 2}&at=1")
-    yield address, Place("shares-some", "/shares")
-    yield address, Place("commons-some", "/commons")
+    for target in product_pages(address, [run for run in runs if run != voronoi]):
+        yield address, target
+    yield address, ProductPage("run-voronoi", f"/runs/{voronoi}")
+    yield address, ProductPage("run-chosen", f"/runs/{voronoi}?cells=0-{CENTROIDS // 2}&at=1")
+    yield address, ProductPage("shares-some", "/shares")
+    yield address, ProductPage("commons-some", "/commons")
     for share in published(shared.product.http, voronoi):
-        yield address, Place("shared", f"/s/{share['slug']}")
-    yield address, Place("shared-nothing", "/s/nothing")
+        yield address, ProductPage("shared", f"/s/{share['slug']}")
+    yield address, ProductPage("shared-nothing", "/s/nothing")
     queued, cancelled = (idle.product.submit(TINY | {"seed": seed}) for seed in (1, 2))
     idle.product.ask(cancelled, "cancel")
     idle.product.wait(cancelled, "cancelled")
-    yield idle.product.url, Place("run-queued", f"/runs/{queued}")
-    yield idle.product.url, Place("run-cancelled", f"/runs/{cancelled}")
-    yield idle.product.url, Place("workers-none", "/workers")
+    yield idle.product.url, ProductPage("run-queued", f"/runs/{queued}")
+    yield idle.product.url, ProductPage("run-cancelled", f"/runs/{cancelled}")
+    yield idle.product.url, ProductPage("workers-none", "/workers")
     asked = {"spec": TINY, "seeds": 2, "grid": {"world.viscosity": [0.05, 0.1]}}
     sweep = idle.product.http.post("/api/v1/sweeps", json=asked).raise_for_status().json()
-    yield idle.product.url, Place("sweep", f"/sweeps/{sweep['id']}?each=1")
-    yield idle.product.url, Place("runs-of-sweep", f"/?sweep={sweep['id']}")
-    yield idle.product.url, Place("runs-queued", "/")
+    yield idle.product.url, ProductPage("sweep", f"/sweeps/{sweep['id']}?each=1")
+    yield idle.product.url, ProductPage("runs-of-sweep", f"/?sweep={sweep['id']}")
+    yield idle.product.url, ProductPage("runs-queued", "/")
 
 
 def published(http: Any, run: str) -> list[dict[str, Any]]:

@@ -1,4 +1,4 @@
-"""A run that no worker computes: what one would write of it is written here."""
+"""A run whose generations a test writes, in place of a worker."""
 
 from typing import Any
 from uuid import UUID
@@ -38,7 +38,7 @@ def report(generation: int, seed: int) -> Any:
     return found
 
 
-class Written:
+class WrittenRun:
     """A run of neuroevolution, written generation by generation."""
 
     def __init__(self, services: Services, seed: int):
@@ -49,13 +49,13 @@ class Written:
         self.id: UUID = submit(services, self.spec)[0].id
         self.attempt: Attempt
 
-    def begin(self, worker: str) -> None:
+    def claim(self, worker: str) -> None:
         held = claim(self.services, self.id, worker)
         assert held is not None
         self.attempt = held
         held.record_device("cpu, a processor")
 
-    def go_on(self, first: int, last: int) -> None:
+    def write_generations(self, first: int, last: int) -> None:
         for generation in range(first, last + 1):
             self.attempt.record(report(generation, self.seed), 0.5)
         self.attempt.save(last, b"the archive of %d" % last)

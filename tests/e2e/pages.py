@@ -18,32 +18,32 @@ TOUR_TAKEN = "localStorage.setItem('microcosmos:tour-taken', '1')"
 """Keeps the tour from opening by itself."""
 
 
-class Place(NamedTuple):
+class ProductPage(NamedTuple):
     name: str
     path: str
     press: str | None = None
     """A button to press first."""
 
 
-def places(address: str, among: Collection[str] | None = None) -> list[Place]:
+def product_pages(address: str, among: Collection[str] | None = None) -> list[ProductPage]:
     """The pages of a product, with the newest finished of these runs in each experiment."""
     with httpx.Client(base_url=f"{address}/api/v1", timeout=30) as http:
         known = [run for run in finished(http) if among is None or run["id"] in among]
         runs = {run["experiment"]: run for run in reversed(known)}
         return [
-            Place("runs", "/"),
-            Place("workers", "/workers"),
-            Place("shares", "/shares"),
-            Place("commons", "/commons"),
-            Place("settings", "/settings"),
+            ProductPage("runs", "/"),
+            ProductPage("workers", "/workers"),
+            ProductPage("shares", "/shares"),
+            ProductPage("commons", "/commons"),
+            ProductPage("settings", "/settings"),
             *swept(http),
             *compared(known),
-            *(Place(f"run-{name}", f"/runs/{run['id']}") for name, run in runs.items()),
+            *(ProductPage(f"run-{name}", f"/runs/{run['id']}") for name, run in runs.items()),
             *searched(http, runs.get("quality-diversity")),
             *measured(http, runs.get("gaits")),
-            Place("new-run", "/new"),
-            Place("new-run-json", "/new", "JSON"),
-            Place("not-found", "/nowhere"),
+            ProductPage("new-run", "/new"),
+            ProductPage("new-run-json", "/new", "JSON"),
+            ProductPage("not-found", "/nowhere"),
         ]
 
 
@@ -53,35 +53,35 @@ def finished(http: httpx.Client) -> list[dict[str, Any]]:
     return [run for run in page["items"] if run["status"] == "finished"]
 
 
-def swept(http: httpx.Client) -> Iterator[Place]:
+def swept(http: httpx.Client) -> Iterator[ProductPage]:
     """The newest sweep, with every run."""
     for sweep in http.get("/sweeps").raise_for_status().json()["items"][:1]:
-        yield Place("sweep", f"/sweeps/{sweep['id']}?each=1")
+        yield ProductPage("sweep", f"/sweeps/{sweep['id']}?each=1")
 
 
-def compared(known: list[dict[str, Any]]) -> Iterator[Place]:
+def compared(known: list[dict[str, Any]]) -> Iterator[ProductPage]:
     """Two runs beside each other, where two have searched."""
     runs = [run["id"] for run in known if "search" in run["spec"]]
     if len(runs) > 1:
-        yield Place("compare", f"/compare?runs={','.join(runs[:2])}")
+        yield ProductPage("compare", f"/compare?runs={','.join(runs[:2])}")
 
 
-def searched(http: httpx.Client, run: dict[str, Any] | None) -> Iterator[Place]:
+def searched(http: httpx.Client, run: dict[str, Any] | None) -> Iterator[ProductPage]:
     """The tour, the gallery and the best creature of an archive."""
     if run:
         archive = http.get(f"/runs/{run['id']}/archive").raise_for_status().json()
         best = max(range(len(archive["cell"])), key=lambda i: archive["fitness"][i])
-        yield Place("tour", f"/runs/{run['id']}", "Explain")
-        yield Place("gallery", f"/runs/{run['id']}?view=gallery")
-        yield Place("creature", f"/creatures/{archive['creature'][best]}?run={run['id']}")
+        yield ProductPage("tour", f"/runs/{run['id']}", "Explain")
+        yield ProductPage("gallery", f"/runs/{run['id']}?view=gallery")
+        yield ProductPage("creature", f"/creatures/{archive['creature'][best]}?run={run['id']}")
 
 
-def measured(http: httpx.Client, run: dict[str, Any] | None) -> Iterator[Place]:
+def measured(http: httpx.Client, run: dict[str, Any] | None) -> Iterator[ProductPage]:
     """A swimmer whose gait was given to it."""
     if run:
         rows = http.get(f"/runs/{run['id']}/results").raise_for_status().json()["rows"]
         swimmer = next(row["creature"] for row in rows if row["creature"])
-        yield Place("swimmer", f"/creatures/{swimmer}?run={run['id']}")
+        yield ProductPage("swimmer", f"/creatures/{swimmer}?run={run['id']}")
 
 
 def the_map(page: Page) -> Locator:
@@ -108,15 +108,15 @@ def start_run(page: Page) -> str:
     return page.url.rpartition("/")[2]
 
 
-def visit(page: Page, address: str, place: Place, seconds: float = 120) -> bool:
+def visit(page: Page, address: str, target: ProductPage, seconds: float = 120) -> bool:
     """Open a page and wait until it is loaded; false if it does not exist."""
-    page.goto(address + place.path)
+    page.goto(address + target.path)
     page.get_by_role("main").wait_for()
-    if place.name != "not-found" and page.get_by_role("heading", name=NOWHERE).count():
+    if target.name != "not-found" and page.get_by_role("heading", name=NOWHERE).count():
         return False
     settle(page, seconds)
-    if place.press:
-        page.get_by_role("button", name=place.press, exact=True).click()
+    if target.press:
+        page.get_by_role("button", name=target.press, exact=True).click()
     return True
 
 

@@ -1,11 +1,11 @@
-"""Runs are named, found, sorted and compared, and workers say what they are at."""
+"""Runs are named, found, sorted and compared, and the list of workers shows their runs."""
 
 import re
 
 import pytest
 from drive import Installation
 from playwright.sync_api import Page, expect
-from small import TINY
+from small_runs import TINY
 
 SLOW = 300_000
 

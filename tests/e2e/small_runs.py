@@ -35,21 +35,21 @@ OF_PRESETS: dict[str, tuple[str, str, dict[str, Any]]] = {
         {"nodes": [200, 400, 800], "width": 64, "height": 64, "all_pairs": 400, "steps": 10},
     ),
 }
-"""Experiment, preset, and what is smaller than in it."""
+"""Experiment, preset, and the fields that replace the preset's."""
 
 
-def submit_small_runs(place: Installation) -> dict[str, str]:
+def submit_small_runs(product: Installation) -> dict[str, str]:
     """Submit one of each: their ids by name."""
     presets = {
         (experiment["experiment"], preset["name"]): preset["spec"]
-        for experiment in place.get("experiments")
+        for experiment in product.get("experiments")
         for preset in experiment["presets"]
     }
     of_presets = {
-        name: place.submit(changed(presets[experiment, preset], less))
+        name: product.submit(changed(presets[experiment, preset], less))
         for name, (experiment, preset, less) in OF_PRESETS.items()
     }
-    return of_presets | {"voronoi": place.submit(TINY | {"archive": VORONOI})}
+    return of_presets | {"voronoi": product.submit(TINY | {"archive": VORONOI})}
 
 
 def changed(spec: dict[str, Any], less: dict[str, Any]) -> dict[str, Any]:

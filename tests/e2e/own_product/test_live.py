@@ -5,9 +5,9 @@ from typing import Any
 
 import psutil
 from drive import Installation, wait_until
-from places import TOUR_TAKEN, best_of, the_map
+from pages import TOUR_TAKEN, best_of, the_map
 from playwright.sync_api import Locator, Page, expect
-from small import TINY
+from small_runs import TINY
 
 SLOW = 120_000
 SPEC = TINY | {"seed": 7, "search": TINY["search"] | {"generations": 5000}}
@@ -36,7 +36,7 @@ def test_no_update_is_lost_while_the_server_is_started_again(
     anew = new_page()
     anew.add_init_script(TOUR_TAKEN)
     anew.goto(page.url)
-    wait_until(lambda: looks(page) == looks(anew), 20, "it looks as if opened anew")
+    wait_until(lambda: appearance(page) == appearance(anew), 20, "it looks as if opened anew")
     assert page.evaluate("window.neverReloaded")
     complaints[:] = [text for text in complaints if "net::ERR" not in text]  # It was away.
 
@@ -104,7 +104,7 @@ def rounded(value: float) -> float:
     return float(f"{value:.3g}")
 
 
-def looks(page: Page) -> tuple[bytes, list[str | None]]:
+def appearance(page: Page) -> tuple[bytes, list[str | None]]:
     """The archive's map as pixels, and the name of every picture of the run."""
     pictures = page.get_by_role("main").get_by_role("img").all()
     names = [picture.get_attribute("aria-label") for picture in pictures]
