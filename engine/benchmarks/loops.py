@@ -32,7 +32,7 @@ def ours(
             (emitter,), (state,), archive, neat.first_counters(1, 1), number, key=key
         )
         if slopes is not None:
-            rows = jax.vmap(slopes)(emitter.asks(state, children).values)
+            rows = jax.vmap(slopes)(emitter.to_differentiate(state, children).values)
             known = search.Slopes(rows, jnp.ones(len(rows), bool))
             children, state = emitter.learn(state, children, known)
         genotypes: Any = children.genotypes

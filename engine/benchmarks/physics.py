@@ -54,7 +54,7 @@ def scene() -> tuple[world.World, world.State, filaments.Rest]:
     body = bodies.chain(NODES, 1.0, stretch=1.0, shear=1.0, bend=1.0)
     limits = world.Limits(jnp.float32(0.1), jnp.float32(0.1))
     rods, viscosity = build_rods(body, jnp.float32), jnp.float32(VISCOSITY)
-    box = world.World(viscosity, rods, groups.one(NODES), SIZE, limits=limits)
+    box = world.World(viscosity, rods, groups.single(NODES), SIZE, limits=limits)
     middle = jnp.asarray(body.positions - body.positions.mean(0) + np.array(SIZE) / 2)
     start = world.at_rest(box, middle.astype(jnp.float32))
     starts = jax.tree.map(lambda x: jnp.broadcast_to(x, (WORLDS, *x.shape)), start)

@@ -24,7 +24,7 @@ class Groups(eqx.Module):
             return jnp.max(values, keepdims=True)
         return jax.ops.segment_max(values, self.member, self.count, indices_are_sorted=True)
 
-    def each(self, values: Float[Array, "group *rest"]) -> Float[Array, "node *rest"]:
+    def per_node(self, values: Float[Array, "group *rest"]) -> Float[Array, "node *rest"]:
         """Return, for every node, the value of its group."""
         if self.count == 1:
             return jnp.broadcast_to(values, (len(self.member), *values.shape[1:]))
@@ -35,6 +35,6 @@ class Groups(eqx.Module):
         return Groups(jnp.repeat(self.member, times), self.count)
 
 
-def one(nodes: int) -> Groups:
+def single(nodes: int) -> Groups:
     """Return one group of all nodes."""
     return Groups(jnp.zeros(nodes, jnp.int32), 1)

@@ -30,7 +30,7 @@ def step(
         positions,
         rho,
         at,
-        groups=groups.one(len(positions)),
+        groups=groups.single(len(positions)),
         iterations=5,
         projection=projection,
         limit=None,

@@ -17,7 +17,7 @@ LITERAL = world.Form(projection=coupling.unprojected, theta_feedback=0.0, forcin
 def parallel_chains(nodes: int, gap: float) -> bodies.Body:
     """Two straight chains, one above the other."""
     one = bodies.chain(nodes, 1.0)
-    return bodies.together([bodies.placed(one, (0.0, y)) for y in (-gap / 2, gap / 2)])
+    return bodies.combined([bodies.placed(one, (0.0, y)) for y in (-gap / 2, gap / 2)])
 
 
 def steric(strength: float, dtype: Any, gradient: Any = fields.gaussian) -> fields.Steric:

@@ -4,7 +4,7 @@ from .builders import arc, chain, from_graph, graph, ring, star, tree, walk
 from .checks import MIN_GAP
 from .colouring import Colour, colour
 from .curve import polyline, svg
-from .graph import Body, placed, together
+from .graph import Body, combined, placed
+from .layout import Layout, layout
 from .resolution import Refined, subdivided, thinned
 from .shape import extent, from_edges
-from .unfolding import Unfolded, drawn, unfolded

@@ -72,7 +72,7 @@ def placed(body: Body, centre: Sequence[int | float] | np.ndarray, turned: float
     return replace(body, positions=rotated + np.asarray(centre, float))
 
 
-def together(bodies: Sequence[Body]) -> Body:
+def combined(bodies: Sequence[Body]) -> Body:
     """Combine bodies into one, their creatures numbered in turn."""
     if not bodies:
         raise ValueError("`bodies` must hold at least one body, got none.")

@@ -64,7 +64,7 @@ def tadpole(
     tadpole swims head first, "reaching lower speeds because of the drag caused by its head"
     (Microcosmos paper).
     """
-    body = _tufted(head_nodes, np.array([0]), tail_nodes, spacing, **stiffness)
+    body = _ring_with_hairs(head_nodes, np.array([0]), tail_nodes, spacing, **stiffness)
     bends = np.all(body.joints >= head_nodes, 1)
     share = (np.cumsum(bends) - 1) / max(bends.sum() - 1, 1)
 
@@ -142,7 +142,7 @@ def cilia(
     paper).
     """
     roots = _roots(body_nodes, hairs)
-    body = _tufted(body_nodes, roots, hair_nodes, spacing, **stiffness)
+    body = _ring_with_hairs(body_nodes, roots, hair_nodes, spacing, **stiffness)
     flank = np.where(roots < body_nodes / 2, 1, -1)
     swings, curls = _signs(body, body_nodes, hair_nodes, flank)
 
@@ -186,7 +186,7 @@ def _signs(body: Body, body_nodes: int, hair_nodes: int, flank: np.ndarray):
     return swings, curls
 
 
-def _tufted(
+def _ring_with_hairs(
     ring_nodes: int,
     roots: np.ndarray,
     hair_nodes: int,

@@ -1,7 +1,7 @@
 """Build the objects of a run from its spec: the only place where pydantic meets JAX."""
 
 from .cells import build_axes, build_cells
-from .creatures import build_block, build_point, build_stroke_block, frame
+from .creatures import build_block, build_point, build_stroke_block, identity_template
 from .emitters import build_emitters, build_rates
 from .encodings import build_controls, build_encoding
 from .experiments import build, build_plan

@@ -6,12 +6,12 @@ from typing import Any
 import jax.numpy as jnp
 
 from .. import naming, search, spec
-from ..spec.control import Sight
+from ..spec.control import NetworkInputs
 from .scene import build_limits, build_stroke, build_task
 
 
-def frame(scene: spec.Scene) -> dict[str, Any]:
-    """Return the identity of a scene's creatures without their genes."""
+def identity_template(scene: spec.Scene) -> dict[str, Any]:
+    """Return the identity of a scene's creatures without their genes; a gait has none."""
     whole = scene.model_dump(mode="json")
     # Limits as numbers: the default of an empty limit must not change a creature.
     limits = {
@@ -32,7 +32,7 @@ def _genome(control: spec.Controller | spec.Gait | spec.Fold) -> dict[str, Any]:
     if isinstance(control, spec.Gait):
         return {"encoding": "gait", **written}
     genome: dict[str, Any] = {"encoding": control.encoding, "control": written}
-    if isinstance(control, Sight):
+    if isinstance(control, NetworkInputs):
         genome |= {"inputs": list(control.inputs), "outputs": list(control.outputs)}
     return genome
 

@@ -6,7 +6,7 @@ from .. import neat, search, spec
 from ..genomes import Encoding
 from ..search import emitters, qdax, tensorneat
 from ..search.emitters.tensorneat import TensorNeat
-from ..spec import emitters as words
+from ..spec import emitters as specs
 from .cells import build_cells
 from .plugins import measures_of
 
@@ -18,21 +18,21 @@ def build_emitters(chosen: spec.Evolution, encoding: Encoding) -> tuple[search.E
 
 
 def _build(
-    emitter: words.Emitter, slots: int, chosen: spec.Evolution, encoding: Encoding
+    emitter: specs.Emitter, slots: int, chosen: spec.Evolution, encoding: Encoding
 ) -> search.Emitter:
     newcomer, outputs = encoding.newcomer, 1 + len(chosen.archive.descriptors)
     match emitter:
-        case words.RandomEmitter():
+        case specs.RandomEmitter():
             return emitters.Random(slots, newcomer)
-        case words.NeatEmitter():
+        case specs.NeatEmitter():
             return _neat(emitter, slots, chosen, encoding)
-        case words.PopulationEmitter():
+        case specs.PopulationEmitter():
             return _population(emitter, slots, chosen, encoding)
-        case words.LineEmitter():
+        case specs.LineEmitter():
             return emitters.IsoLine(slots, newcomer, emitter.iso, emitter.line)
-        case words.GaussianEmitter():
+        case specs.GaussianEmitter():
             return emitters.IsoLine(slots, newcomer, emitter.step)
-        case words.CmaMaeEmitter():
+        case specs.CmaMaeEmitter():
             return emitters.CmaMae(
                 slots=slots,
                 newcomer=newcomer,
@@ -41,11 +41,11 @@ def _build(
                 learning_rate=emitter.learning_rate,
                 threshold=emitter.threshold,
             )
-        case words.CmaMeEmitter():
+        case specs.CmaMeEmitter():
             cells = build_cells(chosen.archive, measures_of(chosen.scene))
             count = emitter.emitters
             return qdax.cma_me(slots, newcomer, cells, step=emitter.step, emitters=count)
-        case words.LamarckianEmitter():
+        case specs.LamarckianEmitter():
             return emitters.Lamarckian(
                 neat=_neat(emitter, slots, chosen, encoding),
                 outputs=outputs,
@@ -53,12 +53,12 @@ def _build(
                 step=emitter.step,
                 diversity=emitter.diversity,
             )
-        case words.CmaMegaEmitter():
+        case specs.CmaMegaEmitter():
             return emitters.CmaMega(slots, newcomer, outputs, emitter.step, emitter.rate)
 
 
 def _neat(
-    emitter: words.NeatEmitter | words.LamarckianEmitter,
+    emitter: specs.NeatEmitter | specs.LamarckianEmitter,
     slots: int,
     chosen: spec.Evolution,
     encoding: Encoding,
@@ -68,7 +68,7 @@ def _neat(
 
 
 def _population(
-    emitter: words.PopulationEmitter, slots: int, chosen: spec.Evolution, encoding: Encoding
+    emitter: specs.PopulationEmitter, slots: int, chosen: spec.Evolution, encoding: Encoding
 ) -> search.Emitter:
     settings = build_settings(emitter, chosen, slots)
     inputs, outputs = len(chosen.control.inputs), len(chosen.control.outputs)
@@ -80,7 +80,7 @@ def _population(
 
 
 def build_settings(
-    emitter: words.PopulationEmitter, chosen: spec.Evolution, slots: int
+    emitter: specs.PopulationEmitter, chosen: spec.Evolution, slots: int
 ) -> neat.Settings:
     whole = neat.PRESETS[emitter.preset]
     rates = build_rates(chosen)

@@ -60,7 +60,7 @@ def _encoding(
                 bounds=control.traits,
                 basis=BASES[control.waveform],
                 terms=control.terms,
-                plan=build_layout(body) if reshaped else None,
+                layout=bodies.layout(body) if reshaped else None,
                 spread=control.spread,
                 faintest=control.faintest,
             )
@@ -68,18 +68,5 @@ def _encoding(
             act = build_act(control, controls)
             return genomes.PluginEncoding(controls, control.genes(body), act)
         case spec.Grown():
-            layout = build_layout(body)
+            layout = bodies.layout(body)
             return genomes.Grown(controls, room, control.traits, control.min_nodes, layout)
-
-
-def build_layout(body: bodies.Body) -> genomes.Plan:
-    unfolded = bodies.unfolded(body)
-    angle, length = bodies.drawn(body)
-    return genomes.Plan(
-        angle=angle,
-        length=length,
-        joints=body.joints,
-        turned=unfolded.turned,
-        ways=unfolded.ways,
-        free=unfolded.joints,
-    )

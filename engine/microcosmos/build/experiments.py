@@ -18,7 +18,7 @@ from ..experiments.offspring import Lessons, Programs
 from ..experiments.state import InitialCreatures, Limits, Plan, Reevaluation
 from ..search.emitters.tensorneat import TensorNeat
 from .cells import build_cells
-from .creatures import build_block, build_disturbed_block, frame
+from .creatures import build_block, build_disturbed_block, identity_template
 from .emitters import build_emitters
 from .folding import build_folding
 from .plugins import measures_of, plugin_versions
@@ -49,14 +49,14 @@ def build_evolution(
     """Build a search with an archive."""
     plan = with_initial(build_plan(chosen), chosen, initial)
     emitters, key = plan.emitters, plan.key
-    hosted = any(isinstance(emitter, TensorNeat) for emitter in emitters)
-    compiled = (lambda program: program) if hosted else jax.jit
+    on_host = any(isinstance(emitter, TensorNeat) for emitter in emitters)
+    compiled = (lambda program: program) if on_host else jax.jit
     # Each program is compiled for this run's sizes and seed.
     programs = Programs(
         emit=compiled(lambda *given: search.emitters.emit(emitters, *given, key=key)),
         evaluate_block=build_block(chosen.scene, room_of(chosen)),
         insert=search.insert_program(),
-        tell=compiled(lambda states, told: search.emitters.tell(emitters, states, told)),
+        tell=compiled(lambda states, outcome: search.emitters.tell(emitters, states, outcome)),
         forget=jax.jit(search.reevaluation.forget),
         lessons=build_lessons(chosen, emitters),
     )
@@ -71,20 +71,20 @@ def build_lessons(
     task = build_task(chosen.scene, room=room_of(chosen))
     descriptors = tuple(axis.name for axis in chosen.archive.descriptors)
 
-    def lessons(words: spec.Emitter, emitter: search.Emitter) -> Lessons | None:
+    def lessons(emitter_spec: spec.Emitter, emitter: search.Emitter) -> Lessons | None:
         if not isinstance(emitter, search.emitters.Learner):
             return None
-        segment = getattr(words, "segment", None)
+        segment = getattr(emitter_spec, "segment", None)
         return Lessons(
             number=emitter.lessons,
-            asks=jax.jit(emitter.asks),
+            to_differentiate=jax.jit(emitter.to_differentiate),
             slopes=search.block_program(
                 lambda one: search.slopes(task, one, descriptors, segment)
             ),
             learn=jax.jit(emitter.learn),
         )
 
-    return tuple(lessons(words, emitter) for words, emitter in pairs)
+    return tuple(lessons(emitter_spec, emitter) for emitter_spec, emitter in pairs)
 
 
 def build_repeats(chosen: spec.Evolution, plan: Plan) -> reevaluation.Programs | None:
@@ -109,7 +109,7 @@ def build_plan(chosen: spec.Evolution) -> Plan:
     fixed = len(chosen.control.inputs), len(chosen.control.outputs)
     return Plan(
         spec=json.dumps(chosen.model_dump(mode="json"), sort_keys=True),
-        frame=frame(scene),
+        identity_template=identity_template(scene),
         seed=chosen.seed,
         generations=chosen.search.generations,
         block=chosen.search.block,

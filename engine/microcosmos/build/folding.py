@@ -8,7 +8,7 @@ import numpy as np
 from .. import device, fields, search, spec
 from ..experiments import folding
 from ..spec import targets
-from .creatures import frame
+from .creatures import identity_template
 from .scene import build_task
 
 DENSITIES = {"saturated": fields.saturated, "raw": fields.unsaturated}
@@ -24,7 +24,7 @@ def build_folding(chosen: spec.Folding) -> folding.Folding:
         program=search.block_program(partial(search.folding.update, descent)),
         updates=chosen.updates,
         block=chosen.block,
-        frame=frame(chosen.scene),
+        identity_template=identity_template(chosen.scene),
         device=device.device_kind(),
     )
 

@@ -10,7 +10,7 @@ from ..archive import creature
 from ..experiments import refinement
 from ..spec.refinement import parsed
 from .cells import build_cells
-from .creatures import build_block, frame
+from .creatures import build_block, identity_template
 from .plugins import measures_of, plugin_versions
 from .scene import build_task
 
@@ -37,7 +37,7 @@ def build_refinement(chosen: spec.Refinement) -> refinement.Refinement:
         steps=chosen.steps,
         length=chosen.length,
         block=chosen.block,
-        frame=frame(scene),
+        identity_template=identity_template(scene),
         encoding=task.encoding,
         parent=found["sha256"],
         provenance=found["provenance"],

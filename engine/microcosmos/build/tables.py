@@ -11,7 +11,7 @@ from ..bodies import extent
 from ..experiments import gaits, scaling
 from ..experiments.table_file import TableRun
 from ..spec.scaling import SPACING
-from .creatures import build_point, build_stroke_block, frame
+from .creatures import build_point, build_stroke_block, identity_template
 from .scene import build_world
 
 
@@ -49,7 +49,7 @@ def build_crowd(chosen: spec.Scaling, nodes: int) -> tuple[scaling.Scene, world.
     """Build a box with many straight filaments at random places, at rest."""
     one = bodies.chain(chosen.filament, SPACING)
     centres = chosen.centres(nodes).tolist()
-    crowd = bodies.together([bodies.placed(one, centre) for centre in centres])
+    crowd = bodies.combined([bodies.placed(one, centre) for centre in centres])
     wide = spec.World(width=chosen.width, height=chosen.height, steric=chosen.steric)
     box = build_world(wide, spec.Coupling(), crowd)
     start = world.at_rest(box, jnp.asarray(crowd.positions, jnp.float32))
@@ -73,7 +73,7 @@ def _stroke(chosen: spec.Gaits, form: str, swimmer: str) -> gaits.Stroke:
         viscosities=chosen.viscosities,
         sperm=tuple(_sperm(scene, joints, float(body.bend.min())) for scene in scenes),
         spacing=spacing,
-        identities=tuple(frame(scene) for scene in scenes),
+        identities=tuple(identity_template(scene) for scene in scenes),
     )
 
 

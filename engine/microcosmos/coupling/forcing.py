@@ -37,16 +37,16 @@ def unprojected(error: Vectors, beta: Scalars, positions: Vectors, groups: Group
 
 def force_free(error: Vectors, beta: Scalars, positions: Vectors, groups: Groups) -> Vectors:
     """Return the rigid translations whose removal makes Σ β e = 0 for each body."""
-    return groups.each(_mean(error, beta, groups))
+    return groups.per_node(_mean(error, beta, groups))
 
 
 def torque_free(error: Vectors, beta: Scalars, positions: Vectors, groups: Groups) -> Vectors:
     """Return the rigid motions whose removal makes Σ β e = 0 and Σ a × β e = 0 for a body."""
     translation = force_free(error, beta, positions, groups)
     error = error - translation
-    arm = positions - groups.each(_mean(positions, beta, groups))
+    arm = positions - groups.per_node(_mean(positions, beta, groups))
     turning = groups.total(beta * (arm[:, 0] * error[:, 1] - arm[:, 1] * error[:, 0]))
-    spin = groups.each(turning / groups.total(beta * jnp.sum(arm * arm, 1)))
+    spin = groups.per_node(turning / groups.total(beta * jnp.sum(arm * arm, 1)))
     return translation + spin[:, None] * jnp.stack([-arm[:, 1], arm[:, 0]], 1)
 
 
@@ -94,7 +94,7 @@ def multi_direct_forcing(
         return Forced(q, target, jnp.ones(groups.count, q.dtype))
     largest = jnp.sqrt(groups.largest(jnp.sum(q * q, 1)) + 1e-24)
     scale = jnp.minimum(1.0, limit / largest)
-    return Forced(q * groups.each(scale)[:, None], target, scale)
+    return Forced(q * groups.per_node(scale)[:, None], target, scale)
 
 
 def _reciprocal(values: Scalars, present: Bool[Array, "node"] | None) -> Scalars:

@@ -46,7 +46,7 @@ class Folding:
     program: Callable[[search.folding.Fold], tuple[search.folding.Fold, Any]]
     updates: int
     block: int
-    frame: Mapping[str, Any]
+    identity_template: Mapping[str, Any]
     """The identity of all creatures but for their genes."""
     device: str
 
@@ -106,7 +106,7 @@ class Folding:
         return naming.document(self._identity(state, best), None, provenance)
 
     def _identity(self, state: State, fold: int) -> dict[str, Any]:
-        return identity(self.frame, Vector(jnp.asarray(state.folds.best[fold])))
+        return identity(self.identity_template, Vector(jnp.asarray(state.folds.best[fold])))
 
     def _row(self, state: State, fold: int) -> Row:
         course, whole = state.losses[:, fold], self._identity(state, fold)

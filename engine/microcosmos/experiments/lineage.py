@@ -101,9 +101,9 @@ def document(plan: Plan, state: State, cell: int) -> dict[str, Any]:
     return naming.document(json.loads(elite.identity), elite.measured, elite.provenance)
 
 
-def identity(frame: Mapping[str, Any], genotype: Genotype) -> dict[str, Any]:
-    """Return the identity of a genotype in the world, body and task of `frame`."""
-    return {**frame, "genome": {**frame["genome"], **write(genotype)}}
+def identity(template: Mapping[str, Any], genotype: Genotype) -> dict[str, Any]:
+    """Return the identity of a genotype in the world, body and task of `template`."""
+    return {**template, "genome": {**template["genome"], **write(genotype)}}
 
 
 def measurement(
@@ -158,7 +158,7 @@ def _elite(
     parents: np.ndarray,
     device: str,
 ) -> Elite:
-    whole = identity(plan.frame, genotype)
+    whole = identity(plan.identity_template, genotype)
     measures: dict[str, float] = dict(zip(plan.measures, values.tolist(), strict=True))
     creature = naming.name(whole)
     named = tuple(bytes(parent).hex() for parent in parents if parent.any())

@@ -26,7 +26,7 @@ class Lessons:
 
     number: int
     """Lessons in a generation."""
-    asks: Callable[..., Genotype]
+    to_differentiate: Callable[..., Genotype]
     slopes: Callable[[Genotype], search.Slopes]
     """Slopes of a block of genotypes."""
     learn: Callable[..., tuple[search.Children, Any]]
@@ -183,7 +183,7 @@ def _teach(
         offspring = jax.tree.map(lambda x, a=first, b=first + count: x[a:b], children)
         for _ in range(lesson.number if lesson else 0):
             assert lesson is not None
-            asked = jax.device_get(lesson.asks(state, offspring))
+            asked = jax.device_get(lesson.to_differentiate(state, offspring))
             number = len(jax.tree.leaves(asked)[0])
             found = search.evaluate_blocks(
                 lesson.slopes, asked, block=min(block, number), stop=stop

@@ -79,7 +79,7 @@ class Refinement:
     steps: int
     length: float
     block: int
-    frame: Mapping[str, Any]
+    identity_template: Mapping[str, Any]
     encoding: Encoding
     parent: str
     """The creature's name."""
@@ -170,7 +170,7 @@ class Refinement:
         return int(self.cells.of(jnp.asarray(measures, jnp.float32))[0])
 
     def _identity(self, genes: np.ndarray) -> dict[str, Any]:
-        return identity(self.frame, take(self._genotypes(genes[None]), 0))
+        return identity(self.identity_template, take(self._genotypes(genes[None]), 0))
 
     def _row(self, state: State, found: search.Evaluation, best: int, genes: np.ndarray) -> Row:
         measures: dict[str, float] = dict(

@@ -79,7 +79,7 @@ class Plan:
 
     spec: str
     """The whole spec as JSON."""
-    frame: Mapping[str, Any]
+    identity_template: Mapping[str, Any]
     """The identity that all creatures of the run share, without genes."""
     seed: int
     generations: int

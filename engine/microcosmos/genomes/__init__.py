@@ -10,6 +10,5 @@ from .genotype import Genotype, Vector, empty, from_genes, read, take, to_genes,
 from .grown import Grown
 from .plugin import Clock, PluginEncoding
 from .recurrent import advance
-from .traits import Plan
 from .waves import fourier, phases, table, wave
 from .weights import Layers, Weights, forward

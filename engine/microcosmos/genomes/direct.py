@@ -7,11 +7,12 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, PRNGKeyArray
 
+from ..bodies import Layout
 from ..world import State, World
 from .development import Controls, actuated
 from .encoding import Drive, Networkless, Scalar, shifted
 from .genotype import Vector, uniform_vector
-from .traits import Plan, shaped, within
+from .traits import shaped, within
 from .waves import Basis, phases, wave
 
 CONTROL = ("angles", "lengths")
@@ -29,7 +30,7 @@ class Direct(Networkless):
     """Bounds of the inherited traits."""
     basis: Basis
     terms: int
-    plan: Plan | None = None
+    layout: Layout | None = None
     """Needed where rest angles or rest lengths are inherited."""
     spread: float = 1.0
     """Genes of new genotypes lie within ± this."""
@@ -55,7 +56,7 @@ class Direct(Networkless):
         dtype = start.positions.dtype
         genes = self.divided(genotype.values.astype(dtype))
         traits = {name: within(genes[name], bounds) for name, bounds in self.bounds.items()}
-        body = shaped(world, start, self.controls, self.plan, traits)
+        body = shaped(world, start, self.controls, self.layout, traits)
         timer = shifted(self.controls.timer, phase)
         basis = self.basis(phases(timer, dtype), self.terms)
         angle = wave(basis, genes["angles"], len(self.controls.joint_nodes))

@@ -6,12 +6,13 @@ from dataclasses import dataclass, replace
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, PRNGKeyArray
 
+from ..bodies import Layout
 from ..world import State, World
 from .control import drive_feed_forward, network_size
 from .cppn import CPPN, evaluate, minimal
 from .development import OUTPUTS, Controls, network_inputs
 from .encoding import Drive, Scalar, shifted
-from .traits import Plan, Shaped, cut, shaped, within
+from .traits import Shaped, cut, shaped, within
 
 JOINT_TRAITS = ("rest_angle", "bend")
 """Traits of joints; the others are traits of edges."""
@@ -26,7 +27,7 @@ class Grown:
     bounds: Mapping[str, tuple[float, float]]
     """Bounds of the inherited traits, in the order of the outputs after the control's two."""
     min_nodes: int
-    plan: Plan
+    layout: Layout
 
     @property
     def outputs(self) -> int:
@@ -58,7 +59,7 @@ class Grown:
             name: within(jnp.tanh(self._trait(name, values)), bounds)
             for (name, bounds), values in zip(self.bounds.items(), outputs[:-1], strict=True)
         }
-        whole = shaped(world, start, self.controls, self.plan, traits)
+        whole = shaped(world, start, self.controls, self.layout, traits)
         return cut(whole, self.present(outputs[-1]))
 
     def present(self, growth: Float[Array, "node"]) -> Bool[Array, "node"]:

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Bool, Float
 
+from ..bodies import Layout
 from ..world import State, World, at_rest, centre, grown_rods
 from .development import Controls
 
@@ -14,24 +14,6 @@ Traits = Mapping[str, Array]
 """Values of each joint or edge, by trait."""
 
 STIFFNESSES = ("stretch", "shear", "bend")
-
-
-@dataclass(frozen=True)
-class Plan:
-    """The forward kinematics of a body: its positions by angles and lengths (NumPy arrays)."""
-
-    angle: np.ndarray
-    """(edge,) direction of each edge of the unchanged body, in rad."""
-    length: np.ndarray
-    """(edge,) its length, in cells."""
-    joints: np.ndarray
-    """(joint, 2) pairs of edges."""
-    turned: np.ndarray
-    """(edge, turn) 1 where the turn of a joint turns an edge."""
-    ways: np.ndarray
-    """(node, edge) the edges on the path from the first node, with their signs."""
-    free: np.ndarray
-    """(turn,) joints that turn independently."""
 
 
 @dataclass(frozen=True)
@@ -52,22 +34,22 @@ def within(values: Array, bounds: tuple[float, float]) -> Array:
 
 
 def shaped(
-    world: World, start: State, controls: Controls, plan: Plan | None, traits: Traits
+    world: World, start: State, controls: Controls, layout: Layout | None, traits: Traits
 ) -> Shaped:
     """Return the body with inherited traits, laid out anew where its shape changes.
 
-    `rest_angle` is added to rest angles at the plan's free joints, `rest_length` multiplies.
+    `rest_angle` is added to rest angles at the layout's free joints, `rest_length` multiplies.
     """
     stiffness = {name: traits[name] for name in STIFFNESSES if name in traits}
     world = replace(world, rods=replace(world.rods, **stiffness))
-    if plan is None:
+    if layout is None:
         return Shaped(world, start, controls)
     dtype = start.positions.dtype
-    factor = traits.get("rest_length", jnp.ones(len(plan.length), dtype))
-    turns = traits.get("rest_angle", jnp.zeros(len(plan.free), dtype))
-    turned = jnp.asarray(plan.turned, dtype) @ turns
-    positions = _laid_out(plan, turned, factor) + jnp.mean(start.positions, 0)[None]
-    first, second = plan.joints.T
+    factor = traits.get("rest_length", jnp.ones(len(layout.length), dtype))
+    turns = traits.get("rest_angle", jnp.zeros(len(layout.free), dtype))
+    turned = jnp.asarray(layout.turned, dtype) @ turns
+    positions = _laid_out(layout, turned, factor) + jnp.mean(start.positions, 0)[None]
+    first, second = layout.joints.T
     controls = replace(
         controls,
         rest_angle=jnp.asarray(controls.rest_angle, dtype) + turned[second] - turned[first],
@@ -89,11 +71,11 @@ def cut(body: Shaped, present: Bool[Array, "node"]) -> Shaped:
     return replace(body, world=world, start=start, length=reach)
 
 
-def _laid_out(plan: Plan, turned: Array, factor: Array) -> Float[Array, "node 2"]:
+def _laid_out(layout: Layout, turned: Array, factor: Array) -> Float[Array, "node 2"]:
     """Return node positions relative to their mean."""
     dtype = turned.dtype
-    angle = jnp.asarray(plan.angle, dtype) + turned
+    angle = jnp.asarray(layout.angle, dtype) + turned
     v = jnp.stack([jnp.cos(angle), jnp.sin(angle)], 1)
-    v = v * (jnp.asarray(plan.length, dtype) * factor)[:, None]
-    positions = jnp.asarray(plan.ways, dtype) @ v
+    v = v * (jnp.asarray(layout.length, dtype) * factor)[:, None]
+    positions = jnp.asarray(layout.paths, dtype) @ v
     return positions - jnp.mean(positions, 0)[None]

@@ -30,7 +30,7 @@ def field(default: Any, *, unit: str = "", source: str = "", **limits: Any) -> A
     return Field(default=default, json_schema_extra=extra or None, **limits)
 
 
-def after(source: str, **marks: bool) -> ConfigDict:
+def sourced(source: str, **marks: bool) -> ConfigDict:
     """Configure a part with its source; a form shows a part with the mark `seldom` closed."""
     return ConfigDict(json_schema_extra={**marks, "source": source})
 

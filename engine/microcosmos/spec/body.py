@@ -9,7 +9,7 @@ from pydantic.json_schema import SkipJsonSchema
 
 from .. import bodies, plugins
 from ..bodies import swimmers
-from .base import BUILDERS, Part, after, field, name_in, one_of
+from .base import BUILDERS, Part, field, name_in, one_of, sourced
 from .plugins import PluginName, PluginVersion, complete_plugin
 from .sources import PAPER, RODS
 
@@ -23,7 +23,7 @@ MAX_NODES = 4096
 class Elastic(Part):
     """Stiffness and node spacing, the same everywhere."""
 
-    model_config = after(RODS)
+    model_config = sourced(RODS)
 
     stretch: float = field(1.0, ge=0.0, le=1.0)
     """Stretching stiffness: share of the error that one projection removes."""
@@ -138,7 +138,7 @@ Swimmer = Literal["worm", "tadpole", "ray", "cilia", "jellyfish"]
 class SwimmerBody(Part):
     """The body of one of the five swimmers of the paper."""
 
-    model_config = after(PAPER)
+    model_config = sourced(PAPER)
 
     builder: Swimmer
     """Name of the swimmer."""

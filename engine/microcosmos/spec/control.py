@@ -4,7 +4,7 @@ from typing import Literal, Self
 
 from pydantic import model_validator
 
-from .base import Part, after, field
+from .base import Part, field, sourced
 from .sources import CPPN, NEAT, PAPER
 
 INPUTS = {"sine-cosine": ("position", "sine", "cosine"), "linear": ("position", "time")}
@@ -26,7 +26,7 @@ class Actuation(Part):
     """Amplitude of rest lengths: factor 1 + this times the controller's output (−1 to 1)."""
 
 
-class Sight(Actuation):
+class NetworkInputs(Actuation):
     """Inputs of a network at every node of the body."""
 
     position: Literal["signed", "unit"] = field("signed", source=f"unit: {PAPER}")
@@ -39,10 +39,10 @@ class Sight(Actuation):
         return INPUTS[self.timer] + (("energy",) if self.sense_energy else ())
 
 
-class Control(Sight):
+class Control(NetworkInputs):
     """One CPPN, evaluated at every joint and edge, sets rest angles and rest lengths."""
 
-    model_config = after(CPPN)
+    model_config = sourced(CPPN)
 
     encoding: Literal["cppn"] = "cppn"
     recurrent: bool = False
@@ -56,7 +56,7 @@ class Control(Sight):
 class Genome(Part):
     """Size limits of a CPPN's genome, and NEAT's mutation rates per child."""
 
-    model_config = after(f"{NEAT}, section 3.1", seldom=True)
+    model_config = sourced(f"{NEAT}, section 3.1", seldom=True)
 
     max_nodes: int = field(24, ge=8, le=1024, unit="nodes")
     """Maximum number of nodes, inputs and outputs included."""

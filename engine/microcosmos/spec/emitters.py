@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from .. import plugins
-from .base import NETWORK_OPERATORS, VECTOR_OPERATORS, Part, after, field
+from .base import NETWORK_OPERATORS, VECTOR_OPERATORS, Part, field, sourced
 from .sources import CMA_MAE, CMA_ME, CMA_MEGA, LINE, NEAT, OMG_MEGA
 
 Rate = Annotated[float, Field(ge=0.0, le=1.0)]
@@ -27,7 +27,7 @@ class RandomEmitter(WeightedEmitter):
 class NeatEmitter(WeightedEmitter):
     """Elites varied by NEAT's mutations, some crossed with another elite first."""
 
-    model_config = after(f"{NEAT}, sections 3.1 and 3.2")
+    model_config = sourced(f"{NEAT}, sections 3.1 and 3.2")
 
     operator: Literal["neat"] = "neat"
     crossover: Rate = 0.0
@@ -37,7 +37,7 @@ class NeatEmitter(WeightedEmitter):
 class LineEmitter(WeightedEmitter):
     """An elite plus an isotropic step and a step along the line to another elite."""
 
-    model_config = after(LINE)
+    model_config = sourced(LINE)
 
     operator: Literal["iso+line"] = "iso+line"
     iso: float = field(0.02, gt=0.0, le=2.0)
@@ -57,7 +57,7 @@ class GaussianEmitter(WeightedEmitter):
 class CmaMaeEmitter(WeightedEmitter):
     """CMA-MAE: an evolution strategy that improves on thresholds, which follow the archive."""
 
-    model_config = after(CMA_MAE)
+    model_config = sourced(CMA_MAE)
 
     operator: Literal["cma-mae"] = "cma-mae"
     step: float = field(0.2, gt=0.0, le=2.0)
@@ -71,7 +71,7 @@ class CmaMaeEmitter(WeightedEmitter):
 class CmaMeEmitter(WeightedEmitter):
     """CMA-ME's improvement emitters of QDax, which must be installed."""
 
-    model_config = after(CMA_ME)
+    model_config = sourced(CMA_ME)
 
     operator: Literal["cma-me"] = "cma-me"
     step: float = field(0.2, gt=0.0, le=2.0)
@@ -86,7 +86,7 @@ class PopulationEmitter(WeightedEmitter):
     Empty values are those of the preset.
     """
 
-    model_config = after(NEAT)
+    model_config = sourced(NEAT)
 
     operator: Literal["population"] = "population"
     preset: Literal["paper", "tensorneat"] = "paper"
@@ -109,7 +109,7 @@ class PopulationEmitter(WeightedEmitter):
 class LamarckianEmitter(WeightedEmitter):
     """NEAT's variation; offspring then learn by gradients and pass on what they learned."""
 
-    model_config = after(OMG_MEGA)
+    model_config = sourced(OMG_MEGA)
 
     operator: Literal["lamarckian"] = "lamarckian"
     crossover: Rate = 0.0
@@ -129,7 +129,7 @@ class LamarckianEmitter(WeightedEmitter):
 class CmaMegaEmitter(WeightedEmitter):
     """CMA-MEGA: an evolution strategy over gradient steps of fitness and descriptors."""
 
-    model_config = after(CMA_MEGA)
+    model_config = sourced(CMA_MEGA)
 
     operator: Literal["cma-mega"] = "cma-mega"
     step: float = field(0.5, gt=0.0, le=100.0)

@@ -10,7 +10,7 @@ from .. import bodies
 from ..plugins.declaration import refuse_empty_axis
 from .base import ENCODINGS, Part, field, name_in, one_of
 from .body import Body, is_unavailable, shape
-from .control import OUTPUTS, Actuation, Control, Genome, Sight
+from .control import OUTPUTS, Actuation, Control, Genome, NetworkInputs
 from .plugins import PluginName, PluginVersion, complete_plugin
 
 TRAITS = {
@@ -53,7 +53,7 @@ Shear = Annotated[Bounds | None, _bounds("each edge's shearing stiffness", "the 
 Bend = Annotated[Bounds | None, _bounds("each joint's bending stiffness", "the body's")]
 
 
-class Shaping(Part):
+class InheritedTraits(Part):
     """Inherited traits of the body."""
 
     rest_angle: RestAngle = None
@@ -80,7 +80,7 @@ class Shaping(Part):
         return self
 
 
-class Direct(Actuation, Shaping):
+class Direct(Actuation, InheritedTraits):
     """Genes are the control of every joint and edge, and the inherited traits of the body."""
 
     encoding: Literal["direct"] = "direct"
@@ -114,11 +114,11 @@ class Direct(Actuation, Shaping):
         joints, edges = len(body.joints), len(body.edges)
         sizes = {name: joints if name in JOINT_TRAITS else edges for name in self.traits}
         if "rest_angle" in sizes:
-            sizes["rest_angle"] = len(bodies.unfolded(body).joints)
+            sizes["rest_angle"] = len(bodies.layout(body).free)
         return sizes | {"angles": self.weights * joints, "lengths": self.weights * edges}
 
 
-class Weights(Sight):
+class Weights(NetworkInputs):
     """Genes are the weights and biases of a network with fixed layers."""
 
     encoding: Literal["weights"] = "weights"
@@ -142,7 +142,7 @@ class Weights(Sight):
         return (len(self.inputs), *self.hidden, len(self.outputs))
 
 
-class Grown(Sight, Shaping):
+class Grown(NetworkInputs, InheritedTraits):
     """One CPPN grows the chain, then sets its rest angles and rest lengths."""
 
     encoding: Literal["cppn-body"] = "cppn-body"
@@ -194,7 +194,7 @@ Controller = Annotated[
 
 def max_stretch(control: Controller) -> float:
     """Return the largest share of its length by which a controller may stretch a body."""
-    if isinstance(control, Shaping) and control.rest_length is not None:
+    if isinstance(control, InheritedTraits) and control.rest_length is not None:
         return control.rest_length.high * (1 + control.length_scale) - 1
     return control.length_scale
 
@@ -213,9 +213,9 @@ def refuse_unfit(control: Controller, body: Body) -> None:
             f"`control.min_nodes` must be at most the body's {len(graph.positions)} nodes, got "
             f"{control.min_nodes}"
         )
-    if isinstance(control, Shaping) and {"rest_angle", "rest_length"} & set(control.traits):
+    if isinstance(control, InheritedTraits) and (control.rest_angle or control.rest_length):
         try:
-            bodies.unfolded(graph)
+            bodies.layout(graph)
         except ValueError as error:
             raise ValueError(
                 f"`control.rest_angle` and `rest_length` must be empty for this `body`: {error}"

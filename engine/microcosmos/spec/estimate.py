@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import singledispatch
 from math import ceil
 
-from ..bodies.unfolding import MAX_NODES as LAID_OUT
+from ..bodies.layout import MAX_NODES as LAID_OUT
 from . import reverse
 from .body import estimated_shape as shape
 from .creature import room, scene_of

@@ -16,7 +16,7 @@ from .search import Archive, Generations, Task
 from .world import Steric, World
 
 Name = TypeVar("Name", bound=str)
-How = TypeVar("How", bound=Generations)
+SearchSpec = TypeVar("SearchSpec", bound=Generations)
 
 SMALL: dict[str, Any] = {
     "world": World(width=32, height=32),
@@ -34,7 +34,7 @@ LITERAL: dict[str, Any] = {
 """Parts as in the paper."""
 
 
-class Evolution(Part, Generic[Name, How]):
+class Evolution(Part, Generic[Name, SearchSpec]):
     """A search over generations of creatures in one scene, with an archive of elites."""
 
     experiment: Name
@@ -50,7 +50,7 @@ class Evolution(Part, Generic[Name, How]):
     task: Task = Task()
     archive: Archive = Archive()
     """Archive: the fittest creature (elite) of each cell."""
-    search: How
+    search: SearchSpec
 
     @model_validator(mode="after")
     def check_scene(self) -> Self:
@@ -61,7 +61,7 @@ class Evolution(Part, Generic[Name, How]):
         return self
 
     @model_validator(mode="after")
-    def refuse_crowd(self) -> Self:
+    def check_initial(self) -> Self:
         emitters, batch, initial = self.emitters, self.search.batch, len(self.search.initial)
         populations = [one for one in emitters if isinstance(one, PopulationEmitter)]
         if not initial or not populations:

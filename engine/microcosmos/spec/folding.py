@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field, Tag, model_validator
 
 from . import reverse
-from .base import Part, after, field, name_in, one_of
+from .base import Part, field, name_in, one_of, sourced
 from .body import Body, Walk, estimated_shape, is_unavailable, resolved
 from .coupling import Coupling
 from .scene import Fold, Scene
@@ -20,7 +20,7 @@ from .world import World
 class Digit(Part):
     """One of ten handwritten digits of 8 × 8 pixels."""
 
-    model_config = after(DIGITS)
+    model_config = sourced(DIGITS)
 
     kind: Literal["digit"] = "digit"
     digit: int = Field(ge=0, le=9)

@@ -70,7 +70,7 @@ class Scaling(Part):
 
     @property
     def generations(self) -> int:
-        """Return the number of numbers of nodes."""
+        """Return the number of measurements, one for each number of nodes."""
         return len(self.nodes)
 
 

@@ -9,7 +9,7 @@ from pydantic.json_schema import SkipJsonSchema
 from ..bodies import extent
 from .base import ENCODINGS, Part, field, name_in, one_of
 from .body import SUPPORT, Body, Chain, Swimmer, is_unavailable, shape
-from .control import Control, Sight
+from .control import Control, NetworkInputs
 from .coupling import Coupling
 from .encodings import (
     Controller,
@@ -115,7 +115,7 @@ def refuse_too_large(world: World, body: Body, stretch: float) -> None:
 
 def refuse_senseless(world: World, control: Controller | Gait | Fold, task: Task) -> None:
     """Raise `ValueError` where energy is sensed or counts but the world has none."""
-    senses = isinstance(control, Sight) and control.sense_energy
+    senses = isinstance(control, NetworkInputs) and control.sense_energy
     collects = task.plugin is None and task.fitness != "displacement"
     if world.energy is None and (senses or collects):
         path = "control.sense_energy" if senses else "task.fitness"

@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 from ..naming import MeasureName
 from ..plugins.declaration import refuse_empty_axis
 from . import measures
-from .base import Digest, Part, after, field
+from .base import Digest, Part, field, sourced
 from .emitters import NUMBERING, WITHOUT_GRADIENT, Emitter, NeatEmitter, slots
 from .plugins import OR_PLUGIN, MaybePlugin, PluginVersion, complete_plugin, completed
 from .sources import CVT, MAP_ELITES, PAPER, REEVALUATION
@@ -31,14 +31,14 @@ class Task(Part):
     complete = complete_plugin(("fitness",), "fitness")
 
 
-def _by_name(schema: dict[str, Any]) -> None:
+def _omit_default(schema: dict[str, Any]) -> None:
     """Omit the default, which each measure has of its own."""
     schema.pop("default")
 
 
 def _end(schema: dict[str, Any]) -> None:
     """Omit the default of an end of an axis and add the units of measures."""
-    _by_name(schema)
+    _omit_default(schema)
     schema["units"] = {name: one.unit for name, one in measures.MEASURES.items()}
     schema["unit_of"] = "name"
 
@@ -54,7 +54,7 @@ class Descriptor(Part):
     """Upper end of the axis; higher values count in the last bin."""
     bins: int = field(20, ge=1, le=1024)
     """Bins along the axis."""
-    scale: measures.Scale = Field(default="linear", json_schema_extra=_by_name)
+    scale: measures.Scale = Field(default="linear", json_schema_extra=_omit_default)
     """Scale of the axis: bins of equal width in the value, or in its logarithm."""
     plugin: MaybePlugin = None
 
@@ -83,7 +83,7 @@ MAX_CELLS = 2**20
 class Archive(Part):
     """An archive over one to eight descriptors, with one elite per cell."""
 
-    model_config = after(MAP_ELITES)
+    model_config = sourced(MAP_ELITES)
 
     descriptors: Annotated[tuple[Descriptor, ...], Field(min_length=1, max_length=8)] = (
         Descriptor(name="bending_effort"),
@@ -149,7 +149,7 @@ class Stop(Part):
 class Reevaluation(Part):
     """Repeated evaluation of elites under disturbed conditions, to test their robustness."""
 
-    model_config = after(REEVALUATION)
+    model_config = sourced(REEVALUATION)
 
     every: int = field(25, ge=1, le=1_000_000, unit="generations")
     """Interval; elites are also evaluated after the last generation."""
@@ -198,7 +198,7 @@ class Generations(Part):
 class Search(Generations):
     """MAP-Elites: generations of offspring of elites."""
 
-    model_config = after(MAP_ELITES)
+    model_config = sourced(MAP_ELITES)
 
     emitters: Annotated[tuple[Emitter, ...], Field(min_length=1, max_length=16)] = (
         NeatEmitter(),

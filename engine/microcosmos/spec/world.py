@@ -4,14 +4,14 @@ from typing import Literal, Self
 
 from pydantic import model_validator
 
-from .base import Part, after, field
+from .base import Part, field, sourced
 from .sources import LATTICE, OURS, PAPER, TRT
 
 
 class Steric(Part):
     """Repulsion between nodes by the gradient of their smoothed density."""
 
-    model_config = after(PAPER)
+    model_config = sourced(PAPER)
 
     strength: float = field(4.0, gt=0.0, le=20.0, unit="cells³")
     """Displacement per step and unit of the density's gradient."""
@@ -24,7 +24,7 @@ class Steric(Part):
 class Energy(Part):
     """Gaussian packets of energy at random places, to be sensed and collected."""
 
-    model_config = after(PAPER)
+    model_config = sourced(PAPER)
 
     packets: int = field(8, ge=1, le=4096)
     """Number of packets."""
@@ -57,7 +57,7 @@ class Energy(Part):
 class World(Part):
     """A periodic box of fluid."""
 
-    model_config = after(LATTICE)
+    model_config = sourced(LATTICE)
 
     width: int = field(64, ge=16, le=2048, unit="cells")
     """Width of the box (x)."""

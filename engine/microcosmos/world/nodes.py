@@ -60,4 +60,4 @@ def _body_mean(world: World, values: Vectors) -> Vectors:
         ones = ones * world.present[:, None]
         values = values * ones
     nodes = world.groups.total(ones)
-    return world.groups.each(world.groups.total(values) / nodes)
+    return world.groups.per_node(world.groups.total(values) / nodes)

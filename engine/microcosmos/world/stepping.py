@@ -111,5 +111,5 @@ def _windows(world: World, state: State) -> coupling.Windows:
 
 def _held(motion: Motion, forced: coupling.Forced, groups: Groups) -> Float[Array, "node"]:
     dtype, layers = motion.target.dtype, len(groups.member) // len(motion.target)
-    pressed = groups.each((forced.scale < 1).astype(dtype))[::layers]
+    pressed = groups.per_node((forced.scale < 1).astype(dtype))[::layers]
     return jnp.maximum(pressed, (motion.shortened < 1).astype(dtype))

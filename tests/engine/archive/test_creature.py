@@ -10,7 +10,7 @@ import pytest
 
 from microcosmos import spec
 from microcosmos.archive import creature, pedigree
-from microcosmos.build import frame
+from microcosmos.build import identity_template
 from microcosmos.naming import encode
 from microcosmos.spec import EXPERIMENTS
 
@@ -161,7 +161,7 @@ CHAIN = spec.Chain(nodes=6)
 
 
 def document(control, genes):
-    identity = frame(spec.Scene(body=CHAIN, control=control))
+    identity = identity_template(spec.Scene(body=CHAIN, control=control))
     identity["genome"] |= genes
     return creature.document(identity, None, None)
 
@@ -216,7 +216,8 @@ def test_a_network_that_grows_has_outputs_for_what_is_free():
 
 
 def one(period, *parents):
-    identity = frame(EXPERIMENTS["gaits"].presets[0].spec.scene("ours", "worm", 0.5))
+    gaits = EXPERIMENTS["gaits"].presets[0].spec
+    identity = identity_template(gaits.scene("ours", "worm", 0.5))
     identity["genome"]["period"] = period
     names = [parent["sha256"] for parent in parents]
     origin = {"operator": "hand-made", "generation": 0, "seed": 0, "version": "0"}

@@ -10,7 +10,7 @@ from microcosmos.archive import creature
 from microcosmos.audit.derivatives import gradient, report_gradient
 from microcosmos.audit.physics import audit
 from microcosmos.audit.variants import reciprocal, refine
-from microcosmos.build import build_encoding, build_stroke, build_task, frame
+from microcosmos.build import build_encoding, build_stroke, build_task, identity_template
 from microcosmos.experiments.lineage import identity
 from microcosmos.filaments import Rest
 
@@ -18,7 +18,8 @@ GAITS = spec.Gaits(period=500, cycles=2)
 
 
 def audited(form, swimmer, viscosity):
-    found = audit(creature.document(frame(GAITS.scene(form, swimmer, viscosity)), None, None))
+    whole = identity_template(GAITS.scene(form, swimmer, viscosity))
+    found = audit(creature.document(whole, None, None))
     return found["verdict"], {row["name"]: row for row in found["rows"]}
 
 
@@ -49,7 +50,7 @@ def test_creatures_with_networks_are_audited_too(senses):
     )
     inputs = len(scene.control.inputs)
     network = neat.minimal(jax.random.key(0), inputs, 2, 8, 16)
-    found = audit(creature.document(identity(frame(scene), network), None, None))
+    found = audit(creature.document(identity(identity_template(scene), network), None, None))
     assert {row["name"] for row in found["rows"]} >= {"refined", "delta", "reciprocal"}
     assert all(row["value"] is not None for row in found["rows"])
 
@@ -93,7 +94,7 @@ def test_an_audit_that_takes_too_long_is_refused():
     scene = GAITS.scene("ours", "worm", 0.5)
     longer = scene.model_copy(update={"task": spec.Task(steps=1_000_000)})
     with pytest.raises(creature.CreatureError, match=r"task\.steps"):
-        audit(creature.document(frame(longer), None, None))
+        audit(creature.document(identity_template(longer), None, None))
 
 
 STEPS = 60
@@ -110,7 +111,7 @@ def file():
     scene = spec.Scene.model_validate(SCENE)
     encoding = build_encoding(scene, (8, 8))
     newcomer = jax.tree.map(np.asarray, encoding.newcomer(key=jax.random.key(1)))
-    return creature.document(identity(frame(scene), newcomer), None, None)
+    return creature.document(identity(identity_template(scene), newcomer), None, None)
 
 
 @pytest.mark.long

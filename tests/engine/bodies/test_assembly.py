@@ -18,7 +18,7 @@ PARTS = [
 
 def world():
     placed = [bodies.placed(part, (20.0 * i, 7.0), 0.3 * i) for i, part in enumerate(PARTS)]
-    return bodies.together(placed)
+    return bodies.combined(placed)
 
 
 def errors(body):
@@ -40,7 +40,7 @@ def test_a_placed_body_is_turned_about_its_centre(part):
         np.testing.assert_allclose(error, 0, atol=1e-12)
 
 
-def test_bodies_together_keep_their_own_edges_joints_and_stiffness():
+def test_combined_bodies_keep_their_own_edges_joints_and_stiffness():
     body = world()
     assert body.count == len(PARTS)
     np.testing.assert_array_equal(np.bincount(body.member), [len(p.positions) for p in PARTS])
@@ -59,16 +59,16 @@ def test_bodies_together_keep_their_own_edges_joints_and_stiffness():
 
 
 def test_groups_of_creatures_are_numbered_on():
-    pair = bodies.together([PARTS[0], bodies.placed(PARTS[1], (20, 0))])
+    pair = bodies.combined([PARTS[0], bodies.placed(PARTS[1], (20, 0))])
     third, fourth = bodies.placed(PARTS[2], (40, 0)), bodies.placed(pair, (70, 0))
-    body = bodies.together([pair, third, fourth])
+    body = bodies.combined([pair, third, fourth])
     sizes = [len(PARTS[i].positions) for i in (0, 1, 2, 0, 1)]
     np.testing.assert_array_equal(body.member, np.repeat(np.arange(5), sizes))
 
 
 def test_creatures_on_top_of_each_other_are_refused():
     with pytest.raises(ValueError, match="nodes 0 and 5 are 0 apart"):
-        bodies.together([PARTS[2], PARTS[2]])
+        bodies.combined([PARTS[2], PARTS[2]])
 
 
 def test_a_subdivided_body_has_the_same_shape_twice_as_large():

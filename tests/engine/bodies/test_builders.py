@@ -178,7 +178,7 @@ def test_a_networkx_graph_becomes_its_body():
         (lambda: bodies.polyline([(0, 0), (9, 0)], 0.0), "`spacing` must be positive"),
         (lambda: bodies.polyline([(1, 1), (1, 1)], 1.0), "must not all be the same"),
         (lambda: bodies.polyline([(0, 0), (9, 0), (0, 0.1)], 1.0), "cells apart"),
-        (lambda: bodies.together([]), "at least one body"),
+        (lambda: bodies.combined([]), "at least one body"),
     ],
 )
 def test_measures_that_make_no_body_are_refused(build, reason):
@@ -209,7 +209,7 @@ def test_the_mean_square_distance_of_ends_is_that_of_a_freely_rotating_chain():
 def test_a_walk_may_cross_itself_and_other_bodies_may_not():
     body = bodies.walk(300, 0.4, 1.0, 0)
     assert body.crossing
-    assert bodies.together([body, body]).crossing
+    assert bodies.combined([body, body]).crossing
     assert len(subdivided(body).body.positions) == 599
     with pytest.raises(ValueError, match="cells apart"):
         bodies.polyline([(0, 0), (4, 0), (2, 0.01)], 0.5)

@@ -18,7 +18,7 @@ def change(name, index, value):
 
 
 def two(**changed):
-    pair = bodies.together([bodies.chain(4, 1.0), bodies.placed(bodies.chain(4, 1.0), (2, 5))])
+    pair = bodies.combined([bodies.chain(4, 1.0), bodies.placed(bodies.chain(4, 1.0), (2, 5))])
     return lambda: replace(pair, **changed)
 
 

@@ -35,7 +35,7 @@ def random_body(seed):
 
 def world(*parts):
     placed = [bodies.placed(part, (30.0 * i, 0.0)) for i, part in enumerate(parts)]
-    return bodies.together(placed)
+    return bodies.combined(placed)
 
 
 def require_colouring(colours, pairs):

@@ -28,7 +28,8 @@ def scene(float64):
 
 
 def force(scene, iterations, projection=coupling.torque_free, limit=None):
-    at, alone = coupling.windows(scene["positions"], SIZE), groups.one(len(scene["positions"]))
+    x = scene["positions"]
+    at, alone = coupling.windows(x, SIZE), groups.single(len(x))
     options = {"iterations": iterations, "projection": projection, "limit": limit}
     return coupling.multi_direct_forcing(**scene, at=at, groups=alone, **options)
 
@@ -115,7 +116,7 @@ def test_forcing_can_be_differentiated(scene, require_slope):
 @pytest.fixture
 def curved(float64):
     one = bodies.arc(12, 1.0, 0.4)
-    pair = bodies.together([bodies.placed(one, (14.0, 20.0)), bodies.placed(one, (30.0, 24.0))])
+    pair = bodies.combined([bodies.placed(one, (14.0, 20.0)), bodies.placed(one, (30.0, 24.0))])
     rods, positions = build_rods(pair, float64), jnp.asarray(pair.positions)
     angles = filaments.edge_angles(positions, rods)
     return pair, positions, filaments.normals(angles, rods, len(positions))

@@ -9,7 +9,7 @@ import pytest
 from microcosmos.archive import creature
 from microcosmos.archive.initial import counters, fitting, genes_of, renumbered
 from microcosmos.build import build
-from microcosmos.build.creatures import frame
+from microcosmos.build.creatures import identity_template
 from microcosmos.build.experiments import build_plan, with_initial
 from microcosmos.experiments.offspring import next_offspring
 from microcosmos.naming import decode, encode
@@ -145,8 +145,8 @@ def test_vectors_need_the_same_body_and_terms(small):
     direct = {"encoding": "direct", "terms": 2}
     chosen = small(control=direct, search=GAUSSIAN)
     scene = chosen.scene
-    genome = {**frame(scene)["genome"], "values": encode(np.zeros(4 * (10 + 11)))}
-    identity = {**frame(scene), "genome": genome}
+    genome = {**identity_template(scene)["genome"], "values": encode(np.zeros(4 * (10 + 11)))}
+    identity = {**identity_template(scene), "genome": genome}
     file = creature.parse(creature.document(identity, None, None))
     assert fitting(chosen, file) == file["identity"]["genome"]
     for changes, field in (

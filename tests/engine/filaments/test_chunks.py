@@ -19,7 +19,7 @@ ITERATIONS = 10
 def crowd(request, monkeypatch):
     one = bodies.chain(9, 1.0) if request.param == "chain" else bodies.star(3, 3, 1.0)
     monkeypatch.setattr(chunks, "CHUNK", 3 * len(one.positions) + 1)
-    return bodies.together([bodies.placed(one, (20.0 * i, 0.0)) for i in range(7)])
+    return bodies.combined([bodies.placed(one, (20.0 * i, 0.0)) for i in range(7)])
 
 
 def all_at_once(body, rods):
@@ -54,14 +54,14 @@ def test_equal_bodies_share_the_colours_of_the_first_chunk(crowd):
 
 
 def test_few_bodies_are_one_chunk(monkeypatch):
-    two = bodies.together([bodies.placed(bodies.chain(9, 1.0), (0.0, y)) for y in (0.0, 9.0)])
+    two = bodies.combined([bodies.placed(bodies.chain(9, 1.0), (0.0, y)) for y in (0.0, 9.0)])
     monkeypatch.setattr(chunks, "CHUNK", 18)
     assert filaments.first_chunk(two.member, two.edges, two.joints) == (18, 16)
 
 
 def test_bodies_that_differ_in_nodes_or_in_edges_are_one_chunk(crowd):
     other = bodies.placed(bodies.chain(8, 1.0), (150.0, 0.0))
-    mixed = bodies.together([crowd, other])
+    mixed = bodies.combined([crowd, other])
     found = filaments.first_chunk(mixed.member, mixed.edges, mixed.joints)
     assert found == (len(mixed.positions), len(mixed.edges))
     edges = crowd.edges.copy()

@@ -163,7 +163,7 @@ def test_displacements_of_one_sweep_sum_to_zero_at_branches_too(float64, urchin)
 
 
 def test_displacements_of_each_creature_sum_to_zero(float64, urchin):
-    body = bodies.together([urchin, bodies.placed(bodies.star(5, 6, 1.0), (60.0, 0.0))])
+    body = bodies.combined([urchin, bodies.placed(bodies.star(5, 6, 1.0), (60.0, 0.0))])
     rods, rest, positions, angles = prepared(body, float64, 0.3)
     moved, _ = project(positions, angles, rods, rest, iterations=10)
     for number in range(body.count):

@@ -95,9 +95,9 @@ def test_a_phase_moves_the_wave_ahead(grow):
 
 def test_turns_of_joints_around_a_branch_are_independent():
     body = bodies.star(4, 3, 1.0)
-    found = bodies.unfolded(body)
+    found = bodies.layout(body)
     assert len(body.joints) == 12
-    assert len(found.joints) == len(body.edges) - 1 == 11
+    assert len(found.free) == len(body.edges) - 1 == 11
     assert np.linalg.matrix_rank(found.turned) == 11
 
 

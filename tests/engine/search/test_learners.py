@@ -43,7 +43,7 @@ def slopes(rows, finite=True):
 def test_children_of_cma_mega_are_theta_and_combinations_of_unit_slopes():
     emitter, theta = mega(), jnp.full(GENES, 0.1)
     children, state = emitted(emitter, emitter.init(key=KEYS[0]), archive(Vector(theta), True))
-    np.testing.assert_array_equal(emitter.asks(state, children).values, theta[None])
+    np.testing.assert_array_equal(emitter.to_differentiate(state, children).values, theta[None])
     rows = np.random.default_rng(0).normal(size=(3, GENES)) * [[10.0], [1.0], [0.1]]
     children, state = emitter.learn(state, children, slopes(rows))
     unit = rows / np.linalg.norm(rows, axis=1, keepdims=True)

@@ -243,7 +243,7 @@ def file(request):
         "device": device_kind(),
     }
     one = genomes.take(alone, 0)
-    return creature.document(identity(builds.frame(scene), one), measured, None)
+    return creature.document(identity(builds.identity_template(scene), one), measured, None)
 
 
 @pytest.mark.optimised

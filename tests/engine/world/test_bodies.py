@@ -97,7 +97,7 @@ def test_no_body_moves_itself_by_repulsion(name, gradient, float64):
 def driven_together(gradient, speed, dtype):
     """How far one rigid filament is ahead of another after being driven 20 cells through it."""
     one = bodies.chain(20, 1.0)
-    pair = bodies.together([bodies.placed(one, (0.0, -3.0)), bodies.placed(one, (0.4, 3.0))])
+    pair = bodies.combined([bodies.placed(one, (0.0, -3.0)), bodies.placed(one, (0.4, 3.0))])
     box, start = scenes.immersed(pair, 0.3, dtype)
     if gradient is not None:
         box = replace(box, steric=scenes.steric(4.0, dtype, gradient))

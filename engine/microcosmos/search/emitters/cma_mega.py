@@ -89,7 +89,7 @@ class CmaMega:
         )
         return children, state, counters
 
-    def asks(self, state: CmaMegaState, children: Children) -> Genotype:
+    def to_differentiate(self, state: CmaMegaState, children: Children) -> Genotype:
         return Vector(state.theta[None])
 
     def learn(

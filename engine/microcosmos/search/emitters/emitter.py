@@ -117,7 +117,7 @@ class Learner(Emitter, Protocol):
         """Number of updates by derivatives in a generation."""
         ...
 
-    def asks(self, state: State, children: Children) -> Genotype:
+    def to_differentiate(self, state: State, children: Children) -> Genotype:
         """Return the genotypes whose derivatives the next lesson needs, as a batch."""
         ...
 

@@ -58,7 +58,7 @@ class Lamarckian:
         operator = jnp.where(mutated, OPERATORS.index("lamarckian"), children.operator)
         return replace(children, operator=operator), Directions(weights), counters
 
-    def asks(self, state: Directions, children: Children) -> Genotype:
+    def to_differentiate(self, state: Directions, children: Children) -> Genotype:
         return children.genotypes
 
     def learn(

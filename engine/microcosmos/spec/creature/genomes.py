@@ -9,7 +9,7 @@ from ...naming import decode
 from .. import encodings, scene
 from ..base import Part
 from ..body import Body, shape
-from ..control import Control, Sight
+from ..control import Control, NetworkInputs
 from ..encodings import MAX_GENES
 from ..scene import Gait
 from .cppn_genes import Connections, Nodes, check_genes
@@ -123,7 +123,7 @@ class GaitGenome(Gait):
     encoding: Literal["gait"]
 
 
-def _check_ends(genome: Network | Weights, control: Sight) -> None:
+def _check_ends(genome: Network | Weights, control: NetworkInputs) -> None:
     for name in ("inputs", "outputs"):
         needed, found = getattr(control, name), getattr(genome, name)
         if found != needed:

@@ -164,7 +164,7 @@ def range_of(inner: Schema, field: Schema) -> str:
         counted = f"{length[0] or 0} to {length[1]:,}" if length[1] else f"at least {length[0]}"
         text = f"{counted} of them" + (f", each {text}" if text else "")
     if inner.get("type") == "string" and "maxLength" in inner:
-        return f"at most {inner['maxLength']:,} letters"
+        return f"at most {inner['maxLength']:,} characters"
     return text
 
 

@@ -11,18 +11,24 @@ MAX_NODES = 1024
 
 
 @dataclass(frozen=True)
-class Unfolded:
-    """The dependence of edges on joints, and of nodes on edges."""
+class Layout:
+    """The forward kinematics of a body: the positions of nodes by angles and lengths."""
 
+    angle: np.ndarray
+    """(edge,) direction of each edge of the unchanged body, in rad."""
+    length: np.ndarray
+    """(edge,) its length, in cells."""
     joints: np.ndarray
-    """(free,) joints that turn independently; the last one around a branch follows."""
+    """(joint, 2) pairs of edges."""
+    free: np.ndarray
+    """(turn,) joints that turn independently; the last one around a branch follows."""
     turned: np.ndarray
-    """(edge, free) factor by which the turn of a joint turns an edge."""
-    ways: np.ndarray
+    """(edge, turn) factor by which the turn of a joint turns an edge."""
+    paths: np.ndarray
     """(node, edge) sign with which the path from the first node has each edge, or 0."""
 
 
-def unfolded(body: Body) -> Unfolded:
+def layout(body: Body) -> Layout:
     """Return the layout of a body.
 
     Raises `ValueError` where it has loops, several parts, or too many nodes.
@@ -30,20 +36,22 @@ def unfolded(body: Body) -> Unfolded:
     nodes, edges = len(body.positions), len(body.edges)
     if nodes > MAX_NODES:
         raise ValueError(f"a body to lay out must have at most {MAX_NODES} nodes, got {nodes}")
-    parts, _, ways = _forest(nodes, body.edges)
+    parts, _, paths = _forest(nodes, body.edges)
     if edges != nodes - 1 or parts > 1:
         raise ValueError(
             f"a body to lay out must be one piece without loops, got {nodes} nodes and "
             f"{edges} edges"
         )
-    _, joints, turned = _forest(edges, body.joints)
-    return Unfolded(np.array(joints, int), turned[:, joints], ways)
-
-
-def drawn(body: Body) -> tuple[np.ndarray, np.ndarray]:
-    """Return the angle and the length of every edge in the body's present positions."""
-    v = body.positions[body.edges[:, 1]] - body.positions[body.edges[:, 0]]
-    return np.arctan2(v[:, 1], v[:, 0]), np.hypot(v[:, 0], v[:, 1])
+    _, free, turned = _forest(edges, body.joints)
+    x, y = (body.positions[body.edges[:, 1]] - body.positions[body.edges[:, 0]]).T
+    return Layout(
+        angle=np.arctan2(y, x),
+        length=np.hypot(x, y),
+        joints=body.joints,
+        free=np.array(free, int),
+        turned=turned[:, free],
+        paths=paths,
+    )
 
 
 def _forest(count: int, pairs: np.ndarray) -> tuple[int, list[int], np.ndarray]:
