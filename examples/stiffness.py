@@ -22,7 +22,7 @@ FORM = spec.Coupling(constraint_iterations=2, limits=False)
 def main(nodes: int = 16, steps: int = 60, iterations: int = 12) -> float:
     """The recovered stiffness; each guess is printed."""
     microcosmos.prepare()
-    body = bodies.arc(nodes, 1.0, 0.3)
+    body = bodies.arc(nodes, 1.0, 0.3, bend=TRUE)  # A soft body is swept.
     box = build.build_world(SCENE, FORM, body)
     places = body.positions - body.positions.mean(0) + 16
     start = world.at_rest(box, jnp.asarray(places, jnp.float32))

@@ -7,22 +7,28 @@ from jaxtyping import Array, Float, Int
 
 
 class Groups(eqx.Module):
-    """The body of each node, in ascending order."""
+    """The body of each node."""
 
     member: Int[Array, "node"]
     count: int = eqx.field(static=True)
+    ascending: bool = eqx.field(static=True, default=True)
+    """Whether nodes stand in the order of their bodies, which makes sums faster."""
 
     def total(self, values: Float[Array, "node *rest"]) -> Float[Array, "group *rest"]:
         """Return the sum over the nodes of each group."""
         if self.count == 1:
             return jnp.sum(values, 0, keepdims=True)
-        return jax.ops.segment_sum(values, self.member, self.count, indices_are_sorted=True)
+        return jax.ops.segment_sum(
+            values, self.member, self.count, indices_are_sorted=self.ascending
+        )
 
     def largest(self, values: Float[Array, "node"]) -> Float[Array, "group"]:
         """Return the largest value in each group."""
         if self.count == 1:
             return jnp.max(values, keepdims=True)
-        return jax.ops.segment_max(values, self.member, self.count, indices_are_sorted=True)
+        return jax.ops.segment_max(
+            values, self.member, self.count, indices_are_sorted=self.ascending
+        )
 
     def per_node(self, values: Float[Array, "group *rest"]) -> Float[Array, "node *rest"]:
         """Return, for every node, the value of its group."""

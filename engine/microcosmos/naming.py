@@ -36,6 +36,9 @@ MeasureName = Literal[
     "power",
     "efficiency",
     "nodes",
+    "speed",
+    "stride",
+    "impulse",
 ]
 """Names of the measures, in the order in which they are recorded."""
 

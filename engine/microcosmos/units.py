@@ -20,6 +20,9 @@ MAX_MACH = 0.17
 MAX_LIMITED = 1e-3
 """Largest share of node steps at a limit without a warning."""
 
+MAX_IMPULSE = 1e-4
+"""Largest net impulse of a body on the fluid, in lattice units: round-off gives less."""
+
 MAX_SPACING = 2.0
 """Node spacing in cells above which fluid leaks between the nodes."""
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from microcosmos import bodies, coupling, fields, filaments, groups, world
 from microcosmos.bodies import swimmers
-from microcosmos.build import build_rods
+from microcosmos.build import build_matching, build_rods
 
 LITERAL = world.Form(projection=coupling.unprojected, theta_feedback=0.0, forcing_iterations=1)
 """The paper's literal form: a body can push itself and ignore the flow."""
@@ -33,8 +33,11 @@ def immersed(
     **options: Any,
 ) -> tuple[world.World, world.State]:
     """A world of `size` cells with a body at rest in its middle, and its first state."""
+    form = options.setdefault("form", world.Form())
+    layout = build_matching(body, form.theta_feedback, options.get("nu_c"), dtype)
     box = world.World(
         viscosity=jnp.asarray(viscosity, dtype),
+        layout=layout,
         rods=build_rods(body, dtype),
         groups=groups.Groups(jnp.asarray(body.member), body.count),
         size=size,

@@ -9,7 +9,7 @@ import numpy as np
 
 from microcosmos import bodies, filaments
 from microcosmos.bodies import swimmers
-from microcosmos.build import build_rods
+from microcosmos.build import build_layout, build_rods
 
 from .rows import Result, at_most
 
@@ -51,6 +51,60 @@ def branched(noise: float, iterations: int, dtype: Any, seed: int = 0) -> tuple[
     body = swimmers.cilia().body
     moved = np.random.default_rng(seed).normal(size=body.positions.shape)
     return errors(body, projected(body, body.positions + noise * moved, iterations, dtype))
+
+
+LENGTH, BEND = 30.0, 0.15
+"""Length of a worm in cells, and the amplitude of its curvature in 1/cells."""
+SPACINGS = (0.5, 1.0, 1.5)
+
+
+def worm(spacing: float) -> swimmers.Swimmer:
+    """A worm with the same curvature over its length at any node spacing."""
+    body = bodies.chain(round(LENGTH / spacing) + 1, spacing)
+    share = body.arc[body.joint_nodes]
+
+    def gait(time):
+        wave = np.sin(2 * np.pi * (share[None] - np.asarray(time)[:, None]))
+        return BEND * spacing * wave, np.zeros((len(wave), len(body.edges)))
+
+    return swimmers.Swimmer("worm", body, gait)
+
+
+def curve(points: int, time: float, fine: int = 20_000) -> np.ndarray:
+    """Evenly spaced points of the curve with the worm's curvature, relative to their mean."""
+    s = (np.arange(fine) + 0.5) / fine
+    turn = BEND * LENGTH / (2 * np.pi)
+    angle = turn * (np.cos(2 * np.pi * time) - np.cos(2 * np.pi * (s - time)))
+    step = LENGTH / fine * np.stack([np.cos(angle), np.sin(angle)], 1)
+    whole = np.concatenate([np.zeros((1, 2)), np.cumsum(step, 0)])
+    found = whole[np.linspace(0, fine, points).astype(int)]
+    return found - found.mean(0)
+
+
+def shape_error(spacing: float, times: int = 8) -> float:
+    """Largest distance of the matched worm from its curve, turned to fit, over its length."""
+    swimmer, largest = worm(spacing), 0.0
+    layout = build_layout(swimmer.body, "float64")
+    angle, _ = swimmer.gait(np.arange(times) / times)
+    for number in range(times):
+        points = curve(len(swimmer.body.positions), number / times)
+        turned = swimmer.body.rest_angle + angle[number]
+        rest = filaments.Rest(*map(jnp.asarray, (turned, swimmer.body.rest_length)))
+        away = filaments.matched(jnp.asarray(points), rest, layout) - points
+        largest = max(largest, float(jnp.max(jnp.hypot(*away.T))) / LENGTH)
+    return largest
+
+
+def check_matching() -> Result:
+    """Shape matching at three node spacings, against the curve that the nodes stand for."""
+    with jax.enable_x64(True):
+        return Result(
+            [
+                at_most(f"worm, spacing {spacing:g}: distance / length", shape_error(spacing),
+                        0.01, "the curve of the same curvature")
+                for spacing in SPACINGS
+            ]
+        )  # fmt: skip
 
 
 def check(nodes: int = 32, iterations: int = 1000) -> Result:

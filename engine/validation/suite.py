@@ -71,18 +71,24 @@ SECTIONS = (
     Section(
         "Swimmers",
         "The worm's second cycle against a Fourier solution of Stokes flow in the same "
-        "box by the same shapes; the ray, whose motion is reciprocal; and the five known "
-        "swimmers' net impulse, the largest sum of forces accumulated over two cycles, "
-        "limits on.",
-        (swimmers.check_worm, swimmers.check_scallop, swimmers.check_impulse),
+        "box by the same shapes, and at other node spacings; the ray, whose motion is "
+        "reciprocal; and the five known swimmers' net impulse, the largest sum of forces "
+        "accumulated over two cycles, limits on.",
+        (
+            swimmers.check_worm,
+            swimmers.check_spacing,
+            swimmers.check_scallop,
+            swimmers.check_impulse,
+        ),
     ),
     Section(
         "Shapes",
         "Constraint projection without a fluid: a straight chain of 32 nodes that is to "
         "close into a circle, and the ciliate (a ring with six hairs) from nodes "
         "displaced at random by 0.3 cells, in float64. Root mean squares over joints and "
-        "edges.",
-        (shapes.check,),
+        "edges. Shape matching: a worm of 30 cells with a wave of curvature, at three node "
+        "spacings, against the curve itself.",
+        (shapes.check, shapes.check_matching),
     ),
     Section(
         "Repulsion",

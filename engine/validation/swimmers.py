@@ -14,7 +14,7 @@ import numpy as np
 from microcosmos import coupling, filaments, fluid, world
 from microcosmos.bodies import swimmers
 
-from . import scenes
+from . import scenes, shapes
 from .rows import Result, at_most, close
 
 PURCELL = "scallop theorem, Purcell 1977"
@@ -65,6 +65,25 @@ def check_worm(
         what = f"worm, ν {viscosity:g}, {period} steps a cycle: cells a cycle"
         rows.append(close(what, far, expected, share, "spectral Stokes flow, same shapes"))
     return Result(rows)
+
+
+def check_spacing(
+    spacings: tuple[float, ...] = (0.5, 1.5), viscosity: float = 0.5, period: int = 500
+) -> Result:
+    """The same worm at other node spacings, in cells a cycle."""
+
+    def cells(spacing: float) -> float:
+        cycle = second_cycle(shapes.worm(spacing), viscosity, period, "float32", size=SIZE)
+        return float(np.hypot(*scenes.displacement(cycle)))
+
+    expected = cells(1.0)
+    return Result(
+        [
+            close(f"worm, spacing {spacing:g}: cells a cycle", cells(spacing), expected, 0.02,
+                  "the same worm, spacing 1")
+            for spacing in spacings
+        ]
+    )  # fmt: skip
 
 
 def check_scallop(dtype: Any = "float32") -> Result:

@@ -101,7 +101,7 @@ def rewind(session: Session, run: Run) -> bool:
     kept = session.get(Generation, (run.id, last))
     for column in ("qd_score", "coverage", "best"):
         setattr(run, column, getattr(kept, column, None))
-    for column in ("generation", "evaluations", "diverged", "seconds"):
+    for column in ("generation", "evaluations", "infeasible", "seconds"):
         setattr(run, column, getattr(kept, column, 0))
     summaries = (Generation.run_id == run.id) & Generation.summary.is_not(None)
     newest = select(Generation.summary).where(summaries).order_by(Generation.generation.desc())

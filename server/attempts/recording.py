@@ -39,7 +39,7 @@ def rows_of(report: Report, seconds: float) -> Rows:
         "coverage": finite(report.coverage),
         "best": finite(report.best),
         "evaluations": int(report.evaluations),
-        "diverged": int(report.diverged),
+        "infeasible": int(report.infeasible),
         "seconds": seconds,
     }
     found = [*report.elites, *(row for row in report.rows if row.creature is not None)]

@@ -100,7 +100,7 @@ def route(scope: Scope) -> str:
 
 
 def _runs(session: Session) -> Iterator[Metric]:
-    sums = (func.sum(c) for c in (Run.evaluations, Run.diverged, Run.generation, Run.seconds))
+    sums = (func.sum(c) for c in (Run.evaluations, Run.infeasible, Run.generation, Run.seconds))
     each = session.execute(select(Run.status, func.count(), *sums).group_by(Run.status)).all()
     rows = {status: tuple(values) for status, *values in each}
     nothing = (0, 0, 0, 0, 0.0)
@@ -108,7 +108,7 @@ def _runs(session: Session) -> Iterator[Metric]:
     yield _gauge("runs", "Runs, by status.", ("status",), counts)
     for index, name, about in (
         (1, "evaluations", "Evaluations of all runs."),
-        (2, "diverged", "Evaluations that diverged."),
+        (2, "infeasible", "Infeasible evaluations."),
         (3, "generations", "Recorded generations."),
         (4, "computing_seconds", "Seconds of computing of all recorded generations."),
     ):

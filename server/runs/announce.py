@@ -18,7 +18,7 @@ from .schemas import RunRead
 log = logging.getLogger(__name__)
 
 VOLATILE_FIELDS = {
-    *("generation", "progress", "evaluations", "qd_score", "coverage", "best", "diverged"),
+    *("generation", "progress", "evaluations", "qd_score", "coverage", "best", "infeasible"),
     *("sparkline", "evaluations_per_second", "eta_seconds", "summary", "waiting_reason"),
 }
 """Fields that may differ at each reading; changes of these alone cause no event."""

@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 
 from ..tables import Generation
 
-COUNT_PREFIX = "diverged: "
+COUNT_PREFIX = "infeasible: "
 """Prefix of counts per generation, which are added up between two points."""
 
 

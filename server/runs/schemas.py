@@ -114,7 +114,7 @@ class RunRead(RunBrief):
     coverage: float | None
     best: float | None
     summary: dict[str, Any] | None
-    diverged: int
+    infeasible: int
     sparkline: list[float]
     """QD scores, evenly spaced over the generations so far."""
     error: str | None
@@ -144,7 +144,7 @@ class Curves(Wire):
     best: list[float | None]
     mean: list[float | None]
     evaluations: list[int]
-    diverged: list[int]
+    infeasible: list[int]
     seconds: list[float]
     summary: dict[str, list[float | None]]
     """Other recorded numbers by name: the newest since the previous point, else None."""

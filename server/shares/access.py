@@ -71,7 +71,7 @@ class LiveShare:
         run = session.get_one(Run, run_id)
         last = session.get(Generation, (run_id, share.generation))
         copied = ("id", "experiment", "spec", "version", "created_at", "device", "generations")
-        figures = ("qd_score", "coverage", "best", "evaluations", "diverged", "seconds")
+        figures = ("qd_score", "coverage", "best", "evaluations", "infeasible", "seconds")
         return Run(
             demonstration=False,
             name=share.title,

@@ -20,7 +20,7 @@ class Generation(Base):
     best: Mapped[float | None]
     mean: Mapped[float | None]
     evaluations: Mapped[int] = mapped_column(BigInteger)
-    diverged: Mapped[int] = mapped_column(BigInteger)
+    infeasible: Mapped[int] = mapped_column(BigInteger)
     seconds: Mapped[float]
     summary: Mapped[dict[str, Any] | None]
     """The summary of the run as of this generation; None if it did not change."""

@@ -65,7 +65,7 @@ class Run(Owned, Base):
     checkpoint_generation: Mapped[int] = mapped_column(default=0)
     """The generation of the last checkpoint; 0 without a checkpoint."""
     evaluations: Mapped[int] = mapped_column(BigInteger, default=0)
-    diverged: Mapped[int] = mapped_column(BigInteger, default=0)
+    infeasible: Mapped[int] = mapped_column(BigInteger, default=0)
     seconds: Mapped[float] = mapped_column(default=0.0)
     """Wall time of the computing that led to the last recorded generation."""
     qd_score: Mapped[float | None]

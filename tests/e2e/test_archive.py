@@ -96,8 +96,8 @@ def test_colours_and_axes_offer_every_recorded_measure(page, searched):
     page.get_by_label("Palette").select_option("cividis")
     page.get_by_label("Horizontal axis").select_option("path_length")
     page.wait_for_url(re.compile("x=path_length"))
-    page.get_by_label("Bending effort, from").fill("8")
-    page.wait_for_url(re.compile(r"only\.bending_effort=8-"))
+    page.get_by_label("Symmetry, from").fill("8")
+    page.wait_for_url(re.compile(r"only\.symmetry=8-"))
     assert re.search("colour=age.*palette=cividis", page.url)
 
 

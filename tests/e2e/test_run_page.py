@@ -22,7 +22,7 @@ def test_a_run_is_shown_from_the_queue_to_its_end_and_compared(page, idle):
     watch_it_begin(page, run)
     follow_the_log(page, run)
     see_species_and_the_best_network(page, run)
-    see_why_evaluations_diverged(page)
+    see_why_evaluations_infeasible(page)
     choose_how_curves_are_drawn(page)
     compare_with_another_run(page, other)
     see_what_differs_in_the_spec(page, other)
@@ -84,13 +84,13 @@ def see_species_and_the_best_network(page: Page, run: WrittenRun) -> None:
     expect(best.get_by_role("img", name=re.compile("^Network: 5 nodes"))).to_be_visible()
 
 
-def see_why_evaluations_diverged(page: Page) -> None:
-    table = page.get_by_role("table", name=re.compile("^Diverged evaluations"))
+def see_why_evaluations_infeasible(page: Page) -> None:
+    table = page.get_by_role("table", name=re.compile("^Infeasible evaluations"))
     expect(table.get_by_role("row", name=re.compile("Non-finite"))).to_contain_text("24")
     row = table.get_by_role("row", name=re.compile("Supersonic"))
     expect(row).to_contain_text("12")
     expect(row).to_contain_text("exceeded the speed of sound")
-    expect(page.get_by_role("img", name=re.compile("^Diverged so far"))).to_be_visible()
+    expect(page.get_by_role("img", name=re.compile("^Infeasible so far"))).to_be_visible()
 
 
 def choose_how_curves_are_drawn(page: Page) -> None:

@@ -17,7 +17,7 @@ def compute(services: Any, run: str, qd_scores: list[float]) -> None:
         row = session.get_one(Run, UUID(run))
         for generation, value in enumerate(qd_scores, 1):
             scores = {"qd_score": value, "coverage": value / 100, "best": value / 10}
-            counts = {"generation": generation, "evaluations": 8 * generation, "diverged": 0}
+            counts = {"generation": generation, "evaluations": 8 * generation, "infeasible": 0}
             others = {"run_id": row.id, "seconds": 1.0 * generation, "mean": None}
             session.add(Generation(**scores, **counts, **others, summary=None))
             for name, figure in (scores | counts).items():

@@ -22,8 +22,8 @@ def report(generation: int, seed: int) -> Any:
         {generation: float(generation)},
         descriptors=(0.01, 0.01),
         summary={
-            "diverged: non-finite": 2,
-            "diverged: supersonic": 1,
+            "infeasible: non-finite": 2,
+            "infeasible: supersonic": 1,
             "population: inserted": generation % 3,
             "population: improved": 1,
             "species": "0:10 1:6" if generation < GENERATIONS // 2 else "1:16",
@@ -34,7 +34,7 @@ def report(generation: int, seed: int) -> Any:
     elite.creature, elite.identity = creature.name(identity), creature.canonical(identity)
     elite.measured = elite.provenance = None
     found.qd_score, found.coverage = float(generation**2), generation / 400
-    found.mean, found.diverged = 1.0, 3 * generation
+    found.mean, found.infeasible = 1.0, 3 * generation
     return found
 
 

@@ -148,7 +148,11 @@ def best_of():
 @pytest.fixture(scope="session")
 def newcomer(best_of):
     parts = {"world": {"width": 32, "height": 32}, "body": {"nodes": 8}}
-    return creature.parse(best_of(2, **parts, control={"period": 20}, task={"steps": 40}))
+    return creature.parse(
+        best_of(
+            2, **parts, control={"period": 20}, task={"steps": 40, "fitness": "displacement"}
+        )
+    )
 
 
 @pytest.fixture(scope="session")

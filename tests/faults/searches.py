@@ -61,7 +61,7 @@ def carry_out(product: Installation, document: dict, title: str) -> dict:
     seconds = time.monotonic() - began
     rich.print(
         f"{title}: QD score {found['qd_score']:.1f}, coverage {found['coverage']:.3f}, best "
-        f"{found['best']:.2f}, diverged {found['diverged']}, {seconds / 60:.1f} min, "
+        f"{found['best']:.2f}, infeasible {found['infeasible']}, {seconds / 60:.1f} min, "
         f"{found['evaluations'] / seconds:.1f} evaluations/s"
     )
     return found

@@ -127,13 +127,12 @@ def api(address) -> Iterator[httpx.Client]:
 
 @pytest.fixture
 def spec() -> dict[str, Any]:
-    return EXPERIMENTS["quality-diversity"].presets[0].spec.model_dump(mode="json")
+    return reports.DEMO.model_dump(mode="json")
 
 
 @pytest.fixture
 def run_id(services, spec) -> UUID:
-    demo = EXPERIMENTS["quality-diversity"].presets[0].spec
-    return submit(services, demo)[0].id
+    return submit(services, reports.DEMO)[0].id
 
 
 @pytest.fixture

@@ -9,7 +9,16 @@ import numpy as np
 
 from microcosmos.archive import creature, file
 from microcosmos.naming import encode
-from microcosmos.spec import EXPERIMENTS
+from microcosmos.spec import EXPERIMENTS, QualityDiversity
+
+EFFORTS = ("bending_effort", "stretching_effort")
+_DEMO = EXPERIMENTS["quality-diversity"].presets[0].spec.model_dump()
+DEMO = QualityDiversity.model_validate(
+    _DEMO
+    | {"archive": {"descriptors": [{"name": name, "bins": 16} for name in EFFORTS]}}
+    | {"task": _DEMO["task"] | {"fitness": "displacement"}}
+)
+"""The demonstration with another fitness and other axes, in which these reports are made."""
 
 
 def archive_file(spec: dict[str, Any]) -> bytes:
@@ -22,7 +31,7 @@ def archive_file(spec: dict[str, Any]) -> bytes:
         "creature": np.zeros((1, 32), np.uint8),
         "cell": np.array([17]),
     }
-    measures = json.dumps(["bending_effort", "stretching_effort"])
+    measures = json.dumps(EFFORTS)
     attributes = {"format": file.FORMAT, "spec": json.dumps(spec), "measures": measures}
     return file.dump({"archive": archive}, attributes)
 
@@ -50,7 +59,7 @@ def replay(positions: np.ndarray, planes: int = 1, **more: Any) -> bytes:
 
 def identity(number: int = 1) -> dict[str, Any]:
     """The identity of a swimmer whose one weight is a number."""
-    demo = EXPERIMENTS["quality-diversity"].presets[0].spec.model_dump(mode="json")
+    demo = DEMO.model_dump(mode="json")
     genome = {
         "encoding": "cppn",
         "inputs": ["position", "sine", "cosine"],
@@ -89,7 +98,7 @@ def table(generation: int, *rows: dict[str, Any], summary: Any = None) -> Any:
     return SimpleNamespace(
         generation=generation,
         evaluations=generation,
-        diverged=0,
+        infeasible=0,
         elites=(),
         rows=tuple(
             SimpleNamespace(
@@ -144,7 +153,7 @@ def report(
         best=float(generation),
         mean=0.5 * generation,
         evaluations=16 * generation,
-        diverged=generation,
+        infeasible=generation,
         elites=tuple(elite(*item) for item in (elites or {}).items()),
         rows=(),
         summary=summary,

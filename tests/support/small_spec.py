@@ -7,5 +7,5 @@ SMALL_SCENE: dict[str, Any] = {
     "world": {"width": 32, "height": 32},
     "body": {"nodes": 12},
     "control": {"period": 30},
-    "task": {"steps": 60},
+    "task": {"steps": 60, "fitness": "displacement"},
 }

@@ -3,10 +3,10 @@
 from contextlib import ExitStack
 
 import pytest
+import reports
 from databases import own_redis
 from installation import Installation
 
-from microcosmos.spec import EXPERIMENTS
 from server.runs.submission import submit
 from server.settings import Settings
 from server.tables import Run
@@ -37,7 +37,7 @@ def services(installation):
 
 @pytest.fixture
 def run_id(services):
-    return submit(services, EXPERIMENTS["quality-diversity"].presets[0].spec)[0].id
+    return submit(services, reports.DEMO)[0].id
 
 
 @pytest.fixture

@@ -92,7 +92,7 @@ def curves(run: Run, fitness: np.ndarray, entered: np.ndarray) -> list[dict]:
             "best": float(values.max(initial=0)),
             "mean": float(values.mean()) if len(values) else 0.0,
             "evaluations": 64 * (i + 1),
-            "diverged": 0,
+            "infeasible": 0,
             "seconds": 18.0 * (i + 1),
             "summary": None,
         }

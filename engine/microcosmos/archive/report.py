@@ -45,7 +45,7 @@ class Report:
 
     generation: int
     evaluations: int
-    diverged: int
+    infeasible: int
     qd_score: float | None = None
     coverage: float | None = None
     best: float | None = None

@@ -45,11 +45,12 @@ def body_of(scene: spec.Scene, driven: Drive) -> tuple[bodies.Body, np.ndarray, 
 def refine(
     scene: spec.Scene, rest: Rest, body: bodies.Body | None = None
 ) -> tuple[search.Task, Rest]:
-    """Return the same body and gait on cells half as wide in steps half as long.
+    """Return the same body and gait on half the grid spacing with a quarter of the step.
 
-    Lengths in cells, times in steps and the viscosity in cells² a step double, speeds stay.
-    The chain has twice the joints: twice the sweeps relax a bend in the same time. Repulsion
-    keeps its width in cells: it then reaches half as far.
+    Lengths in cells double, times in steps quadruple, speeds halve and the viscosity in cells²
+    a step stays: errors of resolution, of the step and of compressibility all fall fourfold.
+    The chain has twice the joints, and sweeps relax a bend in the same time. Repulsion keeps
+    its width in cells: it then reaches half as far.
     """
     body = spec.shape(scene.body) if body is None else body
     half = bodies.subdivided(body)
@@ -58,25 +59,22 @@ def refine(
         update={
             "width": 2 * place.width,
             "height": 2 * place.height,
-            "viscosity": 2 * place.viscosity,
             "energy": None,
         }
     )
     fine = form.model_copy(
         update={
-            "constraint_iterations": 2 * form.constraint_iterations,
-            "max_displacement": form.displacement_limit(place.viscosity),
-            "max_force": form.force_limit(place.viscosity),
-            "nu_c": None if form.nu_c is None else 2 * form.nu_c,
+            "max_displacement": _scaled(form.displacement_limit(place.viscosity), 0.5),
+            "max_force": _scaled(form.force_limit(place.viscosity), 0.5),
         }
     )
     box = build.build_world(wide, fine, half.body)
     middle = np.array([wide.width, wide.height]) / 2
     positions = half.body.positions - half.body.positions[half.nodes].mean(0) + middle
     start = world.at_rest(box, jnp.asarray(positions, jnp.float32))
-    angle = np.tile(half.body.rest_angle, (2 * len(rest.angle), 1))
-    angle[:, half.joints] = _between(np.asarray(rest.angle))
-    length = _between(np.asarray(rest.length))[:, half.edges]
+    angle = np.tile(half.body.rest_angle, (4 * len(rest.angle), 1))
+    angle[:, half.joints] = _between(_between(np.asarray(rest.angle)))
+    length = _between(_between(np.asarray(rest.length)))[:, half.edges]
     task = search.Task(box, start, None, length=2 * extent(body))
     return task, Rest(jnp.asarray(angle, jnp.float32), jnp.asarray(length, jnp.float32))
 
@@ -89,6 +87,35 @@ def other_delta(scene: spec.Scene) -> str:
 def with_other_delta(scene: spec.Scene, body: bodies.Body | None = None) -> search.Task:
     """Return the scene with another delta."""
     return _with(scene, body, kernel=other_delta(scene))
+
+
+def with_limits(
+    scene: spec.Scene, body: bodies.Body | None, factor: float | None
+) -> search.Task:
+    """Return the scene with limits times `factor`, or without limits."""
+    form, viscosity = scene.coupling, scene.world.viscosity
+    if factor is None:
+        return _with(scene, body, limits=False)
+    return _with(
+        scene,
+        body,
+        max_displacement=_scaled(form.displacement_limit(viscosity), factor),
+        max_force=_scaled(form.force_limit(viscosity), factor),
+    )
+
+
+def turned(scene: spec.Scene, body: bodies.Body | None, angle: float) -> search.Task:
+    """Return the scene with the body turned about its middle at the start, by rad."""
+    task = _with(scene, body)
+    nothing = jnp.zeros((), task.start.positions.dtype)
+    change = search.reevaluation.Disturbance(
+        phase=nothing,
+        turn=nothing + angle,
+        shift=jnp.zeros(2, nothing.dtype),
+        viscosity=nothing + 1,
+        energy=jnp.zeros(2, jnp.int32),
+    )
+    return replace(task, start=search.reevaluation.moved(task.start, change))
 
 
 def at_full_strength(scene: spec.Scene, body: bodies.Body | None = None) -> search.Task:
@@ -111,6 +138,10 @@ def _with(scene: spec.Scene, body: bodies.Body | None, **form: Any) -> search.Ta
     coupling = scene.coupling.model_copy(update=form)
     changed = scene.model_copy(update={"coupling": coupling})
     return replace(build.build_task(changed, body=body), encoding=None)
+
+
+def _scaled(limit: float | None, factor: float) -> float | None:
+    return None if limit is None else factor * limit
 
 
 def _between(values: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Layout of bodies without loops, from their first node by angles and lengths."""
+"""Layout of bodies: directions of edges and positions of nodes by rest angles and lengths."""
 
 from dataclasses import dataclass
 
@@ -12,72 +12,57 @@ MAX_NODES = 1024
 
 @dataclass(frozen=True)
 class Layout:
-    """The forward kinematics of a body: the positions of nodes by angles and lengths."""
+    """The forward kinematics of a body, by least squares where its loops and branches disagree.
+
+    A branch of d edges has d joints, of which d − 1 turn independently, and a loop closes; so
+    rest angles and lengths may contradict each other there.
+    """
 
     angle: np.ndarray
     """(edge,) direction of each edge of the unchanged body, in rad."""
-    length: np.ndarray
-    """(edge,) its length, in cells."""
+    rest_angle: np.ndarray
+    """(joint,) rest angles of the unchanged body, in rad."""
     joints: np.ndarray
     """(joint, 2) pairs of edges."""
-    free: np.ndarray
-    """(turn,) joints that turn independently; the last one around a branch follows."""
     turned: np.ndarray
-    """(edge, turn) factor by which the turn of a joint turns an edge."""
-    paths: np.ndarray
-    """(node, edge) sign with which the path from the first node has each edge, or 0."""
+    """(edge, joint) factor by which the turn of a joint turns an edge."""
+    placed: np.ndarray
+    """(node, edge) factor by which an edge moves a node from the middle of its piece."""
+    piece: np.ndarray
+    """(node,) number of the connected piece, from 0."""
 
 
 def layout(body: Body) -> Layout:
-    """Return the layout of a body.
-
-    Raises `ValueError` where it has loops, several parts, or too many nodes.
-    """
+    """Return the layout of a body; raise `ValueError` for more than `MAX_NODES` nodes."""
     nodes, edges = len(body.positions), len(body.edges)
     if nodes > MAX_NODES:
         raise ValueError(f"a body to lay out must have at most {MAX_NODES} nodes, got {nodes}")
-    parts, _, paths = _forest(nodes, body.edges)
-    if edges != nodes - 1 or parts > 1:
-        raise ValueError(
-            f"a body to lay out must be one piece without loops, got {nodes} nodes and "
-            f"{edges} edges"
-        )
-    _, free, turned = _forest(edges, body.joints)
     x, y = (body.positions[body.edges[:, 1]] - body.positions[body.edges[:, 0]]).T
     return Layout(
         angle=np.arctan2(y, x),
-        length=np.hypot(x, y),
+        rest_angle=body.rest_angle,
         joints=body.joints,
-        free=np.array(free, int),
-        turned=turned[:, free],
-        paths=paths,
+        turned=np.linalg.pinv(_differences(body.joints, edges)),
+        placed=np.linalg.pinv(_differences(body.edges, nodes)),
+        piece=_pieces(body.edges, nodes),
     )
 
 
-def _forest(count: int, pairs: np.ndarray) -> tuple[int, list[int], np.ndarray]:
-    """Return a spanning forest of `count` items: its trees, its pairs, and the paths.
+def _differences(pairs: np.ndarray, count: int) -> np.ndarray:
+    """Return the matrix (pair, item) of differences, second item minus first."""
+    matrix = np.zeros((len(pairs), count))
+    rows = np.arange(len(pairs))
+    matrix[rows, pairs[:, 1]] += 1
+    matrix[rows, pairs[:, 0]] -= 1
+    return matrix
 
-    A path is a row of the signs with which each pair lies on the way from the tree's root.
-    """
-    neighbours: list[list[tuple[int, int, int]]] = [[] for _ in range(count)]
-    for number, (first, second) in enumerate(pairs.tolist()):
-        neighbours[first].append((number, second, 1))
-        neighbours[second].append((number, first, -1))
-    paths = np.zeros((count, len(pairs)), np.int8)
-    trees, visited, used = 0, set(), []
-    for root in range(count):
-        if root in visited:
-            continue
-        trees += 1
-        visited.add(root)
-        waiting = [root]
-        while waiting:
-            item = waiting.pop()
-            for number, other, sign in neighbours[item]:
-                if other not in visited:
-                    visited.add(other)
-                    used.append(number)
-                    waiting.append(other)
-                    paths[other] = paths[item]
-                    paths[other, number] = sign
-    return trees, sorted(used), paths
+
+def _pieces(edges: np.ndarray, nodes: int) -> np.ndarray:
+    """Number the connected pieces of a graph, in the order of their first nodes."""
+    lowest = np.arange(nodes)
+    while True:
+        found = lowest.copy()
+        np.minimum.at(found, edges, lowest[edges].min(1, keepdims=True))
+        if np.array_equal(found, lowest):
+            return np.unique(lowest, return_inverse=True)[1]
+        lowest = found

@@ -10,7 +10,9 @@ from .peers import scoring_function, to_repertoire
 from .plugins import build_measures, measures_of
 from .scene import (
     build_energy,
+    build_layout,
     build_limits,
+    build_matching,
     build_rods,
     build_steric,
     build_stroke,

@@ -122,6 +122,7 @@ def build_plan(chosen: spec.Evolution) -> Plan:
         device=device.device_kind(),
         limits=build_stop_limits(chosen.search.stop),
         reevaluation=build_reevaluation(chosen),
+        feasible=chosen.search.feasible,
         force_free=chosen.coupling.force_free,
         measures=measures_of(scene),
         plugins=plugin_versions(scene),

@@ -5,8 +5,20 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 
-from .. import bodies, coupling, fields, filaments, fluid, groups, search, spec, world
+from .. import (
+    bodies,
+    coupling,
+    fields,
+    filaments,
+    fluid,
+    genomes,
+    groups,
+    search,
+    spec,
+    world,
+)
 from ..bodies import extent
+from ..bodies.layout import MAX_NODES
 from .encodings import build_encoding
 from .plugins import build_measures, strokes_of
 
@@ -50,12 +62,37 @@ def build_task(
         extent(body),
         placements=build_placements(scene.world),
         plugin_measures=build_measures(scene),
+        actuators=build_actuators(scene.control, body, dtype),
+        period=build_period(scene.control),
     )
 
 
+def build_actuators(
+    control: spec.Controller | spec.Gait | spec.Fold,
+    body: bodies.Body,
+    dtype: Any = jnp.float32,
+) -> genomes.Actuators | None:
+    """Build the bounds on a controller's commands; None if there are none."""
+    if isinstance(control, spec.Gait | spec.Fold):
+        return None
+    bounds = genomes.Actuators(
+        build_layout(body, dtype), control.max_speed, control.lag, control.max_bend
+    )
+    if bounds.max_speed is None and bounds.max_bend is None and not bounds.lag:
+        return None
+    return bounds
+
+
+def build_period(control: spec.Controller | spec.Gait | spec.Fold) -> float | None:
+    """Return the steps of a stroke; None for a controller without a periodic timer."""
+    if isinstance(control, spec.Fold) or getattr(control, "timer", "") == "linear":
+        return None
+    return float(control.period)
+
+
 def build_goal(task: spec.Task) -> search.Goal:
-    if task.plugin is not None:
-        return search.Goal(plugin=task.fitness)
+    if task.plugin is not None or task.fitness == "speed":
+        return search.Goal(measure=task.fitness)
     displacement, energy = GOALS[task.fitness]
     return search.Goal(displacement, energy * task.energy_weight)
 
@@ -91,9 +128,37 @@ def build_world(
             fluid=box.fluid,
         ),
         limits=build_limits(form, box.viscosity, dtype),
+        layout=build_matching(body, form.theta_feedback, form.nu_c, dtype),
         nu_c=_scalar(form.nu_c, dtype),
         steric=build_steric(box.steric, dtype),
         energy=build_energy(box.energy, size, dtype),
+    )
+
+
+def build_matching(
+    body: bodies.Body, theta_feedback: float, nu_c: Any, dtype: Any = jnp.float32
+) -> filaments.Layout | None:
+    """Build what meets constraints in closed form; None where they are swept.
+
+    The rest shape is the shape at full stiffness and strength, where edge angles follow the
+    geometry; the layout has at most `MAX_NODES` nodes.
+    """
+    stiff = all(np.all(one == 1) for one in (body.stretch, body.shear, body.bend))
+    small = len(body.positions) <= MAX_NODES
+    matched = stiff and small and nu_c is None and theta_feedback == 1
+    return build_layout(body, dtype) if matched else None
+
+
+def build_layout(body: bodies.Body, dtype: Any = jnp.float32) -> filaments.Layout:
+    """Build the layout of bodies as device arrays."""
+    found = bodies.layout(body)
+    piece = jnp.asarray(found.piece, jnp.int32)
+    return filaments.Layout(
+        angle=jnp.asarray(found.angle, dtype),
+        rest_angle=jnp.asarray(found.rest_angle, dtype),
+        turned=jnp.asarray(found.turned, dtype),
+        placed=jnp.asarray(found.placed, dtype),
+        pieces=groups.Groups(piece, int(found.piece.max()) + 1, ascending=False),
     )
 
 

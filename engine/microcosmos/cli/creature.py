@@ -51,7 +51,7 @@ def replay(
 
 @app.command()
 def audit(file: CreaturePath, out: Report = None, module: Modules = None) -> None:
-    """Audit the physics of a creature: does it still swim on a finer lattice?"""
+    """Audit the physics of a creature: is its swimming the same on a finer grid?"""
     prepare_engine(module)
     from ..audit.physics import audit as examine
 
@@ -59,7 +59,7 @@ def audit(file: CreaturePath, out: Report = None, module: Modules = None) -> Non
         found = examine(parse(file.read_bytes()))
         _write(out, found)
     _print_audit(found)
-    if not found["verdict"]["survives"]:
+    if not found["verdict"]["trusted"]:
         raise typer.Exit(1)
 
 
@@ -137,8 +137,7 @@ def _print_audit(found: Mapping[str, Any]) -> None:
         value = "none" if row["value"] is None else f"{row['value']:.4g} {row['unit']}"
         bar = f"  ({row['bar']})" if row["bar"] else ""
         print(f"{mark}  {row['quantity']}: {value.strip()}{bar}")
-    survives = found["verdict"]["survives"]
-    print("Its swimming survives." if survives else "Its swimming does not survive:")
+    print("Trusted." if found["verdict"]["trusted"] else "Not trusted:")
     for reason in found["verdict"]["reasons"]:
         print(f"  {reason}")
 

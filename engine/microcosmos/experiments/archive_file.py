@@ -23,7 +23,7 @@ from .state import (
     CURVES,
     ENDS,
     OUTCOMES,
-    Diverged,
+    Infeasible,
     InitialCreatures,
     Lineage,
     Plan,
@@ -46,7 +46,7 @@ def save(plan: Plan, state: State) -> bytes:
     loop = {
         "generation": np.int64(state.generation),
         "evaluations": np.int64(state.evaluations),
-        "diverged": np.int64(state.diverged),
+        "infeasible": np.int64(state.infeasible),
         "ended": np.int64(state.ended),
         "counters": vars(state.counters),
         "nearest_ancestors": state.nearest_ancestors,
@@ -70,7 +70,7 @@ def save(plan: Plan, state: State) -> bytes:
         "curves": {name: state.curves[:, i] for i, name in enumerate(CURVES)},
         "emitters": {name: state.outcomes[:, :, i] for i, name in enumerate(OUTCOMES)},
         "lineage": vars(state.lineage),
-        "diverged": vars(state.failures) | {"genotypes": vars(state.failures.genotypes)},
+        "infeasible": vars(state.failures) | {"genotypes": vars(state.failures.genotypes)},
         "loop": loop,
     }
     if isinstance(state.cells, search.Voronoi):
@@ -86,7 +86,7 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
     tree, attributes = file.load(data)
     devices = devices_of(plan.spec, plan.device, attributes, other_device)
     state, archive, loop = start(plan), tree["archive"], tree["loop"]
-    cells, initial, diverged = archive["cell"], tree.get("initial"), tree["diverged"]
+    cells, initial, infeasible = archive["cell"], tree.get("initial"), tree["infeasible"]
     archive.update(occupied=np.ones(len(cells), bool), genotypes=archive["genomes"])
     state.creatures[cells] = archive["creature"]
     state.operators[cells] = archive["operator"]
@@ -97,7 +97,7 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
         state,
         generation=int(loop["generation"]),
         evaluations=int(loop["evaluations"]),
-        diverged=int(loop["diverged"]),
+        infeasible=int(loop["infeasible"]),
         elites=_placed(state.elites, cells, archive),
         counters=neat.Counters(**{n: jnp.asarray(c) for n, c in loop["counters"].items()}),
         emitters=filled(state.emitters, loop["emitters"]),
@@ -108,7 +108,9 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
         ended=int(loop["ended"]),
         device_seconds=float(loop.get("device_seconds", 0.0)),
         lineage=Lineage(**tree["lineage"]),
-        failures=Diverged(**diverged | {"genotypes": _genotypes(state, diverged["genotypes"])}),
+        failures=Infeasible(
+            **infeasible | {"genotypes": _genotypes(state, infeasible["genotypes"])}
+        ),
         devices=devices,
         unrepeated=before or None,
         initial=initial

@@ -21,7 +21,7 @@ from ..search.emitters.population import Population
 from ..search.emitters.tensorneat import TensorNeatState
 from . import archive_file, lineage, reevaluation
 from .offspring import Offspring, Programs, next_offspring
-from .state import CURVES, ENDS, MAX_DIVERGED, Diverged, Plan, State, start
+from .state import CURVES, ENDS, MAX_INFEASIBLE, Infeasible, Plan, State, start
 
 
 @dataclass(frozen=True)
@@ -52,6 +52,8 @@ class Evolution:
         evaluation = search.evaluate_blocks(
             program, genotypes, block=self.plan.block, stop=stop
         )
+        if self.plan.feasible:
+            evaluation = search.judged(evaluation)
         seconds = (time.monotonic() - offspring.began) * jax.local_device_count()
         after, elites, clipped = self._inserted(state, offspring, evaluation)
         after = replace(after, device_seconds=state.device_seconds + seconds)
@@ -91,7 +93,7 @@ class Evolution:
             after,
             generation=state.generation + 1,
             evaluations=state.evaluations + simulated,
-            diverged=state.diverged + int(np.count_nonzero(evaluation.status)),
+            infeasible=state.infeasible + int(np.count_nonzero(evaluation.status)),
             elites=elites,
             counters=offspring.counters,
             emitters=emitters,
@@ -126,16 +128,16 @@ class Evolution:
         return np.add.reduceat(counts, np.cumsum([0, *slots[:-1]]))
 
 
-def _failures(state: State, genotypes: Genotype, status: np.ndarray) -> Diverged:
+def _failures(state: State, genotypes: Genotype, status: np.ndarray) -> Infeasible:
     failed = np.flatnonzero(status)
-    new = Diverged(
+    new = Infeasible(
         generation=np.full(len(failed), state.generation + 1, np.int32),
         slot=failed.astype(np.int32),
         status=status[failed].astype(np.int32),
         genotypes=jax.tree.map(lambda x: np.asarray(x)[failed], genotypes),
     )
     return jax.tree.map(
-        lambda a, b: np.concatenate([a, b])[-MAX_DIVERGED:], state.failures, new
+        lambda a, b: np.concatenate([a, b])[-MAX_INFEASIBLE:], state.failures, new
     )
 
 
@@ -157,7 +159,7 @@ def _figures(state: State) -> tuple[float, ...]:
     fitness = np.asarray(state.elites.fitness, np.float64)[occupied]
     best, mean = (fitness.max(), fitness.mean()) if len(fitness) else (0.0, 0.0)
     coverage = len(fitness) / len(occupied)
-    return fitness.sum(), coverage, best, mean, state.evaluations, state.diverged
+    return fitness.sum(), coverage, best, mean, state.evaluations, state.infeasible
 
 
 def _report(state: State, elites: tuple[Elite, ...], summary: dict[str, Any]) -> Report:
@@ -169,7 +171,7 @@ def _report(state: State, elites: tuple[Elite, ...], summary: dict[str, Any]) ->
         best=values["best"],
         mean=values["mean"],
         evaluations=state.evaluations,
-        diverged=state.diverged,
+        infeasible=state.infeasible,
         elites=elites,
         summary=summary,
     )
@@ -187,7 +189,7 @@ def _summary(plan: Plan, state: State, seconds: float, status: np.ndarray) -> di
             found[name] = values[name]
     counts = np.bincount(status, minlength=len(search.STATUSES)).tolist()
     named = list(zip(search.STATUSES, counts, strict=True))[1:]
-    found |= {f"diverged: {reason}": count for reason, count in named if count}
+    found |= {f"infeasible: {reason}": count for reason, count in named if count}
     found |= _species(state)
     if state.ended:
         found["ended"] = f"{ENDS[state.ended]} after generation {state.generation}"

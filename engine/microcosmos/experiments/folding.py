@@ -127,7 +127,7 @@ class Folding:
         return Report(
             generation=state.generation,
             evaluations=state.losses.size,
-            diverged=int(np.count_nonzero(~np.isfinite(state.losses))),
+            infeasible=int(np.count_nonzero(~np.isfinite(state.losses))),
             rows=rows,
             summary={"loss": float(np.mean(state.losses[-1]))}
             | {f"loss of {name}": value for name, value in now.items()},

@@ -84,7 +84,7 @@ def report(state: Table, rows: tuple[Row, ...]) -> Report:
     return Report(
         generation=state.generation,
         evaluations=len(state.rows),
-        diverged=failed,
+        infeasible=failed,
         rows=rows,
         summary={"points": len(state.rows), "failed": failed, "warned": warned},
     )

@@ -69,6 +69,8 @@ def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bo
         found = search.evaluate_blocks(
             programs.evaluate_block, (genotypes, changed), block=plan.block, stop=stop
         )
+        if plan.feasible:
+            found = search.judged(found)
         everywhere = jax.tree.map(in_all_cells, found)
         repeats = programs.add(repeats, jnp.asarray(done), everywhere, state.cells)
     seconds = (time.monotonic() - began) * jax.local_device_count()

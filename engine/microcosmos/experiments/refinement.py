@@ -206,7 +206,7 @@ class Refinement:
         return Report(
             generation=state.generation,
             evaluations=1 + (1 + self.block) * (state.generation - 1),
-            diverged=0,
+            infeasible=0,
             best=state.fitness,
             rows=(row,),
             summary={"before": before, "fitness": state.fitness, "length": state.length},

@@ -28,7 +28,7 @@ def report(state: Table, rows: tuple[Row, ...]) -> Report:
     return Report(
         generation=state.generation,
         evaluations=state.generation,
-        diverged=sum(row.values["status"] != "ok" for row in state.rows),
+        infeasible=sum(row.values["status"] != "ok" for row in state.rows),
         rows=rows,
         summary=summary([row.values for row in state.rows]),
     )

@@ -21,7 +21,7 @@ CURVES = (
     "best",
     "mean",
     "evaluations",
-    "diverged",
+    "infeasible",
     "clipped",
     "corrected_qd_score",
     "corrected_coverage",
@@ -41,8 +41,8 @@ ENDS = ("", "evaluations", "fitness", "device_hours")
 BEFORE = 2**32 - 1
 """Number of the generation before the first, for deriving keys."""
 
-MAX_DIVERGED = 256
-"""Number of diverged creatures to keep, the newest."""
+MAX_INFEASIBLE = 256
+"""Number of infeasible creatures to keep, the newest."""
 
 
 @dataclass(frozen=True)
@@ -93,6 +93,8 @@ class Plan:
     device: str
     limits: Limits = Limits()
     reevaluation: Reevaluation | None = None
+    feasible: bool = False
+    """True if a creature at a limit, too fast or pushing itself is no elite."""
     force_free: bool = True
     """True if bodies cannot push themselves; if not, swimming may be an artefact."""
 
@@ -141,8 +143,8 @@ class Lineage(eqx.Module):
     descriptors: Float[np.ndarray, "entry axis"]
 
 
-class Diverged(eqx.Module):
-    """Creatures whose simulation diverged."""
+class Infeasible(eqx.Module):
+    """Infeasible creatures, with the reasons."""
 
     generation: Int[np.ndarray, "row"]
     slot: Int[np.ndarray, "row"]
@@ -156,7 +158,7 @@ class State(eqx.Module):
     generation: int
     """Generations completed."""
     evaluations: int
-    diverged: int
+    infeasible: int
     cells: search.Cells
     """The plan's, or those of the machine on which the run began."""
     elites: search.Elites
@@ -179,7 +181,7 @@ class State(eqx.Module):
     device_seconds: float
     """Time of evaluation, summed over devices; used only for the limit on it."""
     lineage: Lineage
-    failures: Diverged
+    failures: Infeasible
     devices: tuple[str, ...] = eqx.field(static=True)
     """Kinds of device that computed the run, the present one last."""
     unrepeated: search.reevaluation.Repeats | None = None
@@ -208,7 +210,7 @@ def start(plan: Plan) -> State:
     return State(
         generation=0,
         evaluations=0,
-        diverged=0,
+        infeasible=0,
         cells=plan.cells,
         elites=search.no_elites(plan.cell_count, len(plan.measures), plan.genotype),
         counters=plan.counters,
@@ -231,7 +233,7 @@ def start(plan: Plan) -> State:
             fitness=np.zeros(0, np.float32),
             descriptors=descriptors,
         ),
-        failures=Diverged(none, none, none, no_genotypes),
+        failures=Infeasible(none, none, none, no_genotypes),
         devices=(plan.device,),
         initial=plan.initial,
     )

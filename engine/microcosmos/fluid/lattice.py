@@ -4,6 +4,7 @@ Populations are stored as deviations from the weights w_i, so that float32 keeps
 of a fluid nearly at rest (Skordos, Phys. Rev. E 48, 4823, 1993).
 """
 
+import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 Plane = Float[Array, "x y"]
@@ -33,6 +34,12 @@ def momentum(f: Populations) -> tuple[Plane, Plane]:
         (f[1] - f[2]) + (diagonal + antidiagonal),
         (f[3] - f[4]) + (diagonal - antidiagonal),
     )
+
+
+def fastest(rho: Plane, momentum: tuple[Plane, Plane]) -> Float[Array, ""]:
+    """Return the largest speed of the fluid."""
+    x, y = momentum
+    return jnp.sqrt(jnp.max((x * x + y * y) / (rho * rho)) + 1e-24)
 
 
 def along(direction: int, x: Plane, y: Plane) -> Plane:

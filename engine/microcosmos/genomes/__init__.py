@@ -1,5 +1,6 @@
 """Genotypes and encodings: inherited genes, and their development into moving creatures."""
 
+from .actuators import Actuators, carried_out
 from .control import CPPNControl
 from .cppn import ACTIVATIONS, CPPN, evaluate, minimal
 from .development import Controls, develop, function_of, linear, rest_shape, sine_cosine

@@ -29,6 +29,8 @@ class Drive:
     remember: Callable[[World, State, Any], PyTree[Array]] = keep_memory
     length: Scalar | None = None
     """Extent of the body in cells; None: that of the task's body."""
+    clock: Float[Array, "time"] | None = None
+    """Time of the controller at the end of each step, in steps; None: that of the world."""
 
 
 @runtime_checkable

@@ -38,22 +38,24 @@ def shaped(
 ) -> Shaped:
     """Return the body with inherited traits, laid out anew where its shape changes.
 
-    `rest_angle` is added to rest angles at the layout's free joints, `rest_length` multiplies.
+    `rest_angle` is added to rest angles, `rest_length` multiplies rest lengths.
     """
     stiffness = {name: traits[name] for name in STIFFNESSES if name in traits}
-    world = replace(world, rods=replace(world.rods, **stiffness))
+    if stiffness:  # A soft body has no closed form.
+        world = replace(world, rods=replace(world.rods, **stiffness), layout=None)
     if layout is None:
         return Shaped(world, start, controls)
     dtype = start.positions.dtype
-    factor = traits.get("rest_length", jnp.ones(len(layout.length), dtype))
-    turns = traits.get("rest_angle", jnp.zeros(len(layout.free), dtype))
+    factor = traits.get("rest_length", jnp.ones(len(layout.angle), dtype))
+    turns = traits.get("rest_angle", jnp.zeros(len(layout.joints), dtype))
     turned = jnp.asarray(layout.turned, dtype) @ turns
-    positions = _laid_out(layout, turned, factor) + jnp.mean(start.positions, 0)[None]
+    length = jnp.asarray(controls.rest_length, dtype) * factor
+    positions = _laid_out(layout, turned, length) + jnp.mean(start.positions, 0)[None]
     first, second = layout.joints.T
     controls = replace(
         controls,
         rest_angle=jnp.asarray(controls.rest_angle, dtype) + turned[second] - turned[first],
-        rest_length=jnp.asarray(controls.rest_length, dtype) * factor,
+        rest_length=length,
     )
     start = replace(at_rest(world, positions), energy=start.energy)
     return Shaped(world, start, controls)
@@ -71,11 +73,8 @@ def cut(body: Shaped, present: Bool[Array, "node"]) -> Shaped:
     return replace(body, world=world, start=start, length=reach)
 
 
-def _laid_out(layout: Layout, turned: Array, factor: Array) -> Float[Array, "node 2"]:
+def _laid_out(layout: Layout, turned: Array, length: Array) -> Float[Array, "node 2"]:
     """Return node positions relative to their mean."""
-    dtype = turned.dtype
-    angle = jnp.asarray(layout.angle, dtype) + turned
-    v = jnp.stack([jnp.cos(angle), jnp.sin(angle)], 1)
-    v = v * (jnp.asarray(layout.length, dtype) * factor)[:, None]
-    positions = jnp.asarray(layout.paths, dtype) @ v
-    return positions - jnp.mean(positions, 0)[None]
+    angle = jnp.asarray(layout.angle, turned.dtype) + turned
+    v = jnp.stack([jnp.cos(angle), jnp.sin(angle)], 1) * length[:, None]
+    return jnp.asarray(layout.placed, turned.dtype) @ v

@@ -14,6 +14,7 @@ from .evaluation import (
     drive,
     evaluate,
     evaluate_blocks,
+    judged,
     mapped,
     motion_of,
     never,
@@ -33,4 +34,4 @@ from .insertion import (
     no_elites,
 )
 from .measures import MEASURES, Measure, Motion, motion, observe
-from .strokes import STROKE_MEASURES, Conditions, impulse, swim, watch
+from .strokes import STROKE_MEASURES, Conditions, swim

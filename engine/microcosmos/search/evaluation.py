@@ -20,12 +20,15 @@ from jaxtyping import Array, Float, Int, PyTree
 from .. import units
 from ..device import compiler_options
 from ..filaments import Rest
-from ..genomes import Drive, Encoding, Genotype
+from ..genomes import Actuators, Drive, Encoding, Genotype, carried_out
 from ..world import Measures, State, World, flow, rollout
-from .measures import MEASURES, Measure, motion, motion_for_plugins, observe
+from .measures import MEASURES, Measure, motion, motion_for_plugins, observe, swimming
 
-STATUSES = ("ok", "non-finite", "supersonic")
-"""Outcome of an evaluation by status code: feasible, or the reason why not."""
+STATUSES = ("ok", "non-finite", "supersonic", "limits", "compressible", "impulse")
+"""Outcome of an evaluation by status code: feasible, or the reason why not.
+
+The last three are found by `judged`.
+"""
 
 Scalar = Float[Array, ""]
 
@@ -46,8 +49,8 @@ class Goal(eqx.Module):
 
     displacement: float = eqx.field(static=True, default=1.0)
     energy: float = eqx.field(static=True, default=0.0)
-    plugin: str | None = eqx.field(static=True, default=None)
-    """Name of the plug-in measure that replaces both terms; None: displacement and energy."""
+    measure: str | None = eqx.field(static=True, default=None)
+    """Name of the measure that replaces both terms; None: displacement and energy."""
 
 
 class Task(eqx.Module):
@@ -59,11 +62,15 @@ class Task(eqx.Module):
     goal: Goal = Goal()
     length: float = eqx.field(static=True, default=1.0)
     """Length of the body in cells, for the Reynolds number."""
+    period: float | None = eqx.field(static=True, default=None)
+    """Steps of the controller's clock in a stroke; None: it has no strokes."""
     phase: Float[Array, ""] | None = None
     """Lead of a periodic timer, in rad."""
     placements: Int[Array, "placement 2"] | None = None
     """Shift of the energy, in cells, in each world that a creature is measured in; None: one
     world, unshifted."""
+    actuators: Actuators | None = None
+    """Bounds on what the controllers of genotypes command; None: none."""
     plugin_measures: tuple[Measure, ...] = eqx.field(static=True, default=())
     """Measures of plug-ins, beside the usual ones."""
 
@@ -112,7 +119,8 @@ def drive(task: Task, actuator: Actuator) -> Drive:
     """Return the simulation of a genotype, or of a body that follows rest shapes."""
     if isinstance(actuator, Rest) or task.encoding is None:
         return Drive(task.world, task.start, actuator)
-    return task.encoding.drive(task.world, task.start, actuator, task.phase)
+    driven = task.encoding.drive(task.world, task.start, actuator, task.phase)
+    return driven if task.actuators is None else carried_out(driven, task.actuators)
 
 
 def simulate(
@@ -129,20 +137,29 @@ def motion_of(task: Task, driven: Drive, end: State, observed: Measures) -> dict
     """Return measures of any actuator's motion."""
     length = task.length if driven.length is None else driven.length
     values = motion(driven.world, driven.start, end, observed, length)
+    values["speed"], values["stride"] = swimming(
+        observed.centre, strokes(driven, task.period, len(observed.centre)), length
+    )
     if not task.plugin_measures:
         return values
     whole = motion_for_plugins(driven.world, driven.start, end, observed, values)
     return values | {measure.name: measure.of(whole) for measure in task.plugin_measures}
 
 
+def strokes(driven: Drive, period: float | None, steps: int) -> Float[Array, "time"]:
+    """Return the strokes done at the end of each of the first steps; 0 without a period."""
+    clock = jnp.arange(1.0, steps + 1) if driven.clock is None else driven.clock[:steps]
+    return jnp.zeros_like(clock) if period is None else clock / period
+
+
 def fitness_of(task: Task, values: Mapping[str, Any]) -> Scalar:
     """Return displacement in cells and collected energy, weighted by the goal.
 
-    A goal may name a plug-in's measure instead.
+    A goal may name a measure instead.
     """
     goal = task.goal
-    if goal.plugin is not None:
-        return values[goal.plugin]
+    if goal.measure is not None:
+        return values[goal.measure]
     displacement, energy = values["displacement"], values["energy"]
     if goal.energy == 0:
         return displacement
@@ -151,8 +168,26 @@ def fitness_of(task: Task, values: Mapping[str, Any]) -> Scalar:
     return goal.displacement * displacement + goal.energy * energy
 
 
+FEASIBLE = {
+    "limits": ("limited", units.MAX_LIMITED),
+    "compressible": ("mach", units.MAX_MACH),
+    "impulse": ("impulse", units.MAX_IMPULSE),
+}
+"""The measure behind each status, and the largest value of a feasible creature."""
+
+
+def judged(evaluation: Evaluation) -> Evaluation:
+    """Return evaluations in NumPy with a status where limits acted, the flow was too fast, or
+    a body pushed itself; the first reason counts."""
+    measures, status = np.asarray(evaluation.measures), np.array(evaluation.status)
+    for reason, (name, most) in FEASIBLE.items():
+        beyond = measures[:, MEASURES.index(name)] > most
+        status[(status == 0) & beyond] = STATUSES.index(reason)
+    return eqx.tree_at(lambda one: one.status, evaluation, status)
+
+
 def status(world: World, end: State, measures: Float[Array, "measure"]) -> Int[Array, ""]:
-    """Return 0 if the evaluation is feasible, else the code of the reason."""
+    """Return 0 if the evaluation is valid, else the code of the reason."""
     u = flow(world, end)
     last = jnp.sqrt(jnp.max(jnp.sum(u * u, 0)))
     fastest = jnp.maximum(measures[MEASURES.index("mach")], units.mach(last))

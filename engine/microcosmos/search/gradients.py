@@ -68,7 +68,8 @@ def changed(task: Task, actuator: Actuator, values: Values) -> Drive:
     """
     world, rods = task.world, task.world.rods
     stiffness = {n: values[n] for n in ("stretch", "shear", "bend") if n in values}
-    world = replace(world, rods=replace(rods, **stiffness))
+    if stiffness:  # Softer bodies are swept.
+        world = replace(world, rods=replace(rods, **stiffness), layout=None)
     if "viscosity" in values:
         world = replace(world, viscosity=values["viscosity"])
     if "genes" in values:

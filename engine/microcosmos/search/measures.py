@@ -1,10 +1,11 @@
 """Measures of a creature's motion; names, units and axes are in `spec.measures`."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, get_args
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
@@ -24,8 +25,8 @@ Scalar = Float[Array, ""]
 
 
 def observe(state: State, measures: Measures) -> Measures:
-    """Return the measures of a step without the forces of bodies."""
-    return replace(measures, force=None)
+    """Return the measures of a step."""
+    return measures
 
 
 def motion(
@@ -59,7 +60,35 @@ def motion(
         "power": power,
         "efficiency": efficiency(displacement / steps, power, world.viscosity),
         "nodes": jnp.asarray(nodes),
+        "impulse": impulse(observed.force),
     }
+
+
+def swimming(
+    path: Float[Array, "time 2"], strokes: Float[Array, "time"], length: Scalar | float
+) -> tuple[Scalar, Scalar]:
+    """Return speed, in lengths in 1,000 steps, and stride, in lengths a stroke.
+
+    Both are over whole strokes after the first, which starts from rest: `path` and `strokes`
+    are the body's centre and the strokes done after each step. Both are 0 below two strokes.
+    """
+    times = jnp.arange(1.0, len(path) + 1, dtype=path.dtype)
+    done = jax.lax.stop_gradient(jnp.floor(strokes[-1] + 1e-3))
+    ends = jnp.stack([jnp.ones_like(done), jnp.maximum(done, 2.0)])
+    moved = [jnp.diff(jnp.interp(ends, strokes, path[:, axis]))[0] for axis in (0, 1)]
+    distance = _norm(jnp.stack(moved)) / length
+    took = jnp.maximum(jnp.diff(jnp.interp(ends, strokes, times))[0], 1.0)
+    swam = done >= 2
+    zero = jnp.zeros_like(distance)
+    return (
+        jnp.where(swam, 1000 * distance / took, zero),
+        jnp.where(swam, distance / (ends[1] - 1), zero),
+    )
+
+
+def impulse(force: Float[Array, "time group 2"]) -> Scalar:
+    """Return the largest net momentum that a body has given to the fluid at any time."""
+    return jnp.max(_norm(jnp.cumsum(force, 0)))
 
 
 def effort(rest: Float[Array, "time item"], kept: Bool[Array, "item"] | None = None) -> Scalar:

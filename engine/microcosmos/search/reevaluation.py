@@ -50,7 +50,7 @@ class Repeats(eqx.Module):
     count: Int[Array, "cell"]
     """Reevaluations of the present elite."""
     failed: Int[Array, "cell"]
-    """Reevaluations that diverged; no mean includes them."""
+    """Infeasible reevaluations; no mean includes them."""
     hits: Int[Array, "cell"]
     """Reevaluations whose descriptors fell into the elite's cell."""
     fitness: Float[Array, "cell"]

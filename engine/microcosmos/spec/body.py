@@ -51,7 +51,7 @@ class Chain(Spaced):
     """A straight filament."""
 
     builder: Literal["chain"] = "chain"
-    nodes: int = field(32, ge=3, le=MAX_NODES, unit="nodes")
+    nodes: int = field(24, ge=3, le=MAX_NODES, unit="nodes")
     """Number of nodes."""
 
 

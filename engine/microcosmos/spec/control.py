@@ -5,7 +5,7 @@ from typing import Literal, Self
 from pydantic import model_validator
 
 from .base import Part, field, sourced
-from .sources import CPPN, NEAT, PAPER
+from .sources import CPPN, NEAT, OURS, PAPER
 
 INPUTS = {"sine-cosine": ("position", "sine", "cosine"), "linear": ("position", "time")}
 OUTPUTS = ("rest_angle", "rest_length")
@@ -16,14 +16,21 @@ class Actuation(Part):
 
     timer: Literal["sine-cosine", "linear"] = field("sine-cosine", source=f"linear: {PAPER}")
     """Time input: sine and cosine of the phase, or linear from 0 to 1."""
-    period: float = field(100.0, ge=4.0, le=1e6, unit="steps")
+    period: float = field(200.0, ge=4.0, le=1e6, unit="steps")
     """Period of the sine and cosine."""
     ramp: float = field(1.0, ge=0.0, le=100.0, unit="periods")
     """Time in which the actuation grows from zero to its full amplitude."""
-    angle_scale: float = field(0.1, gt=0.0, le=1.5, unit="rad")
+    angle_scale: float = field(0.4, gt=0.0, le=1.5, unit="rad")
     """Amplitude of rest angles: the controller's output (−1 to 1) times this is added."""
     length_scale: float = field(0.1, ge=0.0, le=0.8)
     """Amplitude of rest lengths: factor 1 + this times the controller's output (−1 to 1)."""
+    max_speed: float | None = field(0.06, gt=0.0, le=0.5, unit="cells/step", source=OURS)
+    """Largest speed at which actuators move a node, in the frame of the body: where the gait is
+    faster, its clock slows; empty: unlimited."""
+    lag: float = field(24.0, ge=0.0, le=10_000.0, unit="steps", source=OURS)
+    """Time constant with which the body follows commands; it bounds the force."""
+    max_bend: float | None = field(4.2, gt=0.0, le=100.0, unit="rad", source=OURS)
+    """Largest angle that actuators add between any two edges; empty: unlimited."""
 
 
 class NetworkInputs(Actuation):

@@ -113,8 +113,6 @@ class Direct(Actuation, InheritedTraits):
         """Return the genes of each trait, then of the control of angles and of lengths."""
         joints, edges = len(body.joints), len(body.edges)
         sizes = {name: joints if name in JOINT_TRAITS else edges for name in self.traits}
-        if "rest_angle" in sizes:
-            sizes["rest_angle"] = len(bodies.layout(body).free)
         return sizes | {"angles": self.weights * joints, "lengths": self.weights * edges}
 
 

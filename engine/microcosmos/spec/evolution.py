@@ -21,15 +21,27 @@ SearchSpec = TypeVar("SearchSpec", bound=Generations)
 SMALL: dict[str, Any] = {
     "world": World(width=32, height=32),
     "body": Chain(nodes=16),
-    "control": Control(period=50, angle_scale=0.3, length_scale=0.2),
-    "task": Task(steps=100),
+    "control": Control(period=120, angle_scale=0.6),
+    "task": Task(steps=800),
 }
 """Parts of the demonstrations."""
 
+UNLIMITED: dict[str, Any] = {"max_speed": None, "lag": 0, "max_bend": None}
+"""Actuators that carry out any command at once."""
+
 LITERAL: dict[str, Any] = {
-    "world": World(steric=Steric()),
+    "world": World(width=64, height=64, steric=Steric()),
+    "body": Chain(nodes=32),
     "coupling": Coupling(projection="none", theta_feedback=0, layers=2),
-    "control": Control(timer="linear", position="unit", angle_scale=0.5, length_scale=0.3),
+    "control": Control(
+        timer="linear",
+        position="unit",
+        period=100,
+        angle_scale=0.5,
+        length_scale=0.3,
+        **UNLIMITED,
+    ),
+    "task": Task(steps=500, fitness="displacement"),
 }
 """Parts as in the paper."""
 
@@ -58,6 +70,11 @@ class Evolution(Part, Generic[Name, SearchSpec]):
         refuse_cramped(self.control, self.genome)
         refuse_senseless(self.world, self.control, self.task)
         refuse_unfit_emitters(self.emitters, self.control.encoding)
+        if self.search.feasible and not self.coupling.force_free:
+            raise ValueError(
+                "`search.feasible` must be false where `coupling.projection` is 'none', since "
+                "every body then pushes itself; got true"
+            )
         return self
 
     @model_validator(mode="after")

@@ -172,7 +172,7 @@ class Folding(Part):
             body=self.body if is_unavailable(self.body) else resolved(self.body),
             coupling=self.coupling,
             control=self.control,
-            task=Task(steps=self.steps),
+            task=Task(steps=self.steps, fitness="displacement"),
         )
 
 

@@ -100,7 +100,7 @@ class Gaits(Part):
             body=swimmer_body(swimmer, plugin),
             coupling=self.coupling(form),
             control=Gait.model_validate(gait),
-            task=Task(steps=self.period * self.cycles),
+            task=Task(steps=self.period * self.cycles, fitness="displacement"),
         )
 
     def coupling(self, form: str) -> Coupling:

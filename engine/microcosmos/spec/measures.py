@@ -32,11 +32,14 @@ MEASURES: dict[str, Measure] = {
     "reynolds": Measure("Reynolds number", "", 1e-2, 1e2, "log10"),
     "mean_speed": Measure("Mean speed", "cells/step", 1e-5, 1e-1, "log10"),
     "turning": Measure("Turning", "rad", 1e-3, 1e1, "log10"),
-    "curvature_mean": Measure("Mean curvature", "1/cells", 0.0, 0.5),
+    "curvature_mean": Measure("Mean curvature", "1/cells", 0.0, 0.25),
     "curvature_spread": Measure("Spread of curvature", "1/cells", 0.0, 0.5),
     "symmetry": Measure("Symmetry", "", -1.0, 1.0),
     "power": Measure("Power", "mass · cells²/step³", 1e-7, 1.0, "log10"),
     "efficiency": Measure("Efficiency", "", 1e-6, 1.0, "log10"),
     "nodes": Measure("Nodes", "", 0.0, 64.0),
+    "speed": Measure("Speed", "lengths/1,000 steps", 0.0, 0.6),
+    "stride": Measure("Stride", "lengths", 0.0, 0.3),
+    "impulse": Measure("Net impulse on the fluid", "mass · cells/step", 1e-8, 1e2, "log10"),
 }
 """The measures, in the order in which they are recorded."""

@@ -5,7 +5,7 @@ from typing import Literal
 from .emitters import PopulationEmitter
 from .evolution import LITERAL, SMALL, Evolution
 from .search import Generations, Task
-from .world import Energy, Steric, World
+from .world import Energy
 
 
 class Neuroevolution(Evolution[Literal["neuroevolution"], Generations]):
@@ -25,23 +25,30 @@ class Neuroevolution(Evolution[Literal["neuroevolution"], Generations]):
         return (self.search.batch,)
 
 
+LITERAL_SEARCH = Generations(batch=150, feasible=False)
+
 PRESETS = {
     "demo": (
         "A small demonstration, under a minute on a laptop",
         Neuroevolution(**SMALL, search=Generations(generations=100, batch=32)),
     ),
-    "standard": ("150 networks of 32 nodes in 64 × 64 cells", Neuroevolution()),
+    "standard": (
+        "150 networks that drive a body of 24 nodes in 48 × 48 cells",
+        Neuroevolution(),
+    ),
     "paper": (
         "As in the paper: total displacement; two layers, not force-free",
-        Neuroevolution(**LITERAL),
+        Neuroevolution(**LITERAL, search=LITERAL_SEARCH),
     ),
     "paper-energy": (
         "As in the paper: displacement and energy collected, 1 : 1, the energy sensed",
         Neuroevolution(
-            world=World(steric=Steric(), energy=Energy()),
+            world=LITERAL["world"].model_copy(update={"energy": Energy()}),
+            body=LITERAL["body"],
             coupling=LITERAL["coupling"],
             control=LITERAL["control"].model_copy(update={"sense_energy": True}),
-            task=Task(fitness="displacement+energy", energy_weight=1.0),
+            search=LITERAL_SEARCH,
+            task=Task(steps=500, fitness="displacement+energy", energy_weight=1.0),
         ),
     ),
 }

@@ -116,7 +116,12 @@ def refuse_too_large(world: World, body: Body, stretch: float) -> None:
 def refuse_senseless(world: World, control: Controller | Gait | Fold, task: Task) -> None:
     """Raise `ValueError` where energy is sensed or counts but the world has none."""
     senses = isinstance(control, NetworkInputs) and control.sense_energy
-    collects = task.plugin is None and task.fitness != "displacement"
+    if task.fitness == "speed" and getattr(control, "timer", "") == "linear":
+        raise ValueError(
+            "`task.fitness` must not be 'speed' where `control.timer` is 'linear': without "
+            "a period there are no strokes"
+        )
+    collects = task.plugin is None and "energy" in task.fitness
     if world.energy is None and (senses or collects):
         path = "control.sense_energy" if senses else "task.fitness"
         value = True if senses else task.fitness

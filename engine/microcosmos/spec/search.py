@@ -11,19 +11,20 @@ from . import measures
 from .base import Digest, Part, field, sourced
 from .emitters import NUMBERING, WITHOUT_GRADIENT, Emitter, NeatEmitter, slots
 from .plugins import OR_PLUGIN, MaybePlugin, PluginVersion, complete_plugin, completed
-from .sources import CVT, MAP_ELITES, PAPER, REEVALUATION
+from .sources import CVT, MAP_ELITES, OURS, PAPER, REEVALUATION
 
-Fitness = Literal["displacement", "energy", "displacement+energy"]
+Fitness = Literal["speed", "displacement", "energy", "displacement+energy"]
 
 
 class Task(Part):
     """Duration of a simulation and the fitness of a creature."""
 
-    steps: int = field(500, ge=10, le=1_000_000, unit="steps")
+    steps: int = field(2000, ge=10, le=1_000_000, unit="steps")
     """Steps of the simulation."""
-    fitness: Annotated[Fitness, *OR_PLUGIN] = field("displacement", source=PAPER)
-    """Fitness: displacement (distance between the mean node positions at start and end),
-    energy collected by all nodes, or both."""
+    fitness: Annotated[Fitness, *OR_PLUGIN] = field("speed", source=f"displacement: {PAPER}")
+    """Fitness: speed (body lengths in 1,000 steps over whole strokes after the first),
+    displacement (cells between the mean node positions at start and end), energy collected by
+    all nodes, or displacement and energy."""
     energy_weight: float = field(1e-3, gt=0.0, le=1e3, unit="cells/energy")
     """Weight of collected energy relative to displacement."""
     plugin: MaybePlugin = None
@@ -86,8 +87,8 @@ class Archive(Part):
     model_config = sourced(MAP_ELITES)
 
     descriptors: Annotated[tuple[Descriptor, ...], Field(min_length=1, max_length=8)] = (
-        Descriptor(name="bending_effort"),
-        Descriptor(name="stretching_effort"),
+        Descriptor(name="symmetry"),
+        Descriptor(name="curvature_mean"),
     )
     """Axes of the archive."""
     centroids: int | None = field(None, ge=2, le=MAX_CELLS, source=CVT)
@@ -187,6 +188,9 @@ class Generations(Part):
     """Evaluations per generation."""
     block: int = field(16, ge=1, le=4096, unit="creatures")
     """Creatures per call of the compiled program; the exact bits of results depend on it."""
+    feasible: bool = field(True, source=OURS)
+    """Refuse creatures at a limit in more than 0.1 % of node steps, with a Mach number above
+    0.17 anywhere, or with a net impulse on the fluid above 1e-4."""
     stop: Stop = Stop()
     """Conditions that end the run early."""
     reevaluation: Reevaluation | None = None

@@ -59,9 +59,9 @@ class World(Part):
 
     model_config = sourced(LATTICE)
 
-    width: int = field(64, ge=16, le=2048, unit="cells")
+    width: int = field(48, ge=16, le=2048, unit="cells")
     """Width of the box (x)."""
-    height: int = field(64, ge=16, le=2048, unit="cells")
+    height: int = field(48, ge=16, le=2048, unit="cells")
     """Height of the box (y)."""
     viscosity: float = field(0.05, ge=1e-3, le=2.0, unit="cells²/step")
     """Kinematic viscosity ν; the relaxation time is τ = 3 ν + 1/2."""

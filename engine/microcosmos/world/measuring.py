@@ -14,8 +14,8 @@ Points = Float[Array, "point 2"]
 class Pushed(eqx.Module):
     """Exchange between bodies and fluid in a step, at the points where they meet."""
 
-    velocity: Points
-    """Velocity of the fluid before the step."""
+    speed: Float[Array, ""]
+    """Speed of the fastest fluid before the step."""
     forcing: Points
     """Force on the fluid."""
     target: Points
@@ -31,7 +31,7 @@ def measure(world: World, end: State, rest: filaments.Rest, pushed: Pushed) -> M
     groups = world.groups.repeated(world.form.layers)
     speed = jnp.sqrt(jnp.sum(pushed.moved * pushed.moved, 1) + 1e-24)
     return Measures(
-        speed=jnp.sqrt(jnp.max(jnp.sum(pushed.velocity * pushed.velocity, 1))),
+        speed=pushed.speed,
         node_speed=mean(speed, world.present),
         held=mean(pushed.held, world.present),
         force=groups.total(pushed.forcing),

@@ -53,6 +53,8 @@ class World(eqx.Module):
     size: tuple[int, int] = eqx.field(static=True)
     form: Form = eqx.field(static=True, default_factory=Form)
     limits: Limits = Limits()
+    layout: filaments.Layout | None = None
+    """For shape matching; None: sweeps over the constraints."""
     nu_c: Float[Array, ""] | None = None
     """Viscosity at which actuators have half of their strength; None: full strength."""
     steric: fields.Steric | None = None
@@ -84,7 +86,7 @@ class Measures(eqx.Module):
     rest: filaments.Rest
     """The rest shape of the step."""
     speed: Float[Array, ""]
-    """Speed of the fastest fluid at a node, cells a step."""
+    """Speed of the fastest fluid anywhere before the step, cells a step."""
     node_speed: Float[Array, ""]
     """Mean speed of the nodes, cells a step."""
     held: Float[Array, ""]
@@ -95,7 +97,7 @@ class Measures(eqx.Module):
     """The angle at each joint over the mean length of its edges, 1/cells; 0 where absent."""
     power: Float[Array, ""]
     """Force on the fluid times velocity, summed over nodes; a cell's mass is 1."""
-    force: Float[Array, "group 2"] | None
+    force: Float[Array, "group 2"]
     """Force of each body on the fluid."""
 
 

@@ -58,7 +58,7 @@ def step(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measu
         positions = jnp.where(world.present[:, None], positions, state.positions)
     end = replace(state, populations=populations, positions=positions, angles=motion.angles)
     held = _held(motion, forced, groups)
-    pushed = Pushed(velocity, forcing, forced.target, motion.target, held)
+    pushed = Pushed(fluid.fastest(rho, momentum), forcing, forced.target, motion.target, held)
     return collect(world, end, at), measure(world, end, rest, pushed)
 
 
@@ -73,27 +73,37 @@ def step_alone(world: World, state: State, rest: filaments.Rest) -> tuple[State,
     layers = world.form.layers
     target = coupling.at_points(motion.target, layers)
     nothing, held = jnp.zeros_like(target), (motion.shortened < 1).astype(positions.dtype)
-    pushed = Pushed(nothing, nothing, target, motion.target, held)
+    pushed = Pushed(jnp.zeros((), positions.dtype), nothing, target, motion.target, held)
     return collect(world, end, _windows(world, state)), measure(world, end, rest, pushed)
 
 
 def move(world: World, state: State, rest: filaments.Rest, velocity: Vectors) -> Motion:
     """Carry the bodies with the fluid, project onto constraints, limit the speed."""
     positions = state.positions + velocity
-    followed = filaments.follow_geometry(state.angles, positions, world.rods)
-    angles = state.angles + world.form.theta_feedback * (followed - state.angles)
-    rods = world.rods
-    if world.nu_c is not None:
-        rods = replace(rods, bend=rods.bend / (1 + world.viscosity / world.nu_c))
-    positions, angles = filaments.project(
-        positions, angles, rods, rest, iterations=world.form.constraint_iterations
-    )
+    positions, angles = _constrained(world, state, rest, positions)
     target = positions - state.positions
     if world.limits.displacement is None:
         return Motion(target, angles, jnp.ones_like(target[:, 0]))
     speed = jnp.sqrt(jnp.sum(target * target, 1) + 1e-24)
     shortened = jnp.minimum(1.0, world.limits.displacement / speed)
     return Motion(target * shortened[:, None], angles, shortened)
+
+
+def _constrained(
+    world: World, state: State, rest: filaments.Rest, positions: Vectors
+) -> tuple[Vectors, Float[Array, "edge"]]:
+    """Return positions and edge angles that meet the constraints."""
+    if world.layout is not None:
+        positions = filaments.matched(positions, rest, world.layout, world.present)
+        return positions, filaments.follow_geometry(state.angles, positions, world.rods)
+    followed = filaments.follow_geometry(state.angles, positions, world.rods)
+    angles = state.angles + world.form.theta_feedback * (followed - state.angles)
+    rods = world.rods
+    if world.nu_c is not None:
+        rods = replace(rods, bend=rods.bend / (1 + world.viscosity / world.nu_c))
+    return filaments.project(
+        positions, angles, rods, rest, iterations=world.form.constraint_iterations
+    )
 
 
 def _points(world: World, state: State) -> Float[Array, "point 2"]:

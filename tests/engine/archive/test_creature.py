@@ -118,7 +118,7 @@ def test_text_that_is_no_json_is_a_value_error():
 
 def measured(**changes):
     figures = {"fitness": 2.0, "descriptors": {"bending_effort": 0.5}}
-    figures["measures"] = {"displacement": 2.0, "bending_effort": 0.5}
+    figures["measures"] = {"speed": 2.0, "bending_effort": 0.5}
     return figures | {"block": 16, "room": [8, 16], "device": "cpu"} | changes
 
 

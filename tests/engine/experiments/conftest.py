@@ -22,7 +22,11 @@ NEUROEVOLUTION = SMALL | {
     "genome": {"max_nodes": 10, "max_connections": 16},
     "search": {"generations": 5, "batch": 16, "block": 8, "reevaluation": {"every": 3}},
 }
-TINY = SMALL | {"seed": 2, "body": {"nodes": 8}, "task": {"steps": 20}}
+TINY = SMALL | {
+    "seed": 2,
+    "body": {"nodes": 8},
+    "task": {"steps": 20, "fitness": "displacement"},
+}
 NUMBERS = {"encoding": "direct", "period": 20}
 
 

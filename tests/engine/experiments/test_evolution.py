@@ -13,8 +13,9 @@ from microcosmos import naming
 from microcosmos.archive import creature, file
 from microcosmos.build import build
 from microcosmos.experiments import evolution
-from microcosmos.search import MEASURES, tensorneat
+from microcosmos.search import MEASURES, STATUSES, tensorneat
 from microcosmos.spec import parse
+from microcosmos.spec.evolution import UNLIMITED
 
 
 def test_another_seed_gives_another_archive(small, course, experiment, finish):
@@ -97,25 +98,47 @@ def test_elites_are_marked_with_the_device_that_measured_them(experiment, course
         assert measured_on == (experiment.plan.device if cell in new else "abacus")
 
 
-def test_diverged_creatures_are_kept_apart_with_their_reason(small):
+def test_infeasible_creatures_are_kept_apart_with_their_reason(small):
     unlimited = {"limits": False, "projection": "none", "theta_feedback": 0}
     spec = small(
         world={"width": 32, "height": 32, "viscosity": 0.001},
-        control={"period": 8, "angle_scale": 1.5, "length_scale": 0.8, "ramp": 0},
+        control={"period": 8, "angle_scale": 1.5, "length_scale": 0.8, "ramp": 0} | UNLIMITED,
         body={"nodes": 8},
         coupling=unlimited,
         task={"steps": 120},
-        search={"generations": 2},
+        search={"generations": 2, "feasible": False},
     )
     experiment = build(spec)
     state, first = experiment.advance(experiment.init())
     state, second = experiment.advance(state)
-    assert first.diverged > 0
-    assert second.diverged == len(state.failures.status)
+    assert first.infeasible > 0
+    assert second.infeasible == len(state.failures.status)
     assert set(np.unique(state.failures.status)) <= {1, 2}
     assert np.isfinite(np.asarray(state.elites.fitness)).all()
     restored = experiment.restore(experiment.save(state))
     assert experiment.save(restored) == experiment.save(state)
+
+
+def test_creatures_that_are_judged_infeasible_are_no_elites(small):
+    """At a limit or compressible: the elites of the same spec without judgement."""
+    fast = {"period": 20, "angle_scale": 1.0, "length_scale": 0.5, "ramp": 0} | UNLIMITED
+    search = {"generations": 2, "batch": 16}
+    given = {"control": fast, "task": {"steps": 60, "fitness": "displacement"}}
+    found = []
+    for feasible in (False, True):
+        experiment = build(small(**given, search=search | {"feasible": feasible}))
+        state, report = experiment.advance(experiment.init())
+        occupied = np.asarray(state.elites.occupied)
+        found.append((np.asarray(state.elites.measures)[occupied], state, report))
+    (everybody, _, before), (judged, state, report) = found
+    limited, mach = MEASURES.index("limited"), MEASURES.index("mach")
+    assert np.any((everybody[:, limited] > 1e-3) | (everybody[:, mach] > 0.17))
+    assert np.all((judged[:, limited] <= 1e-3) & (judged[:, mach] <= 0.17))
+    assert before.infeasible == 0
+    reasons = {STATUSES[status] for status in state.failures.status}
+    assert report.infeasible == len(state.failures.status) > 0
+    assert reasons <= {"limits", "compressible"}
+    assert report.summary[f"infeasible: {min(reasons)}"] > 0
 
 
 def test_an_evaluation_that_cannot_be_trusted_is_no_elite(experiment, monkeypatch):
@@ -129,7 +152,7 @@ def test_an_evaluation_that_cannot_be_trusted_is_no_elite(experiment, monkeypatc
 
     monkeypatch.setattr(evolution.search, "evaluate_blocks", too_fast)
     state, report = experiment.advance(experiment.init())
-    assert report.diverged == 1
+    assert report.infeasible == 1
     assert state.failures.slot.tolist() == fittest
     assert fittest[0] not in np.asarray(state.elites.slot)[np.asarray(state.elites.occupied)]
 
@@ -156,14 +179,14 @@ def failing(experiment):
     return replace(experiment, programs=replace(experiment.programs, evaluate_block=evaluate))
 
 
-def test_reports_count_diverged_creatures_by_reason_if_there_are_any(failing, course):
+def test_reports_count_infeasible_creatures_by_reason_if_there_are_any(failing, course):
     _, report = failing.advance(failing.init())
-    assert report.summary["diverged: non-finite"] == 4
-    assert report.summary["diverged: supersonic"] == 2
-    assert report.diverged == 6
+    assert report.summary["infeasible: non-finite"] == 4
+    assert report.summary["infeasible: supersonic"] == 2
+    assert report.infeasible == 6
     reports = course.reports
-    assert [report.diverged for report in reports] == [0, 0, 0, 0]
-    assert not [name for report in reports for name in report.summary if "diverged" in name]
+    assert [report.infeasible for report in reports] == [0, 0, 0, 0]
+    assert not [name for report in reports for name in report.summary if "infeasible" in name]
 
 
 def sizes(report):

@@ -83,12 +83,12 @@ def test_a_simulation_that_does_not_stay_finite_has_no_numbers(experiment):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(search, "evaluate_blocks", lambda *_, **__: found)
         state, report = broken.advance(broken.init())
-    sound, diverged, supersonic = state.rows
+    sound, infeasible, supersonic = state.rows
     assert [row.values["status"] for row in state.rows] == ["ok", "non-finite", "supersonic"]
-    assert report.diverged == 2
-    assert diverged.creature is None
-    assert diverged.values["displacement"] is None
-    assert diverged.values["warnings"] == "the simulation did not stay finite"
+    assert report.infeasible == 2
+    assert infeasible.creature is None
+    assert infeasible.values["displacement"] is None
+    assert infeasible.values["warnings"] == "the simulation did not stay finite"
     assert "Mach" in supersonic.values["warnings"]
     assert sound.creature is not None
     assert broken.restore(broken.save(state)) == state

@@ -106,7 +106,8 @@ def test_new_genes_get_numbers_that_no_ancestor_has(small, files):
 def test_numbers_of_one_run_stay_and_those_of_another_do_not_mix(files):
     genomes = [file["identity"]["genome"] for file in files]
     assert renumbered(genomes, 3, 2) == genomes
-    foreign = json.loads(json.dumps(genomes[0]))
+    grown = next(one for one in genomes if len(one["connections"]["innovation"]) > 6)
+    foreign = json.loads(json.dumps(grown))
     genes = foreign["connections"]
     genes["innovation"] = [*genes["innovation"][:-1], 90]
     stranger = json.loads(json.dumps(foreign))

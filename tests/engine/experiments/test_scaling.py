@@ -36,7 +36,7 @@ def test_rows_tell_the_whole_and_its_parts(course_of):
     assert ours["memory_bytes"] >= 2 * 9 * 32 * 32 * 4
     assert more["memory_bytes"] > ours["memory_bytes"]
     assert report.summary["peak_memory_bytes"] == more["memory_bytes"]
-    assert report.diverged == 0
+    assert report.infeasible == 0
 
 
 @pytest.mark.fast
@@ -71,7 +71,7 @@ def test_rows_that_did_not_stay_finite_are_ignored():
     assert summary(rows)["exponent"] == pytest.approx(1.0)
     assert summary([row(16_000, 4.0, memory_bytes=None)])["peak_memory_bytes"] is None
     experiment = TableRun("{}", "cpu", 1, lambda number, stop: (Row(rows[2]),), report)
-    assert experiment.advance(experiment.init())[1].diverged == 1
+    assert experiment.advance(experiment.init())[1].infeasible == 1
 
 
 def test_filaments_of_the_crowd_are_apart(specs):

@@ -14,6 +14,7 @@ from microcosmos.audit.reproducibility import check
 from microcosmos.build import build
 from microcosmos.plugins import registry
 from microcosmos.spec import estimate, parse, plugins_in
+from microcosmos.spec.evolution import UNLIMITED
 from microcosmos.viz.replay import record
 from microcosmos.viz.replay_file import read_replay
 
@@ -72,7 +73,7 @@ SPEC = {
     "experiment": "quality-diversity",
     "world": {"width": 24, "height": 24},
     "body": {"builder": "extra.stick"},
-    "control": {"encoding": "extra.pulse", "period": 20, "angle_scale": 0.5},
+    "control": {"encoding": "extra.pulse", "period": 20, "angle_scale": 0.5} | UNLIMITED,
     "task": {
         "fitness": "extra.straight",
         "plugin": {"settings": {"strictness": 2}},
@@ -82,6 +83,7 @@ SPEC = {
         "descriptors": [{"name": "extra.ahead", "bins": 8}, {"name": "displacement", "bins": 4}]
     },
     "search": {
+        "feasible": False,
         "generations": 2,
         "batch": 4,
         "block": 4,

@@ -218,7 +218,7 @@ def test_thresholds_follow_fitness_above_them_at_the_learning_rate(emitter, stat
         np.testing.assert_allclose(found.thresholds, [expected, 1, 1, 1])
 
 
-def test_diverged_children_rank_last_and_move_no_threshold(emitter, state_after):
+def test_infeasible_children_rank_last_and_move_no_threshold(emitter, state_after):
     fitness = [np.nan, np.inf, 3.0, 2.0, 1.5, 1.2]
     feasible = [False, False, True, True, True, True]
     found = state_after(emitter(), fitness, [0, 0, 1, 1, 2, 3], feasible=feasible)

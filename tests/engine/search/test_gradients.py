@@ -17,8 +17,8 @@ SIZES = (1e-3, 1e-4, 1e-5, 1e-6)
 """Steps of finite differences; the best counts: a path's length bends sharply near rest."""
 
 CONTROLS = {
-    "cppn": {"period": 50, "angle_scale": 0.1, "length_scale": 0.05},
-    "direct": {"encoding": "direct", "period": 50},
+    "cppn": {"period": 50, "angle_scale": 0.1, "length_scale": 0.05, "lag": 4},
+    "direct": {"encoding": "direct", "period": 50, "lag": 4},
 }
 
 

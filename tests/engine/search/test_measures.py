@@ -10,6 +10,7 @@ import pytest
 from microcosmos import bodies, filaments, search, spec, world
 from microcosmos.naming import MeasureName
 from microcosmos.search.measures import curvature, efficiency, symmetry
+from microcosmos.search.measures import swimming as swimming_of
 from microcosmos.spec import measures
 
 STEPS = 40
@@ -62,6 +63,41 @@ def test_no_power_is_no_efficiency(float64):
     assert efficiency(values[0], jnp.asarray(-1.0), values[2]) == 0
 
 
+def swum(strokes, velocity=0.01, jump=0.0):
+    """Speed and stride of a body of 20 cells that moves evenly after its first stroke."""
+    steps = np.arange(1, len(strokes) + 1)
+    path = np.stack([0.6 * velocity * steps + jump * (strokes < 1), -0.8 * velocity * steps], 1)
+    return [float(x) for x in swimming_of(jnp.asarray(path), jnp.asarray(strokes), 20.0)]
+
+
+@pytest.mark.fast
+def test_speed_and_stride_of_an_even_motion(float64):
+    steps = np.arange(1.0, 1001)
+    assert swum(steps / 100) == pytest.approx([1000 * 0.01 / 20, 100 * 0.01 / 20])
+    assert swum(steps / 200) == pytest.approx([0.5, 0.1])  # Fewer strokes, the same speed.
+    assert swum(steps / 300) == pytest.approx([0.5, 0.15])  # A part of a stroke is left out.
+    assert swum(steps / 100, jump=5.0) == pytest.approx([0.5, 0.05], rel=1e-3)
+    assert swum(steps / 501) == [0.0, 0.0]
+    assert swum(np.zeros(1000)) == [0.0, 0.0]
+
+
+@pytest.mark.fast
+def test_speed_counts_steps_where_the_clock_slows(float64):
+    """The second stroke takes 100 steps, the third 300."""
+    strokes = np.interp(np.arange(1, 501), [0, 100, 200, 500], [0, 1, 2, 3])
+    speed, stride = swum(strokes)
+    assert speed == pytest.approx(0.5)
+    assert stride == pytest.approx(400 * 0.01 / 2 / 20)
+
+
+@pytest.mark.fast
+def test_speed_can_be_differentiated(float64, require_slope):
+    random = np.random.default_rng(0)
+    path = np.cumsum(random.normal(size=(40, 2)), 0)
+    strokes = np.cumsum(random.uniform(0.05, 0.1, 40))
+    require_slope(lambda given: sum(swimming_of(*given, 5.0)), (path, strokes))
+
+
 @pytest.fixture
 def swimming(immerse, float64):
     """The start, states and measures of a gait, and the measures of its motion."""
@@ -106,8 +142,9 @@ def test_measures_are_what_numpy_makes_of_the_states(swimming):
         "symmetry": (change * change[:, ::-1]).sum() / (change**2).sum(),
         "efficiency": 0.1 * (moved / STEPS) ** 2 / power,
         "nodes": 8,
+        "impulse": np.hypot(*np.cumsum(np.asarray(measures.force)[:, 0], 0).T).max(),
     }
     for name, value in expected.items():
-        np.testing.assert_allclose(values[name], value, rtol=1e-9, err_msg=name)
+        np.testing.assert_allclose(values[name], value, rtol=1e-9, atol=2e-12, err_msg=name)
     assert values["power"] == pytest.approx(power)
     assert values["power"] > 0

@@ -87,7 +87,7 @@ def evaluated(genotypes):
     return search.Evaluation(fitness, measures, status)
 
 
-def test_their_map_elites_runs_on_our_scores_and_what_diverged_never_enters():
+def test_their_map_elites_runs_on_our_scores_and_what_is_infeasible_never_enters():
     names = ("core.map_elites", "core.emitters.standard_emitters")
     loop, emitters = map(qdax.require_qdax, names)
     score = qdax.scoring_function(evaluated, AROUND)

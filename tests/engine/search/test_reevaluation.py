@@ -154,7 +154,7 @@ def test_means_and_spreads_are_those_of_all_samples(repeated):
     assert repeats.fitness[3] == 0
 
 
-def test_diverged_repeats_are_counted_and_in_no_mean(repeated):
+def test_infeasible_repeats_are_counted_and_in_no_mean(repeated):
     bad = [np.nan, np.inf, 3.0, 1.0], [np.nan, np.inf, 0.3, 0.1], (1, 1, 0, 0)
     repeats = repeated(([1.0, 1, 1, 1], [0.1] * 4), bad)
     assert repeats.failed.tolist() == [1, 1, 0, 0]

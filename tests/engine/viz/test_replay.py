@@ -26,7 +26,9 @@ from microcosmos.world import flow
 def best(best_of):
     parts = {"world": {"width": 40, "height": 32}, "body": {"nodes": 12}}
     with jax.numpy_rank_promotion("raise"):
-        return best_of(4, **parts, control={"period": 30}, task={"steps": 601})
+        return best_of(
+            4, **parts, control={"period": 30}, task={"steps": 601, "fitness": "displacement"}
+        )
 
 
 @pytest.fixture(scope="module")
@@ -226,7 +228,7 @@ def file(request):
         world=spec.World(width=20, height=20),
         body=spec.Chain(nodes=NODES),
         control=CONTROLS[request.param],
-        task=spec.Task(steps=STEPS),
+        task=spec.Task(steps=STEPS, fitness="displacement"),
     )
     encoding = build_encoding(scene, ROOM)
     genotype = jax.device_get(encoding.newcomer(key=jax.random.key(7)))

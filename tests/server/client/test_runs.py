@@ -9,6 +9,7 @@ from pydantic import SecretStr
 
 from microcosmos.client import Client, Conflict, NoAnswer, NotFound, Refused, polling
 from microcosmos.client.views import watch
+from microcosmos.spec.quality_diversity import DEMO
 from server.attempts.claim import claim
 
 
@@ -17,7 +18,7 @@ def test_a_spec_a_file_and_a_preset_are_submitted(client, spec, tmp_path):
     plain = client.submit(spec | {"seed": 5}, name="mine")
     assert (plain.status, plain.name, plain.spec["seed"]) == ("queued", "mine", 5)
     assert client.submit(tmp_path / "spec.json").spec["seed"] == 7
-    assert client.submit("demo").spec == spec
+    assert client.submit("demo").spec == DEMO.model_dump(mode="json")
     assert client.submit("gaits/demo").experiment == "gaits"
     assert len(list(client.runs())) == 4
     assert client.last().experiment == "gaits"

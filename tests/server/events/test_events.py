@@ -60,7 +60,7 @@ def test_the_stream_carries_every_change_of_a_run(address, run_id, claim_run, re
         "best": 1.0,
         "mean": 0.5,
         "evaluations": 16,
-        "diverged": 1,
+        "infeasible": 1,
         "seconds": 1.5,
         "summary": None,
     }

@@ -4,12 +4,13 @@ from concurrent.futures import ThreadPoolExecutor
 from uuid import UUID
 
 import pytest
+import reports
 from answers import detail, fields
 from deletion import delete_for_good
 from sqlalchemy import select
 
 from microcosmos.archive import creature
-from microcosmos.spec import EXPERIMENTS, parse
+from microcosmos.spec import parse
 from server.attempts.claim import claim
 from server.forks import forking
 from server.runs.submission import submit
@@ -177,7 +178,7 @@ def test_a_fork_is_restored_after_its_source_is_purged(fork, api, services, ende
 @pytest.fixture
 def run_id(services) -> UUID:
     """A queued run of four generations."""
-    demo = EXPERIMENTS["quality-diversity"].presets[0].spec.model_dump(mode="json")
+    demo = reports.DEMO.model_dump(mode="json")
     demo["search"]["generations"] = 4
     return submit(services, parse(demo))[0].id
 

@@ -45,7 +45,7 @@ def test_runs_queues_and_workers_are_counted(services, run_id, scrape, record):
     after = scrape()
     assert (after["runs", 'status="queued"'], after["runs", 'status="running"']) == (0, 1)
     assert after["evaluations_total", ""] == 16 * 4
-    assert after["diverged_total", ""] == 4
+    assert after["infeasible_total", ""] == 4
     assert after["generations_total", ""] == 4
     assert after["computing_seconds_total", ""] == 10
     assert after["generation_seconds", ""] == 2.5

@@ -151,12 +151,12 @@ def test_species_are_listed_by_generation(api, run_id, record):
 
 def test_thinned_curves_sum_reasons_of_divergence(api, run_id, record):
     for generation in range(1, 11):
-        summary = {"diverged: non-finite": 2, "inserted": generation}
-        summary |= {"diverged: supersonic": 1} if generation == 4 else {}
+        summary = {"infeasible: non-finite": 2, "inserted": generation}
+        summary |= {"infeasible: supersonic": 1} if generation == 4 else {}
         record(generation, summary=summary)
     columns = api.get(f"runs/{run_id}/generations", params={"points": 3}).json()["summary"]
-    assert sum(filter(None, columns["diverged: non-finite"])) == 20
-    assert sum(filter(None, columns["diverged: supersonic"])) == 1
+    assert sum(filter(None, columns["infeasible: non-finite"])) == 20
+    assert sum(filter(None, columns["infeasible: supersonic"])) == 1
     assert columns["inserted"][-1] == 10
 
 

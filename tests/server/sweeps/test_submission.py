@@ -68,7 +68,7 @@ def test_a_path_reaches_into_lists_whole_parts_and_parts_that_are_off(api, post)
         (
             {"grid": {"body.nodes": [8, 64], "world.width": [64, 128]}},
             "grid",
-            "with body.nodes=64, world.width=64: `world.height` must be at least 80",
+            "with body.nodes=64, world.width=64: `world.height` must be at least 74",
         ),
         (
             {"grid": {"world.height": [128], "body.nodes": [8, 99], "world.width": [64, 128]}},

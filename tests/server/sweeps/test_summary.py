@@ -85,7 +85,7 @@ def test_a_summary_of_very_long_runs_can_be_asked_for(api, services, post):
 def record(services, run, rows):
     """Write down generations of a run, as a worker would have."""
     columns = ("qd_score", "coverage", "best")
-    others = {"evaluations": 1, "diverged": 0, "seconds": 1.0, "summary": None, "mean": None}
+    others = {"evaluations": 1, "infeasible": 0, "seconds": 1.0, "summary": None, "mean": None}
     with services.sessions.write.begin() as session:
         row = session.get_one(Run, UUID(run))
         row.generation = len(rows)

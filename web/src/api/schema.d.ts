@@ -1479,12 +1479,12 @@ export interface components {
             best: (number | null)[];
             /** Coverage */
             coverage: (number | null)[];
-            /** Diverged */
-            diverged: number[];
             /** Evaluations */
             evaluations: number[];
             /** Generation */
             generation: number[];
+            /** Infeasible */
+            infeasible: number[];
             /** Mean */
             mean: (number | null)[];
             /** Qd Score */
@@ -2133,8 +2133,6 @@ export interface components {
             demonstration: boolean;
             /** Device */
             device: string | null;
-            /** Diverged */
-            diverged: number;
             /** Error */
             error: string | null;
             /** Eta Seconds */
@@ -2157,6 +2155,8 @@ export interface components {
              * Format: uuid
              */
             id: string;
+            /** Infeasible */
+            infeasible: number;
             /** Name */
             name: string | null;
             /** Note */

@@ -140,7 +140,7 @@ export interface AuditRow {
 
 /** The verdict on a creature's swimming, with its figures. */
 export interface Audit {
-  verdict: { survives: boolean; reasons: string[] };
+  verdict: { trusted: boolean; reasons: string[] };
   rows: AuditRow[];
 }
 

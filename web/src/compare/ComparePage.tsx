@@ -119,7 +119,7 @@ const FIGURES: FormattedFigure[] = [
   ...SCORES.map(([name, title, format]): FormattedFigure => [title, (run) => format(run[name], 5)]),
   [text.generations, (run) => `${count(run.generation)} / ${count(run.generations)}`],
   [text.evaluations, (run) => count(run.evaluations)],
-  [text.diverged, (run) => count(run.diverged)],
+  [text.infeasible, (run) => count(run.infeasible)],
   [text.evaluationsPerSecond, (run) => number(run.evaluations_per_second)],
   [text.time, (run) => (run.eta_seconds ? text.left(duration(run.eta_seconds)) : timeOf(run).text)],
   [text.device, (run) => run.device ?? DASH],

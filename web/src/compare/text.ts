@@ -12,7 +12,7 @@ export const text = {
   remove: (name: string) => `Remove ${name}`,
   generations: "Generations",
   evaluations: "Evaluations",
-  diverged: "Diverged",
+  infeasible: "Infeasible",
   evaluationsPerSecond: "Evaluations/s",
   time: "Time",
   left: (duration: string) => `${duration} left`,

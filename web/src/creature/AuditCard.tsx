@@ -18,7 +18,7 @@ export function AuditCard({ sha, query }: { sha: string; query: URLSearchParams 
       {...{ note, error }}
       name="audit"
       title={text.audit}
-      verdict={audit && (audit.verdict.survives ? ["finished", text.survives] : ["failed", text.fails])}
+      verdict={audit && (audit.verdict.trusted ? ["finished", text.trusted] : ["failed", text.notTrusted])}
       button={requested ? null : text.runAudit}
       onStart={() => setQuery({ audit: "" })}
       running={requested && !audit ? text.auditing : null}
@@ -26,7 +26,7 @@ export function AuditCard({ sha, query }: { sha: string; query: URLSearchParams 
       {!requested && <p class="quiet small">{text.auditAbout}</p>}
       {audit && (
         <>
-          <p class="reasons">{text.auditVerdict(audit.verdict.survives, audit.verdict.reasons.join("; "))}</p>
+          <p class="reasons">{text.auditVerdict(audit.verdict.trusted, audit.verdict.reasons.join("; "))}</p>
           <Table label={text.auditFigures} columns={COLUMNS} rows={audit.rows} keyOf={({ name }) => name} />
         </>
       )}

@@ -96,10 +96,9 @@ const isEvolved = (creature: Creature) => swims(creature) && creature.identity.g
 
 function ReplayFitness({ replay, task }: { replay: Replay; task: Spec }) {
   const { recorded, replayed, difference } = replay.header.fitness;
-  const swims = task.fitness === "displacement";
   return (
     <p class="quiet small">
-      {text.replayFitness(replayed === null ? null : number(replayed, 4), swims)}
+      {text.replayFitness(replayed === null ? null : number(replayed, 4), task.fitness)}
       {recorded !== null && text.recordedFitness(number(recorded, 4))}
       {difference !== null && difference !== 0 && text.rounding(number(difference, 2))}.
     </p>

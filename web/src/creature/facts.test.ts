@@ -38,7 +38,12 @@ describe("a creature file", () => {
     const measured = { fitness: 0, descriptors: { speed: 0.5 }, measures: {}, block: 1, device: "cpu" };
     const provenance = { parents: [], operator: "random", generation: 0, seed: 0, version: "1" };
     const facts = factsOf({ ...bare, measured, provenance });
-    expect(facts).toMatchObject({ Fitness: "0", Speed: "0.5", Generation: "0", "Random seed": "0" });
+    expect(facts).toMatchObject({
+      Fitness: "0",
+      Speed: "0.5 lengths/1,000 steps",
+      Generation: "0",
+      "Random seed": "0",
+    });
   });
 
   it("of a gait names swimmer and period, and measures with their units", () => {

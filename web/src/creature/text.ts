@@ -5,13 +5,13 @@ export const text = {
   auditFigures: "Figures of the audit",
   runAudit: "Run audit",
   auditAbout:
-    "The audit simulates the creature with twice the resolution and half the time step, with another delta kernel, and with a reciprocal gait. Swimming that does not survive is an artefact of the solver.",
+    "The audit simulates the creature again: with limits doubled and without, on half the grid spacing with a quarter of the step, with another delta kernel, with a heading of 45°, and with a reciprocal gait. A creature that fails a check is not trusted.",
   retrying: (note: string) => `${note} Trying again …`,
   auditing: "Simulating at higher resolution; this takes minutes …",
-  survives: "survives",
-  fails: "does not survive",
-  auditVerdict: (survives: boolean, reasons: string) =>
-    `The swimming ${survives ? "survives" : "does not survive"} refinement${survives && reasons ? ", with reservations" : ""}${reasons && `: ${reasons}`}.`,
+  trusted: "trusted",
+  notTrusted: "not trusted",
+  auditVerdict: (trusted: boolean, reasons: string) =>
+    trusted ? "The creature passes every check." : `Not trusted: ${reasons}.`,
   figure: "Quantity",
   value: "Value",
   limit: "Limit",
@@ -25,8 +25,12 @@ export const text = {
   loading: "Loading creature …",
   replay: "Replay",
   recording: "Simulating this creature to record its motion …",
-  replayFitness: (fitness: string | null, swims: boolean) =>
-    `${fitness === null ? "The replay has no fitness: the plug-in of the task was not loaded" : swims ? `Displacement in this replay: ${fitness} cells` : `Fitness in this replay: ${fitness}`}`,
+  replayFitness: (fitness: string | null, measured: unknown) => {
+    if (fitness === null) return "The replay has no fitness: the plug-in of the task was not loaded";
+    if (measured === "speed") return `Speed in this replay: ${fitness} body lengths in 1,000 steps`;
+    if (measured === "displacement") return `Displacement in this replay: ${fitness} cells`;
+    return `Fitness in this replay: ${fitness}`;
+  },
   recordedFitness: (fitness: string) => `; recorded fitness: ${fitness}`,
   rounding: (difference: string) => ` (rounding: ${difference})`,
   download: "Download",
@@ -154,6 +158,8 @@ export const text = {
   worldOf: (width: unknown, height: unknown, water: string) => `${width} × ${height} cells, ${water}`,
   /** Titles, units and digits of measures. */
   measures: {
+    speed: ["Speed", "lengths/1,000 steps"],
+    stride: ["Stride", "lengths"],
     displacement: ["Displacement", "cells", 6],
     cycle: ["Displacement in the last cycle", "cells", 6],
     direction: ["Direction", "rad"],

@@ -9,7 +9,7 @@ import { useRuns } from "../store/store";
 import { setQuery } from "../store/router";
 import { Curves } from "../charts/curves/Curves";
 import { type OtherRun, arrangePlots, curveViewOf } from "../charts/curves/curveView";
-import { REASONS, divergedBy, scoresOf, workOf } from "../charts/curves/plots";
+import { REASONS, infeasibleBy, scoresOf, workOf } from "../charts/curves/plots";
 import { count, percent, shortId, titleOf, words } from "../ui/format";
 import { CurveOptions } from "../charts/curves/CurveOptions";
 import { Card } from "../ui/Page";
@@ -51,24 +51,24 @@ export function CurvesCard({ run, curves, query, compared: { ids, others, error 
 export function SearchCard({ run, curves, query, compared }: Props & { curves: Columns }) {
   const view = curveViewOf(query);
   const plots = arrangePlots(workOf, curves, compared.others, view);
-  if (plots.length === 0 && run.diverged === 0) return null;
+  if (plots.length === 0 && run.infeasible === 0) return null;
   return (
     <Card id="search" kind="wide-curves" title={text.search}>
       <Curves plots={plots} view={view} />
-      <DivergedTable run={run} reasons={divergedBy(curves)} />
+      <InfeasibleTable run={run} reasons={infeasibleBy(curves)} />
     </Card>
   );
 }
 
-function DivergedTable({ run, reasons }: { run: Run; reasons: [reason: string, count: number][] }) {
+function InfeasibleTable({ run, reasons }: { run: Run; reasons: [reason: string, count: number][] }) {
   const known = reasons.reduce((sum, [, number]) => sum + number, 0);
-  const unknown = run.diverged - known;
-  if (run.diverged === 0) return <p class="quiet small">{text.noneDiverged}</p>;
+  const unknown = run.infeasible - known;
+  if (run.infeasible === 0) return <p class="quiet small">{text.noneInfeasible}</p>;
   const rows = reasons.map(([reason, number]) => [words(reason), number, REASONS[reason] ?? ""] as const);
   if (unknown > 0) rows.push([text.unknown, unknown, text.reasonMissing]);
   return (
-    <table class="plain-table diverged">
-      <caption>{text.divergedCaption}</caption>
+    <table class="plain-table infeasible">
+      <caption>{text.infeasibleCaption}</caption>
       <tbody>
         {rows.map(([name, number, about]) => (
           <tr key={name}>

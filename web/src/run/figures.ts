@@ -28,7 +28,7 @@ export function figuresOf(run: Run): Figure[] {
       return [
         [text.points, count(value("points") ?? run.evaluations)],
         [text.withWarnings, count(value("warned") ?? 0)],
-        [text.failed, count(value("failed") ?? run.diverged)],
+        [text.failed, count(value("failed") ?? run.infeasible)],
       ];
     case "folding":
       return [[text.meanLoss, number(value("loss"))]];
@@ -46,7 +46,7 @@ export function figuresOf(run: Run): Figure[] {
     default:
       return [
         ...SCORES.map(([name, title, format]): Figure => [title, format(run[name])]),
-        [text.diverged, count(run.diverged)],
+        [text.infeasible, count(run.infeasible)],
       ];
   }
 }

@@ -6,7 +6,7 @@ export const MAX_POINTS = 4000;
 const PLOTTED = ["generation", "evaluations", "seconds", "qd_score", "coverage", "best"] as const;
 
 /** Prefix of names of counts, which are added up when curves are thinned out. */
-export const DIVERGED = "diverged: ";
+export const INFEASIBLE = "infeasible: ";
 
 export type Column = readonly (number | null)[];
 
@@ -67,7 +67,7 @@ function thinOut(summary: NumberColumns): NumberColumns {
   const columns = Object.entries(summary).map(([name, column]) => {
     const last = column.length - 1;
     const indices = [...Array.from({ length: Math.ceil(last / 2) }, (_, k) => 2 * k), last];
-    const join = name.startsWith(DIVERGED) ? sumOf : newestOf;
+    const join = name.startsWith(INFEASIBLE) ? sumOf : newestOf;
     return [name, indices.map((i, k) => join(column.slice((indices[k - 1] ?? -1) + 1, i + 1)))];
   });
   return Object.fromEntries(columns);

@@ -41,14 +41,14 @@ const GENERATIONS: Generations = {
   best: column,
   mean: column,
   evaluations: [16, 32],
-  diverged: [0, 0],
+  infeasible: [0, 0],
   seconds: [1, 2],
   summary: { inserted: [5, 6], corrected: [null, 0.5] },
 };
 
 export function generationEvent(number: number): GenerationEvent {
   const [evaluations, seconds] = [16 * number, 2 * number];
-  const values = { qd_score: number, coverage: number, best: number, mean: number, diverged: 0 };
+  const values = { qd_score: number, coverage: number, best: number, mean: number, infeasible: 0 };
   const summary = { inserted: number, ended: "words", ...(number % 2 === 1 && { late: number }) };
   return { run: "a", generation: number, evaluations, seconds, ...values, summary };
 }

@@ -132,8 +132,8 @@ export function withGenerationEvent(state: State, event: wire.GenerationEvent): 
   const next = withDetail(state, event.run, (detail) => details.withGenerationEvent(detail, event));
   const run = state.runs.get(event.run);
   if (!run || event.generation <= run.generation) return next;
-  const { generation, qd_score, coverage, best, evaluations, diverged } = event;
-  const figures = { generation, qd_score, coverage, best, evaluations, diverged };
+  const { generation, qd_score, coverage, best, evaluations, infeasible } = event;
+  const figures = { generation, qd_score, coverage, best, evaluations, infeasible };
   const progress = Math.min(1, generation / run.generations);
   const sparkline = withPoint(run.sparkline, run.generation, qd_score, generation);
   return withRun(next, { ...run, ...figures, progress, sparkline });

@@ -35,7 +35,7 @@ class QdaxEmitter:
     """Any emitter of QDax's over vectors that needs no creatures to begin.
 
     It learns an outcome in the next generation, with the archive that QDax would show it. Genes
-    are cut at −1 and 1. Diverged creatures count as worst, in the best elite's cell.
+    are cut at −1 and 1. Infeasible creatures count as worst, in the best elite's cell.
     """
 
     slots: int

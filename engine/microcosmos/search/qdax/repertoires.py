@@ -41,7 +41,7 @@ def scoring_function(
 ) -> Callable:
     """Wrap an evaluation of a batch in QDax's protocol: fitness, descriptors, extra scores.
 
-    Genotypes are networks, or plain arrays of genes from −1 to 1. Diverged creatures have
+    Genotypes are networks, or plain arrays of genes from −1 to 1. Infeasible creatures have
     fitness −inf, so that no repertoire takes them. With `slopes` the extra scores hold unit
     slopes (creature, gene, output) of fitness and descriptors for CMA-MEGA, 0 if not finite. A
     descriptor's direction is the same on any of its scales.

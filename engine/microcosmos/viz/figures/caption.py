@@ -95,6 +95,7 @@ def _fitness(spec: Search) -> str:
     if task.plugin:
         return f"Fitness is “{task.plugin.title}” ({task.fitness})"
     return "Fitness is " + {
+        "speed": "the speed of swimming",
         "displacement": "the displacement of the mean node",
         "energy": "the energy collected",
     }.get(task.fitness, f"displacement + {task.energy_weight:g} × energy collected")

@@ -125,7 +125,7 @@ def _runs() -> None:
             "checkpoint_generation",
         ),
         sa.Column("worker", sa.String(length=255)),
-        *_required(sa.BigInteger(), "evaluations", "diverged"),
+        *_required(sa.BigInteger(), "evaluations", "infeasible"),
         sa.Column("seconds", sa.Double(), nullable=False),
         *_optional(sa.Double(), "qd_score", "coverage", "best"),
         *_optional(sa.Uuid(), "sweep", "forked_from", "owner"),
@@ -241,7 +241,7 @@ def _results() -> None:
         sa.Column("run_id", sa.Uuid(), _to_run(), primary_key=True),
         sa.Column("generation", sa.Integer(), primary_key=True, autoincrement=False),
         *_optional(sa.Double(), "qd_score", "coverage", "best", "mean"),
-        *_required(sa.BigInteger(), "evaluations", "diverged"),
+        *_required(sa.BigInteger(), "evaluations", "infeasible"),
         sa.Column("seconds", sa.Double(), nullable=False),
         sa.Column("summary", JSON_OR_NULL),
     )

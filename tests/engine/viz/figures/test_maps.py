@@ -58,8 +58,8 @@ def test_logarithmic_axes_have_decades_and_units(made):
 
 def test_an_unknown_measure_is_refused_with_the_known_ones(made):
     found = made(ONE)
-    with pytest.raises(ValueError, match=r"bending_effort, straightness .*got 'speed'"):
-        maps.archive(found, axes=["speed"])
+    with pytest.raises(ValueError, match=r"bending_effort, straightness .*got 'pace'"):
+        maps.archive(found, axes=["pace"])
     with pytest.raises(ValueError, match=r"`colour` must be one of fitness.*got 'size'"):
         maps.archive(found, colour="size")
 
@@ -117,7 +117,7 @@ def test_plugin_measures_have_their_declared_titles(made):
     assert fitness_label(found) == "Straight way [cells]"
     text = caption.of_archive(found, None)
     assert "over sway [cells] and straightness;" in text
-    assert "Fitness is “Straight way” (mine.straight) over 500 steps" in text
+    assert "Fitness is “Straight way” (mine.straight) over 2,000 steps" in text
     assert "the body “Cross” (mine.cross), controlled by" in text
 
 
@@ -171,8 +171,8 @@ def test_a_caption_states_the_spec(found):
         "the fittest (8.5)",
         "bending effort [rad²] and straightness",
         "MAP-Elites (emitter neat), 2 generations of 64 (32 evaluations, seed 4)",
-        "displacement of the mean node over 500 steps",
-        "a filament of 32 nodes, controlled by a CPPN (period 100 steps)",
+        "the speed of swimming over 2,000 steps",
+        "a filament of 24 nodes, controlled by a CPPN (period 200 steps)",
         "48 × 48 cells, ν = 0.2 cells²/step",
         "Microcosmos 0.1.0 on cpu, A Model avx2.",
     ):
@@ -181,7 +181,7 @@ def test_a_caption_states_the_spec(found):
 
 def test_a_form_that_is_not_force_free_is_said_to_be(made):
     paper = {"projection": "none", "theta_feedback": 0}
-    text = caption.of_archive(made(ONE, coupling=paper), None)
+    text = caption.of_archive(made(ONE, coupling=paper, search={"feasible": False}), None)
     assert "(coupling not force-free)" in text
 
 

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { type Curves, MAX_POINTS, NO_CURVES, appendCurves } from "../../store/curves";
 import { arrangePlots, curveViewOf, overlayPlots, runningMean, tableOf } from "./curveView";
-import { type Plot, divergedBy, scoresOf, valueAt, workOf } from "./plots";
+import { type Plot, infeasibleBy, scoresOf, valueAt, workOf } from "./plots";
 
 const curvesOf = (qd_score: (number | null)[], batch = 16, summary = {}): Curves => {
   const generation = qd_score.map((_, i) => i + 1);
@@ -60,16 +60,16 @@ describe("the view of curves", () => {
   });
 });
 
-describe("diverged evaluations", () => {
-  const summary = { "diverged: supersonic": [null, 2, 1], "diverged: non-finite": [4, null, 3] };
+describe("infeasible evaluations", () => {
+  const summary = { "infeasible: supersonic": [null, 2, 1], "infeasible: non-finite": [4, null, 3] };
 
   it("are counted by reason, most frequent first, and drawn as sums", () => {
     const curves = curvesOf([1, 2, 3], 16, summary);
-    expect(divergedBy(curves)).toEqual([
+    expect(infeasibleBy(curves)).toEqual([
       ["non-finite", 7],
       ["supersonic", 3],
     ]);
-    const plot = workOf(curves).find(({ title }) => title === "Diverged so far");
+    const plot = workOf(curves).find(({ title }) => title === "Infeasible so far");
     expect(plot!.series.map(({ y }) => y)).toEqual([
       [4, 4, 7],
       [0, 2, 3],
@@ -80,12 +80,12 @@ describe("diverged evaluations", () => {
     let curves = NO_CURVES;
     const length = 2 * MAX_POINTS + 3;
     for (let generation = 1; generation <= length; generation++) {
-      const figures = { qd_score: 1, coverage: 1, best: 1, mean: 1, diverged: 0, evaluations: 1 };
-      const summary = { "diverged: non-finite": 1, ...(generation === 2 && { rare: 5 }) };
+      const figures = { qd_score: 1, coverage: 1, best: 1, mean: 1, infeasible: 0, evaluations: 1 };
+      const summary = { "infeasible: non-finite": 1, ...(generation === 2 && { rare: 5 }) };
       curves = appendCurves(curves, { run: "", generation, seconds: 1, ...figures, summary });
     }
     expect(curves.generation.length).toBeLessThanOrEqual(MAX_POINTS + 1);
-    expect(divergedBy(curves)).toEqual([["non-finite", length]]);
+    expect(infeasibleBy(curves)).toEqual([["non-finite", length]]);
     expect(curves.summary["rare"]!.filter((value) => value !== null)).toEqual([5]);
   });
 });

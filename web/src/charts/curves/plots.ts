@@ -1,6 +1,6 @@
 /** The plots of a run over its generations. */
 
-import { type Column, type Curves, DIVERGED } from "../../store/curves";
+import { type Column, type Curves, INFEASIBLE } from "../../store/curves";
 import { number, percent } from "../../ui/format";
 import { text } from "./text";
 
@@ -53,7 +53,7 @@ export function scoresOf(curves: Curves): Plot[] {
   ];
 }
 
-/** Work of the search: insertions by emitter, re-evaluations, time, diverged evaluations. */
+/** Work of the search: insertions by emitter, re-evaluations, time, infeasible evaluations. */
 export function workOf(curves: Curves): Plot[] {
   const deviceSeconds = singleSeries(withoutFirst(curves), "device_seconds", "--curve-2", false);
   const plots: Plot[] = [
@@ -61,32 +61,35 @@ export function workOf(curves: Curves): Plot[] {
     { title: text.improved, format: number, series: emitterSeries(curves, ": improved") },
     { title: text.hitRate, format: percent, series: singleSeries(curves, "hit_rate", "--series-3", true) },
     { title: text.deviceSeconds, format: number, series: deviceSeconds },
-    { title: text.diverged, format: number, series: divergedSoFar(curves) },
+    { title: text.infeasible, format: number, series: infeasibleSoFar(curves) },
   ];
   return plots.filter(({ series }) => series.length > 0);
 }
 
-/** Descriptions of the engine's reasons for divergence. */
+/** Descriptions of the engine's reasons why an evaluation is infeasible. */
 export const REASONS: Record<string, string> = {
   "non-finite": text.nonFinite,
   supersonic: text.supersonic,
+  limits: text.limits,
+  compressible: text.compressible,
+  impulse: text.impulse,
 };
 
-/** Diverged evaluations by reason, most frequent first. */
-export function divergedBy({ summary }: Curves): [reason: string, count: number][] {
+/** Infeasible evaluations by reason, most frequent first. */
+export function infeasibleBy({ summary }: Curves): [reason: string, count: number][] {
   return Object.entries(summary)
-    .filter(([name]) => name.startsWith(DIVERGED))
+    .filter(([name]) => name.startsWith(INFEASIBLE))
     .map(([name, column]): [string, number] => [
-      name.slice(DIVERGED.length),
+      name.slice(INFEASIBLE.length),
       column.reduce<number>((sum, value) => sum + (value ?? 0), 0),
     ])
     .sort((a, b) => b[1] - a[1]);
 }
 
-function divergedSoFar(curves: Curves): Series[] {
-  return divergedBy(curves).map(([reason], i) => {
+function infeasibleSoFar(curves: Curves): Series[] {
+  return infeasibleBy(curves).map(([reason], i) => {
     let sum = 0;
-    const y = curves.summary[DIVERGED + reason]!.map((value) => (sum += value ?? 0));
+    const y = curves.summary[INFEASIBLE + reason]!.map((value) => (sum += value ?? 0));
     return { name: reason, colour: `--series-${3 + (i % 3)}`, y };
   });
 }

@@ -21,7 +21,10 @@ export const text = {
   improved: "Improvements",
   hitRate: "Re-evaluations in the same cell",
   deviceSeconds: "Device-seconds",
-  diverged: "Diverged so far",
+  infeasible: "Infeasible so far",
   nonFinite: "A number became infinite or undefined.",
   supersonic: "The fluid exceeded the speed of sound, where the method is invalid.",
+  limits: "A limit on displacement or force acted in more than 0.1 % of node steps.",
+  compressible: "The Mach number exceeded 0.17 somewhere.",
+  impulse: "A body gave the fluid a net impulse above 0.0001: it pushed itself.",
 };

@@ -1,0 +1,157 @@
+"""Actuators with finite means: bounds on the bend, the pace and the response of a body.
+
+A controller commands rest shapes. Its actuators carry them out: bent less where the body would
+close on itself, no faster than they can move a node, and with a lag, which bounds the
+acceleration and so the force on the fluid. In open loop the clock slows where the commanded
+shape is too fast, so that a gait keeps its shapes and takes longer; in closed loop the present
+shape follows the command at the bounded speed.
+"""
+
+from dataclasses import replace
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float, PyTree
+
+from ..filaments import Layout, Rest, fitted, rest_positions, turns, wrap
+from ..world import State, World, edges_there
+from .encoding import Drive
+
+
+class Actuators(eqx.Module):
+    """Bounds on what a body does; None or 0 switches one off."""
+
+    layout: Layout
+    max_speed: float | None = eqx.field(static=True, default=None)
+    """Cells a step of the fastest node, in the frame that moves and turns with the body."""
+    lag: float = eqx.field(static=True, default=0.0)
+    """Time constant of the first-order response, in steps."""
+    max_bend: float | None = eqx.field(static=True, default=None)
+    """Largest angle that is added between any two edges, in rad."""
+
+
+class Response(eqx.Module):
+    """Memory of the actuators in closed loop."""
+
+    controller: PyTree[Array]
+    paced: Rest
+    """Command after the bound on speed."""
+    rest: Rest
+    """Rest shape after the lag."""
+
+
+def carried_out(driven: Drive, actuators: Actuators) -> Drive:
+    """Return the simulation with the commands of its controller carried out by actuators."""
+    if isinstance(driven.inputs, Rest):
+        return _open_loop(driven, actuators)
+    return _closed_loop(driven, actuators)
+
+
+def _open_loop(driven: Drive, actuators: Actuators) -> Drive:
+    commands = bounded(driven.inputs, actuators, driven.world)
+    start = shape_of(driven.start, driven.world, actuators.layout)
+    commands = jax.tree.map(lambda x, y: jnp.concatenate([x[None], y]), start, commands)
+    present = driven.world.present
+    steps = jnp.arange(1, len(commands.angle), dtype=commands.angle.dtype)
+    at = steps
+    if actuators.max_speed is not None:
+        at = clock(speeds(commands, actuators.layout, present), actuators.max_speed)
+    index = jnp.clip(jnp.floor(at).astype(jnp.int32), 0, len(steps) - 1)
+    share = (at - index)[:, None]
+    paced = jax.tree.map(lambda x: x[index] * (1 - share) + x[index + 1] * share, commands)
+    return replace(driven, inputs=lagged(start, paced, actuators.lag), clock=at)
+
+
+def _closed_loop(driven: Drive, actuators: Actuators) -> Drive:
+    begun = shape_of(driven.start, driven.world, actuators.layout)
+
+    def remember(world: World, state: State, given: Any) -> Response:
+        memory = state.memory
+        state = replace(state, memory=memory.controller)
+        state = replace(state, memory=driven.remember(world, state, given))
+        command = bounded(driven.control(world, state, given), actuators, world)
+        paced = command
+        if actuators.max_speed is not None:
+            fast = fastest(memory.paced, command, actuators.layout, world.present)
+            share = jnp.minimum(1.0, actuators.max_speed / fast)
+            paced = _between(memory.paced, command, share)
+        rest = _between(memory.rest, paced, 1 / (1 + actuators.lag))
+        return Response(state.memory, paced, rest)
+
+    def control(world: World, state: State, given: Any) -> Rest:
+        return state.memory.rest
+
+    start = replace(driven.start, memory=Response(driven.start.memory, begun, begun))
+    return replace(driven, start=start, control=control, remember=remember)
+
+
+def shape_of(state: State, world: World, layout: Layout) -> Rest:
+    """Return the rest shape in which the body stands; angles near the layout's rest angles."""
+    assert world.rods.joints is not None
+    first, second = world.rods.joints.T
+    turned = wrap(state.angles[second] - state.angles[first] - layout.rest_angle)
+    v = state.positions[world.rods.edges[:, 1]] - state.positions[world.rods.edges[:, 0]]
+    return Rest(layout.rest_angle + turned, jnp.sqrt(jnp.sum(v * v, 1) + 1e-24))
+
+
+def bounded(rest: Rest, actuators: Actuators, world: World) -> Rest:
+    """Return rest shapes whose bend, relative to the body at rest, is within the bound."""
+    if actuators.max_bend is None:
+        return rest
+    turned = turns(rest, actuators.layout)
+    there = edges_there(world)
+    if there is not None:  # A grown body has its first edge.
+        turned = jnp.where(there, turned, turned[..., :1])
+    span = jnp.max(turned, -1) - jnp.min(turned, -1)
+    share = jnp.minimum(1.0, actuators.max_bend / jnp.maximum(span, 1e-6))[..., None]
+    straight = jnp.broadcast_to(actuators.layout.rest_angle, rest.angle.shape)
+    return Rest(straight + share * (rest.angle - straight), rest.length)
+
+
+def fastest(
+    before: Rest, after: Rest, layout: Layout, present: Bool[Array, "node"] | None
+) -> Float[Array, ""]:
+    """Return the largest displacement of a node between rest shapes, less rigid motion."""
+    start = rest_positions(before, layout)
+    moved = fitted(rest_positions(after, layout), start, layout.pieces, present) - start
+    squares = jnp.sum(moved * moved, 1)
+    if present is not None:
+        squares = jnp.where(present, squares, 0.0)
+    return jnp.sqrt(jnp.max(squares) + 1e-20)
+
+
+def speeds(
+    rest: Rest, layout: Layout, present: Bool[Array, "node"] | None
+) -> Float[Array, "time"]:
+    """Return the speed of the fastest node from each rest shape to the next."""
+    before, after = (
+        Rest(rest.angle[:-1], rest.length[:-1]),
+        Rest(rest.angle[1:], rest.length[1:]),
+    )
+    return jax.vmap(lambda a, b: fastest(a, b, layout, present))(before, after)
+
+
+def clock(speeds: Float[Array, "time"], max_speed: float) -> Float[Array, "time"]:
+    """Return the time of the commands at the end of each step, 1 a step or slower."""
+    took = jnp.cumsum(jnp.maximum(1.0, speeds / max_speed))
+    took = jnp.concatenate([jnp.zeros(1, took.dtype), took])
+    times = jnp.arange(len(took), dtype=took.dtype)
+    return jnp.interp(times[1:], took, times)
+
+
+def lagged(start: Rest, commands: Rest, lag: float) -> Rest:
+    """Return the first-order response to commands, with the time constant `lag` in steps."""
+    if not lag:
+        return commands
+
+    def follow(rest, command):
+        rest = _between(rest, command, 1 / (1 + lag))
+        return rest, rest
+
+    return jax.lax.scan(follow, start, commands)[1]
+
+
+def _between(one: Rest, other: Rest, share: Any) -> Rest:
+    return jax.tree.map(lambda x, y: x + share * (y - x), one, other)
