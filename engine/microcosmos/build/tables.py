@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 
 import jax.numpy as jnp
 
@@ -51,7 +52,8 @@ def build_crowd(chosen: spec.Scaling, nodes: int) -> tuple[scaling.Scene, world.
     centres = chosen.centres(nodes).tolist()
     crowd = bodies.combined([bodies.placed(one, centre) for centre in centres])
     wide = spec.World(width=chosen.width, height=chosen.height, steric=chosen.steric)
-    box = build_world(wide, spec.Coupling(), crowd)
+    # Swept at every size: a layout of many nodes has no room.
+    box = replace(build_world(wide, spec.Coupling(), crowd), layout=None)
     start = world.at_rest(box, jnp.asarray(crowd.positions, jnp.float32))
     rest = filaments.Rest(
         jnp.asarray(crowd.rest_angle, jnp.float32), jnp.asarray(crowd.rest_length, jnp.float32)

@@ -1,5 +1,8 @@
 """A body in a fluid conserves mass, momentum, rest and its edges' lengths."""
 
+from dataclasses import replace
+from functools import partial
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -61,8 +64,13 @@ def test_mass_is_kept_for_ten_thousand_steps_of_a_swimmer(small, dtype):
 def test_an_untouched_body_stays_exactly_at_rest(dtype):
     body = bodies.chain(16, 1.0)
     box, start = scenes.immersed(body, 0.05, dtype, size=(32, 32))
-    end, _ = swim(box, start, scenes.held(body, 200, dtype))
+    still = scenes.held(body, 200, dtype)
+    end, _ = swim(replace(box, layout=None), start, still)
     jax.tree.map(np.testing.assert_array_equal, end, start)
+    # Shape matching rounds.
+    end, _ = swim(box, start, still)
+    rounding = partial(np.testing.assert_allclose, rtol=0, atol=1e3 * np.finfo(dtype).eps)
+    jax.tree.map(rounding, end, start)
 
 
 def test_edges_keep_their_length_while_a_worm_swims(float64):
@@ -70,7 +78,7 @@ def test_edges_keep_their_length_while_a_worm_swims(float64):
     box, start = scenes.immersed(swimmer.body, 0.5, float64)
     positions = scenes.recorded(box, start, scenes.stroke(swimmer, 250, 2, float64))
     lengths = np.hypot(*np.moveaxis(np.diff(positions, axis=1), -1, 0))
-    np.testing.assert_allclose(lengths, 1.0, atol=0.01)
+    np.testing.assert_allclose(lengths, 1.0, atol=1e-5)
 
 
 def test_a_creature_swims_alike_wherever_it_starts(small, float64):

@@ -79,7 +79,8 @@ VISCOSITY = 0.1
 def bending(float64):
     """A filament that is asked to bend, with half of the stiffness and with all of it."""
     one, half = (bodies.chain(12, 1.0, bend=bend) for bend in (1.0, 0.5))
-    box, start = scenes.immersed(one, VISCOSITY, float64, size=(32, 32))
+    stiff, start = scenes.immersed(one, VISCOSITY, float64, size=(32, 32))
+    box = replace(stiff, layout=None)  # As a world with `nu_c` is built.
     softer, _ = scenes.immersed(half, VISCOSITY, float64, size=(32, 32))
     rest = jax.tree.map(lambda x: x[0], scenes.rest(one, np.full((1, 10), 0.2), float64))
 
