@@ -34,7 +34,11 @@ BARS = {
     ("NEAT", "best"): 1.0,
 }
 """Least ratios of medians to those of random search."""
-FIGURES = {"best": "best fitness (cells)", "coverage": "coverage", "qd_score": "QD score"}
+FIGURES = {
+    "best": "best fitness (lengths in 1,000 steps)",
+    "coverage": "coverage",
+    "qd_score": "QD score",
+}
 PURE = 0.9
 """Least share of a gait's power in one harmonic for a sinusoidal gait."""
 
@@ -72,7 +76,7 @@ def written(spec: dict[str, Any]) -> dict[str, Any]:
 
 
 def spec(seed: int, method: str) -> dict:
-    """32 nodes, 64 × 64 cells, 500 steps, 20 × 20 cells, 50 generations of 64."""
+    """24 nodes, 48 × 48 cells, 2,000 steps, 20 × 20 cells, 50 generations of 64."""
     chosen = METHODS[method]
     search = {**chosen.get("search", {}), "generations": 50, "batch": 64}
     return written({**chosen, "seed": seed, "search": search})
@@ -156,11 +160,11 @@ def purity(file: dict) -> float:
 
 
 def slope_spec(seed: int, method: str) -> dict:
-    """16 nodes, 32 × 32 cells, 100 steps, 20 × 20 cells."""
+    """16 nodes, 32 × 32 cells, 800 steps, 20 × 20 cells."""
     encoding, emitter, generations = SLOPE_METHODS[method]
-    control = {"encoding": encoding, "period": 50, "angle_scale": 0.3, "length_scale": 0.2}
+    control = {"encoding": encoding, "period": 120, "angle_scale": 0.6}
     search = {"generations": generations, "batch": 32, "emitters": [emitter]}
-    size = {"world": {"width": 32, "height": 32}, "body": {"nodes": 16}, "task": {"steps": 100}}
+    size = {"world": {"width": 32, "height": 32}, "body": {"nodes": 16}, "task": {"steps": 800}}
     return written({**size, "seed": seed, "control": control, "search": search})
 
 
@@ -232,12 +236,12 @@ def forage_spec(seed: int, fitness: str) -> dict:
     Packets lie elsewhere in each of four worlds, so only sensing finds them.
     """
     energy = {"packets": 5, "width": 3.0, "placements": 4}
-    control = {"sense_energy": True, "period": 50, "angle_scale": 0.3, "length_scale": 0.2}
+    control = {"sense_energy": True, "period": 120, "angle_scale": 0.6}
     parts = {
         "experiment": "neuroevolution",
         "world": {"width": 48, "height": 48, "energy": energy},
         "body": {"builder": "chain", "nodes": 16},
-        "task": {"fitness": fitness, "energy_weight": 1.0, "steps": 800},
+        "task": {"fitness": fitness, "energy_weight": 1.0, "steps": 3200},
         "search": {"generations": 24, "batch": 64},
     }
     return written({**parts, "seed": seed, "control": control})
