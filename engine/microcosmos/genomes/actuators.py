@@ -103,6 +103,7 @@ def bounded(rest: Rest, actuators: Actuators, world: World) -> Rest:
     turned = turns(rest, actuators.layout)
     there = edges_there(world)
     if there is not None:  # A grown body has its first edge.
+        there = jnp.broadcast_to(there, turned.shape)
         turned = jnp.where(there, turned, turned[..., :1])
     span = jnp.max(turned, -1) - jnp.min(turned, -1)
     share = jnp.minimum(1.0, actuators.max_bend / jnp.maximum(span, 1e-6))[..., None]
