@@ -40,6 +40,6 @@ MEASURES: dict[str, Measure] = {
     "nodes": Measure("Nodes", "", 0.0, 64.0),
     "speed": Measure("Speed", "lengths/1,000 steps", 0.0, 0.6),
     "stride": Measure("Stride", "lengths", 0.0, 0.3),
-    "impulse": Measure("Net impulse on the fluid", "mass · cells/step", 1e-8, 1e2, "log10"),
+    "impulse": Measure("Net impulse", "mass · cells/step", 1e-8, 1e2, "log10"),
 }
 """The measures, in the order in which they are recorded."""
