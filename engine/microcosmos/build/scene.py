@@ -73,14 +73,11 @@ def build_actuators(
     dtype: Any = jnp.float32,
 ) -> genomes.Actuators | None:
     """Build the bounds on a controller's commands; None if there are none."""
-    if isinstance(control, spec.Gait | spec.Fold):
+    if isinstance(control, spec.Gait | spec.Fold) or not control.bounded:
         return None
-    bounds = genomes.Actuators(
+    return genomes.Actuators(
         build_layout(body, dtype), control.max_speed, control.lag, control.max_bend
     )
-    if bounds.max_speed is None and bounds.max_bend is None and not bounds.lag:
-        return None
-    return bounds
 
 
 def build_period(control: spec.Controller | spec.Gait | spec.Fold) -> float | None:

@@ -32,6 +32,11 @@ class Actuation(Part):
     max_bend: float | None = field(4.2, gt=0.0, le=100.0, unit="rad", source=OURS)
     """Largest angle that actuators add between any two edges; empty: unlimited."""
 
+    @property
+    def bounded(self) -> bool:
+        """Return whether actuators have finite means."""
+        return self.max_speed is not None or self.max_bend is not None or self.lag > 0
+
 
 class NetworkInputs(Actuation):
     """Inputs of a network at every node of the body."""

@@ -7,6 +7,7 @@ from pydantic import Field, Tag, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
 from .. import bodies
+from ..bodies.layout import MAX_NODES
 from ..plugins.declaration import refuse_empty_axis
 from .base import ENCODINGS, Part, field, name_in, one_of
 from .body import Body, is_unavailable, shape
@@ -218,6 +219,11 @@ def refuse_unfit(control: Controller, body: Body) -> None:
             raise ValueError(
                 f"`control.rest_angle` and `rest_length` must be empty for this `body`: {error}"
             ) from error
+    if control.bounded and (nodes := len(graph.positions)) > MAX_NODES:
+        raise ValueError(
+            "`control.max_speed` and `max_bend` must be empty and `lag` 0 for a body of more "
+            f"than {MAX_NODES:,} nodes, got {nodes:,} nodes"
+        )
     if (count := gene_count(control, graph)) > MAX_GENES:
         raise ValueError(f"a creature must have at most {MAX_GENES} genes, got {count}")
 

@@ -63,6 +63,7 @@ def free(low, high):
             {"control": {**QualityDiversity().control.model_dump(), "encoding": "l-system"}},
             "control: .*must be one of .*direct.*, got 'l-system'",
         ),
+        ({"body": {"nodes": 1025}}, "`lag` 0 for a body of more than 1,024"),
         (direct(bend=free(0.5, 0.4)), "control.bend: .*above `low`"),
         (direct(bend=free(0.5, 2)), "control: .*0 to 1"),
         (direct(waveform="table", terms=1), "control: .*at least 2"),
