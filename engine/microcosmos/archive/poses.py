@@ -1,0 +1,132 @@
+"""Pose streams: how a creature moved over its last two strokes, without the fluid.
+
+The layout is described in `docs/formats.md`.
+"""
+
+import csv as csv_module
+import json
+import struct
+from dataclasses import dataclass
+from io import BytesIO, StringIO
+
+import numpy as np
+
+FORMAT = "microcosmos-poses/1"
+FRAMES = 64
+"""Recorded poses, at equal times: 32 for each of the last two strokes."""
+MOMENTS = 65
+"""Recorded places of the centre, at equal times from the start to the end."""
+LEVELS = np.iinfo(np.int16).max
+_LENGTH = struct.Struct("<I")
+_NUMBERS = ("start", "stop", "strokes", "steps", "scale", "length")
+
+
+@dataclass(frozen=True)
+class PoseStream:
+    """The poses of one creature; places are in cells, not wrapped around the world."""
+
+    positions: np.ndarray
+    """Offsets of nodes from `origin` in units of `scale`: int16 (frame, node, 2)."""
+    path: np.ndarray
+    """Mean position of the nodes at equal times of the whole simulation: float32 (moment, 2)."""
+    origin: tuple[float, float]
+    scale: float
+    """Cells of one unit."""
+    edges: np.ndarray
+    """Pairs of nodes (edge, 2)."""
+    start: int
+    """Steps before the recorded strokes; frame k follows (k + 1)/frames of the way to `stop`."""
+    stop: int
+    strokes: int
+    """Strokes that the frames span: 2, or 0 if the creature did not complete as many."""
+    steps: int
+    """Steps of the whole simulation."""
+    size: tuple[int, int]
+    """Size of the world, in cells."""
+    length: float
+    """Length of the body, in cells."""
+    creature: str
+    """Its SHA-256."""
+
+    @property
+    def cells(self) -> np.ndarray:
+        """Positions in cells: float32 (frame, node, 2)."""
+        return np.float32(self.origin) + np.float32(self.scale) * self.positions
+
+    @property
+    def times(self) -> np.ndarray:
+        """Steps done at each frame."""
+        frames = len(self.positions)
+        every = (self.stop - self.start) / frames
+        return np.rint(self.start + every * np.arange(1, frames + 1)).astype(int)
+
+    def encode(self) -> bytes:
+        """Return the file: the length of a JSON header, the header, path and positions."""
+        header = {
+            "format": FORMAT,
+            "creature": self.creature,
+            "frames": len(self.positions),
+            "nodes": self.positions.shape[1],
+            "moments": len(self.path),
+            "edges": np.asarray(self.edges).tolist(),
+            "origin": [float(x) for x in self.origin],
+            "size": [int(x) for x in self.size],
+            **{name: getattr(self, name) for name in _NUMBERS},
+        }
+        text = json.dumps(header).encode()
+        text += b" " * (-len(text) % 4)  # Aligned, so that a browser can view numbers in place.
+        arrays = np.asarray(self.path, "<f4"), np.asarray(self.positions, "<i2")
+        return b"".join((_LENGTH.pack(len(text)), text, *(x.tobytes() for x in arrays)))
+
+    def csv(self) -> str:
+        """Return a table of `step`, `node`, `x`, `y`, in steps and cells."""
+        text = StringIO()
+        writer = csv_module.writer(text, lineterminator="\n")
+        writer.writerow(("step", "node", "x", "y"))
+        for step, nodes in zip(self.times.tolist(), self.cells.tolist(), strict=True):
+            writer.writerows(
+                (step, node, f"{x:.4f}", f"{y:.4f}") for node, (x, y) in enumerate(nodes)
+            )
+        return text.getvalue()
+
+    def npz(self) -> bytes:
+        """Return a NumPy file with `positions` in cells, `times` in steps, `path`, `edges`."""
+        data = BytesIO()
+        np.savez(data, positions=self.cells, times=self.times, path=self.path, edges=self.edges)
+        return data.getvalue()
+
+
+def decode(data: bytes) -> PoseStream:
+    """Return the pose stream in a file. Raises `ValueError` for any other bytes."""
+    try:
+        (length,) = _LENGTH.unpack_from(data)
+        header = json.loads(data[_LENGTH.size : _LENGTH.size + length])
+    except (struct.error, ValueError) as error:
+        raise ValueError(f"a pose stream must start with its header: {error}") from error
+    if not isinstance(header, dict) or header.get("format") != FORMAT:
+        raise ValueError(f"`format` of a pose stream must be {FORMAT}")
+    frames, nodes, moments = (int(header[name]) for name in ("frames", "nodes", "moments"))
+    start = _LENGTH.size + length
+    needed = start + 8 * moments + 4 * frames * nodes
+    if len(data) != needed:
+        raise ValueError(f"the pose stream needs {needed:,} bytes, got {len(data):,}")
+    path = np.frombuffer(data, "<f4", 2 * moments, start).reshape(moments, 2)
+    found = np.frombuffer(data, "<i2", offset=start + 8 * moments)
+    return PoseStream(
+        positions=found.reshape(frames, nodes, 2),
+        path=path,
+        origin=tuple(header["origin"]),
+        edges=np.array(header["edges"], np.int32).reshape(-1, 2),
+        size=tuple(header["size"]),
+        creature=header["creature"],
+        **{name: header[name] for name in _NUMBERS},
+    )
+
+
+def quantised(positions: np.ndarray) -> tuple[np.ndarray, tuple[float, float], float]:
+    """Return positions (frame, node, 2) as `PoseStream.positions`, its origin and its scale."""
+    low, high = positions.min((0, 1)), positions.max((0, 1))
+    origin = np.float32((low + high) / 2)
+    scale = float(max(np.max(high - low) / 2, 1e-6)) / LEVELS
+    units = np.clip(np.rint((positions - origin) / scale), -LEVELS, LEVELS)
+    return units.astype(np.int16), (float(origin[0]), float(origin[1])), scale
