@@ -28,14 +28,14 @@ class PoseStream:
     positions: np.ndarray
     """Offsets of nodes from `origin` in units of `scale`: int16 (frame, node, 2)."""
     path: np.ndarray
-    """Mean position of the nodes at equal times of the whole simulation: float32 (moment, 2)."""
+    """Mean position of nodes at equal times of the whole simulation: float32 (moment, 2)."""
     origin: tuple[float, float]
     scale: float
     """Cells of one unit."""
     edges: np.ndarray
     """Pairs of nodes (edge, 2)."""
     start: int
-    """Steps before the recorded strokes; frame k follows (k + 1)/frames of the way to `stop`."""
+    """Steps before the first recorded stroke; the last frame is at `stop`."""
     stop: int
     strokes: int
     """Strokes that the frames span: 2, or 0 if the creature did not complete as many."""
