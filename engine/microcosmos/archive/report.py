@@ -23,6 +23,8 @@ class Elite:
     generation: int
     measured: dict[str, Any]
     provenance: dict[str, Any]
+    poses: bytes | None = None
+    """The encoded pose stream of its last strokes."""
 
 
 @dataclass(frozen=True)
