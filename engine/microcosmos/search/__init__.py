@@ -35,3 +35,4 @@ from .insertion import (
 )
 from .measures import MEASURES, Measure, Motion, motion, observe
 from .strokes import STROKE_MEASURES, Conditions, swim
+from .window import Poses
