@@ -16,12 +16,12 @@ from jaxtyping import Array, Bool, Float
 from ..filaments import Rest
 from ..genomes import CPPN, Drive, Genotype, Vector
 from ..world import State, World
+from .blocks import mapped
 from .evaluation import (
     Actuator,
     Task,
     drive,
     fitness_of,
-    mapped,
     motion_of,
     shift_energy,
     simulate,
