@@ -1,8 +1,8 @@
 """The speed of the page in Chromium on two cores; prints a table and asserts nothing.
 
 A small search finds creatures, which fill archives of 10,000 and 65,536 cells. The page reports
-times: the mark `map` after the archive is drawn, the measure `map-draw` around each drawing, the
-mark `inset` at the first frame of a hovered creature.
+times: the mark `map` after the archive is drawn, the measure `map-draw` around each
+drawing, the mark `inset` at the first frame of a hovered creature.
 """
 
 import gzip
