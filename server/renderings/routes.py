@@ -13,7 +13,7 @@ from ..services.services import ServicesDep, SessionDep
 from ..tables import AUDIT, MEASUREMENT, PREVIEW, REPLAY
 from . import storage
 from .responses import MEDIA_TYPES, ON_REQUEST, enqueued, existing, existing_motion
-from .schemas import Measurement, Rendering
+from .schemas import Measurement, Rendering, Verdict
 
 router = APIRouter(prefix="/creatures/{sha}", tags=["creatures"])
 PENDING: Answers = {202: {"model": Rendering}}
@@ -61,6 +61,12 @@ def read_motion(
     """Return the body's motion from the replay, without the fluid, or 202."""
     found = existing_motion(request, row, session, services)
     return found or enqueued(services, row.sha256, REPLAY, anonymous=share is not None)
+
+
+@router.get("/verdict", dependencies=[MAY_READ_SHARED])
+def read_verdict(row: CreatureDep) -> Verdict:
+    """Return the verdict of the saved audit; reading it enqueues none."""
+    return Verdict(trusted=row.trusted)
 
 
 @router.post("/measure", status_code=202, dependencies=[MAY_WRITE])
