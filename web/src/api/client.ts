@@ -131,6 +131,8 @@ export const readMotion = (sha: string, headers = {}) =>
     client.GET("/creatures/{sha}/motion", { ...creature(sha), headers, parseAs: "arrayBuffer" }),
   );
 export const readCover = ({ slug, cover }: wire.Share) => readMotion(cover, { [SHARE_HEADER]: slug });
+/** The verdict of the saved audit, null without one; requests no audit. */
+export const readVerdict = (sha: string) => success(client.GET("/creatures/{sha}/verdict", creature(sha)));
 export const readAudit = (sha: string) =>
   whenReady<wire.Audit>(client.GET("/creatures/{sha}/audit", creature(sha)));
 

@@ -2,16 +2,16 @@
 
 import { useMemo } from "preact/hooks";
 import * as api from "../api/client";
-import { sharedSlug } from "../api/address";
 import type { Creature, Spec } from "../api/types";
 import type { Replay } from "../decode/replay";
 import { useFetched } from "../store/fetch";
 import { number, shortId, words } from "../ui/format";
 import { NotForceFree, isForceFree } from "../ui/coupling";
 import { Page, reasonOf, useTitle } from "../ui/Page";
+import { TrustBadge } from "../ui/TrustBadge";
 import { ReplayPlayer } from "../replay/ReplayPlayer";
 import { newPlayhead } from "../replay/playhead";
-import { AuditCard } from "./AuditCard";
+import { AUDIT_HASH, AuditCard, type AuditState, useAudit } from "./AuditCard";
 import { FactsCard } from "./FactsCard";
 import { FamilyCard } from "./FamilyCard";
 import { ForkLink } from "../ui/links";
@@ -34,6 +34,7 @@ interface Props {
 export function CreaturePage({ id: sha, query }: Props) {
   const { value: creature, error } = useFetched(() => api.readCreature(sha), [sha]);
   useTitle(text.title(shortId(sha)));
+  const audit = useAudit(sha, query);
   const run = query.get("run");
   return (
     <Page crumbs={[["/", text.runs], ...(run ? [[`/runs/${run}`, shortId(run)] as const] : [])]}>
@@ -45,6 +46,9 @@ export function CreaturePage({ id: sha, query }: Props) {
           <code>{shortId(sha)}</code>
         </h1>
         {creature && !isForceFree(creature.identity.world.coupling) && <NotForceFree />}
+        {creature && swims(creature) && audit.trusted !== undefined && (
+          <TrustBadge trusted={audit.trusted} href={AUDIT_HASH} />
+        )}
         <span class="spring" />
         {creature && <PublishButton of={{ creature: sha }} file={creature} title="" />}
         {creature && isEvolved(creature) && <ForkLink run={run} creature={sha} title={text.fork} />}
@@ -52,13 +56,20 @@ export function CreaturePage({ id: sha, query }: Props) {
       </header>
       {error && <p class="banner wrong">{reasonOf(error, sha)}</p>}
       {!creature && !error && <p class="quiet loading">{text.loading}</p>}
-      {creature && <CreatureView key={sha} {...{ creature, query }} />}
+      {creature && <CreatureView key={sha} {...{ creature, query, audit }} />}
     </Page>
   );
 }
 
+interface ViewProps {
+  creature: Creature;
+  query: URLSearchParams;
+  /** Missing in a share, whose visitors cannot start an audit. */
+  audit?: AuditState;
+}
+
 /** All cards of a creature; they share the playhead of its replay. */
-export function CreatureView({ creature, query }: { creature: Creature; query: URLSearchParams }) {
+export function CreatureView({ creature, query, audit }: ViewProps) {
   const { sha256: sha, identity } = creature;
   const playhead = useMemo(newPlayhead, []);
   const rendering = useReplays([sha]);
@@ -80,7 +91,7 @@ export function CreatureView({ creature, query }: { creature: Creature; query: U
           <GenomeCard {...{ creature, playhead }} every={replay?.header.every ?? null} />
           <FamilyCard {...{ creature, query }} />
           {creature.measured && <RemeasureCard sha={sha} />}
-          {swims(creature) && !sharedSlug && <AuditCard sha={sha} query={query} />}
+          {swims(creature) && audit && <AuditCard {...audit} />}
         </div>
       </div>
       <FactsCard creature={creature} />
