@@ -4,14 +4,14 @@ import type { Theme } from "../ui/canvas";
 
 const INKS = { light: ["#ffffff", "#12222c"], dark: ["#111b21", "#fdf8ec"] } as const;
 
-/** Draw a small cross with a border, which shows on every colour; lengths in pixels. */
+/** Draw a small cross on a light or dark ground, with a border; lengths in pixels. */
 export function markDistrusted(
   context: CanvasRenderingContext2D,
   [x, y]: readonly [number, number],
   radius: number,
-  theme: Theme,
+  ground: Theme,
 ): void {
-  const [border, ink] = INKS[theme];
+  const [border, ink] = INKS[ground];
   context.beginPath();
   for (const slope of [1, -1]) {
     context.moveTo(x - radius, y - slope * radius);

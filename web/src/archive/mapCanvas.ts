@@ -134,14 +134,14 @@ function paint(image: ImageData, bins: Int32Array, colours: Uint32Array): void {
 function drawDistrusted(
   context: CanvasRenderingContext2D,
   { width, height }: Size,
-  { tiles, layout, theme }: Picture,
+  { tiles, layout }: Picture,
 ): void {
   const side = Math.sqrt((width * height) / layout.count);
   if (side < MIN_MARKED) return;
   for (const [bin, { elite }] of tiles) {
     if (elite.trusted !== false) continue;
     const [x, y] = layout.centre(bin);
-    markDistrusted(context, [x * width, y * height], Math.min(3.5, side / 6), theme);
+    markDistrusted(context, [x * width, y * height], Math.min(3.5, side / 6), "dark");
   }
 }
 

@@ -1,6 +1,5 @@
 /** The physics audit of a creature: start it, wait for it, show its result. */
 
-import { useEffect } from "preact/hooks";
 import * as api from "../api/client";
 import type { Audit, AuditRow } from "../api/types";
 import { useFetched } from "../store/fetch";
@@ -34,10 +33,6 @@ export function useAudit(sha: string, query: URLSearchParams): AuditState {
 }
 
 export function AuditCard({ trusted, requested, audit, note, error }: AuditState) {
-  useEffect(() => {
-    // The browser looked for the card before the creature was loaded.
-    if (location.hash === AUDIT_HASH) document.querySelector(AUDIT_HASH)?.scrollIntoView();
-  }, []);
   return (
     <CheckCard
       {...{ note, error }}

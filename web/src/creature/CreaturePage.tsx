@@ -1,6 +1,6 @@
 /** The page of a creature: motion, network, measures and origin. */
 
-import { useMemo } from "preact/hooks";
+import { useEffect, useMemo } from "preact/hooks";
 import * as api from "../api/client";
 import type { Creature, Spec } from "../api/types";
 import type { Replay } from "../decode/replay";
@@ -75,6 +75,10 @@ export function CreatureView({ creature, query, audit }: ViewProps) {
   const rendering = useReplays([sha]);
   const replay = rendering.replays?.[0] ?? null;
   const panels = useMemo(() => (replay ? [{ replay }] : []), [replay]);
+  useEffect(() => {
+    // The browser looked for the card before the page had its cards and its height.
+    if (location.hash === AUDIT_HASH) document.querySelector(AUDIT_HASH)?.scrollIntoView();
+  }, [replay]);
   return (
     <>
       <div class="creature-columns">
