@@ -100,7 +100,7 @@ def test_a_factor_of_viscosity_is_that_viscosity(disturbed, task, network):
 
 
 def test_trials_differ_in_heading_and_phase(disturbed, task, network):
-    """Fitness and measures are means over the trials, but for those that say what is feasible."""
+    """Results are means over the trials; of what makes a creature infeasible, the largest."""
     several = replace(task, trials=3)
     found = measured(several, network)
     ones = [disturbed(phase=2 * np.pi * k / 3, turn=np.pi / 4 * k) for k in range(3)]
