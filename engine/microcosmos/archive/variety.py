@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .poses import PoseStream
+from .file import load
+from .poses import PoseStream, streams
 
 POINTS = 64
 """Points on each body, at equal arc length along its edges."""
@@ -41,14 +42,22 @@ class Variety:
     """Creatures that were compared: all, or `MOST` at equal intervals in the given order."""
 
 
-def variety(streams: Sequence[PoseStream]) -> Variety:
-    """Compare creatures, given from the fittest.
+def of(data: bytes) -> Variety:
+    """Compare the elites of an archive file, sampled and counted from the fittest.
 
-    Raises `ValueError` for fewer than two.
+    Raises `ValueError` for any other file, and for fewer than two elites.
     """
-    if len(streams) < 2:
-        raise ValueError(f"variety needs at least two creatures, got {len(streams)}")
-    chosen = [streams[i] for i in sample(len(streams))]
+    tree, attributes = load(data)
+    fittest_first = np.argsort(-tree["archive"]["fitness"], kind="stable")
+    recorded = streams(tree, attributes)
+    return variety([recorded[i] for i in fittest_first])
+
+
+def variety(creatures: Sequence[PoseStream]) -> Variety:
+    """Compare creatures, given from the fittest. Raises `ValueError` for fewer than two."""
+    if len(creatures) < 2:
+        raise ValueError(f"variety needs at least two creatures, got {len(creatures)}")
+    chosen = [creatures[i] for i in sample(len(creatures))]
     strokes = np.stack([stroke(stream) for stream in chosen])
     chains = np.array([is_chain(stream.edges) for stream in chosen])
     found = distances(strokes, chains)
@@ -60,7 +69,7 @@ def variety(streams: Sequence[PoseStream]) -> Variety:
         nearest_motion=float(np.median(others.min(1))),
         motion_alone=float(alone[pairs].mean(dtype=float)),
         kinds=len(kinds(found)),
-        creatures=len(streams),
+        creatures=len(creatures),
         compared=len(chosen),
     )
 
