@@ -24,7 +24,7 @@ class Elite:
     measured: dict[str, Any]
     provenance: dict[str, Any]
     poses: bytes | None = None
-    """The encoded pose stream of its last strokes."""
+    """Its pose stream, as `archive.poses` encodes it."""
 
 
 @dataclass(frozen=True)
