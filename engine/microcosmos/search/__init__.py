@@ -12,6 +12,7 @@ from .evaluation import (
     Task,
     drive,
     evaluate,
+    in_trials,
     judged,
     motion_of,
     shift_energy,

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import Any, TypeVar
 
 import equinox as eqx
 import jax
@@ -99,11 +99,7 @@ def evaluate(task: Task, genotype: Genotype) -> Evaluation:
     if task.trials == 1:
         return evaluate_drive(task, genotype, drive(task, genotype))
 
-    def one(number: Int[Array, ""]) -> Evaluation:
-        changed = trial(task, number)
-        return evaluate_drive(changed, genotype, drive(changed, genotype))
-
-    found = jax.lax.map(one, jnp.arange(task.trials))
+    found = in_trials(task, lambda one: evaluate_drive(one, genotype, drive(one, genotype)))
     measures = jnp.mean(found.measures, 0)
     for name, _ in FEASIBLE.values():
         at = MEASURES.index(name)
@@ -113,11 +109,20 @@ def evaluate(task: Task, genotype: Genotype) -> Evaluation:
     return Evaluation(jnp.mean(found.fitness), measures, jnp.max(found.status), first)
 
 
-def trial(task: Task, number: Int[Array, ""] | int) -> Task:
+Result = TypeVar("Result")
+
+
+def in_trials(task: Task, function: Callable[[Task], Result]) -> Result:
+    """Apply a function to the task of every trial; results have the trial as first axis."""
+    numbers = jnp.arange(task.trials)
+    return jax.lax.map(lambda number: function(trial(task, number)), numbers)
+
+
+def trial(task: Task, number: Int[Array, ""]) -> Task:
     """Return the task of one trial: 45° more of heading and a share of a stroke more of phase
     than in the trial before."""
     dtype = task.start.positions.dtype
-    number = jnp.asarray(number, dtype)
+    number = number.astype(dtype)
     phase = 2 * jnp.pi * number / task.trials
     return replace(task, phase=phase, turn=jnp.pi / 4 * number, trials=1)
 
