@@ -218,6 +218,7 @@ def test_a_known_creature_gets_the_first_stream_that_a_run_records(api, upload, 
     assert api.get(f"creatures/{elite.creature}/poses").content == elite.poses
 
 
+@pytest.mark.postgresql
 def test_a_stored_stream_stays_when_another_run_finds_the_creature(
     api, services, record, report
 ):

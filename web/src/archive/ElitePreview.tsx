@@ -15,13 +15,13 @@ export function ElitePreview({ sha }: { sha: string }) {
     const timer = setTimeout(() => setRequested(sha), HOVER_MS);
     return () => clearTimeout(timer);
   }, [sha]);
-  const { stream, error } = usePoseStream(requested === sha ? sha : null);
+  const { stream, rendering, error } = usePoseStream(requested === sha ? sha : null);
   return (
     <div class="inset" data-inset>
       {stream ? (
         <SwimmingBody key={sha} stream={stream} label={text.inset} path onFirst={markInset} />
       ) : (
-        <p>{error ?? text.simulating}</p>
+        <p>{error ?? (rendering && text.simulating)}</p>
       )}
     </div>
   );

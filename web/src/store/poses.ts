@@ -119,7 +119,7 @@ function stop(): void {
   requests.clear();
 }
 
-/** The stream of one creature; null while it is loaded. */
+/** The stream of one creature; null while it is loaded, or made from a replay that is rendered. */
 export function usePoseStream(sha: string | null) {
   const known = (sha && cache.get(sha)) || null;
   const ask = async () => {
@@ -127,6 +127,7 @@ export function usePoseStream(sha: string | null) {
     if (stream) add(stream);
     return stream;
   };
-  const { value, error } = usePolled(sha && !known ? ask : null, [sha]);
-  return { stream: known ?? (value?.header.creature === sha ? value : null), error };
+  const { value, answered, error } = usePolled(sha && !known ? ask : null, [sha]);
+  const stream = known ?? (value?.header.creature === sha ? value : null);
+  return { stream, rendering: answered && !stream, error };
 }
