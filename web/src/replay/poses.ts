@@ -14,6 +14,8 @@ interface Shape {
   offsets: Float32Array;
   /** The largest distance of a node from the mean position. */
   radius: number;
+  /** The angle that the body turns by while its frames play once. */
+  turn: number;
 }
 
 const cache = new WeakMap<PoseStream, Shape>();
@@ -32,45 +34,75 @@ function shapeOf(stream: PoseStream): Shape {
     for (let i = 0; i < values.length; i += 2)
       radius = Math.max(radius, Math.hypot(values[i]!, values[i + 1]!));
   }
-  const shape = { chains: chainsOf(edges), means, offsets, radius: radius || 1 };
+  const shape = {
+    chains: chainsOf(edges),
+    means,
+    offsets,
+    radius: radius || 1,
+    turn: turnOf(stream, offsets),
+  };
   cache.set(stream, shape);
   return shape;
 }
 
-/** Two frames, and the share of the way between them. */
-type Moment = readonly [before: number, after: number, share: number];
+/** Twice the turn from the end of the first stroke to the end of the second; 0 without strokes. */
+function turnOf({ header: { frames, nodes, strokes } }: PoseStream, offsets: Float32Array): number {
+  if (strokes === 0) return 0;
+  const [first, last] = [frames / 2 - 1, frames - 1].map((frame) => 2 * frame * nodes) as Point;
+  let [cross, dot] = [0, 0];
+  for (let i = 0; i < 2 * nodes; i += 2) {
+    const [ax, ay] = [offsets[first + i]!, offsets[first + i + 1]!];
+    const [bx, by] = [offsets[last + i]!, offsets[last + i + 1]!];
+    cross += ax * by - ay * bx;
+    dot += ax * bx + ay * by;
+  }
+  return 2 * Math.atan2(cross, dot);
+}
+
+/** Two frames, the share of the way between them, and how often all frames have been played. */
+type Moment = readonly [before: number, after: number, share: number, loops: number];
 
 /** The frames around a time in steps; strokes repeat, and other frames start again after the last. */
 export function momentOf({ header }: PoseStream, steps: number): Moment {
   const { frames, start, stop, strokes } = header;
   const every = (stop - start) / frames || 1;
-  const time = (steps / every) % Math.max(1, strokes > 0 ? frames : frames - 1);
+  const loop = Math.max(1, strokes > 0 ? frames : frames - 1);
+  const time = (steps / every) % loop;
   const before = Math.floor(time);
-  return [before, (before + 1) % frames, time - before];
+  return [before, (before + 1) % frames, time - before, Math.floor(steps / every / loop)];
 }
 
-/** A point of consecutive (frame, point, 2) values at a moment. */
-function at(values: Float32Array, points: number, point: number, [before, after, share]: Moment): Point {
-  const [a, b] = [2 * (before * points + point), 2 * (after * points + point)];
-  const between = (k: number) => (1 - share) * values[a + k]! + share * values[b + k]!;
-  return [between(0), between(1)];
+/** A point of consecutive (frame, point, 2) values. */
+const pointAt = (values: Float32Array, index: number): Point => [values[2 * index]!, values[2 * index + 1]!];
+
+const between = (a: Point, b: Point, share: number): Point => [
+  (1 - share) * a[0] + share * b[0],
+  (1 - share) * a[1] + share * b[1],
+];
+
+function rotation(angle: number): (point: Point) => Point {
+  const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
+  return ([x, y]) => [cos * x - sin * y, sin * x + cos * y];
 }
 
 type Square = readonly [left: number, top: number, side: number];
 
-/** Trace the body some steps after its first frame, in the middle of a square. */
+/** Trace the body some steps after its first frame, in the middle of a square; it turns on in each loop. */
 export function traceBody(
   context: CanvasRenderingContext2D,
   stream: PoseStream,
   steps: number,
   [left, top, side]: Square,
 ): void {
-  const { chains, offsets, radius } = shapeOf(stream);
+  const { chains, offsets, radius, turn } = shapeOf(stream);
   const { nodes } = stream.header;
-  const moment = momentOf(stream, steps);
+  const [before, after, share, loops] = momentOf(stream, steps);
+  const turned = rotation(loops * turn);
+  const turnedAfter = after > before ? turned : rotation((loops + 1) * turn);
   const scale = (0.42 * side) / radius;
   const place = (node: number): Point => {
-    const [x, y] = at(offsets, nodes, node, moment);
+    const next = turnedAfter(pointAt(offsets, after * nodes + node));
+    const [x, y] = between(turned(pointAt(offsets, before * nodes + node)), next, share);
     return [left + side / 2 + scale * x, top + side / 2 - scale * y];
   };
   context.beginPath();
@@ -89,17 +121,18 @@ export function tracePath(
   steps: number,
   [left, top, side]: Square,
 ): void {
-  const { means, radius } = shapeOf(stream);
+  const { means, radius, turn } = shapeOf(stream);
   const { start, stop, frames, moments, steps: whole } = stream.header;
-  const [before, after, share] = momentOf(stream, steps);
+  const [before, after, share, loops] = momentOf(stream, steps);
   const onward = after > before ? share : 0; // The path does not lead from the last frame to the first.
-  const [x, y] = at(means, 1, 0, [before, after, onward]);
+  const [meanX, meanY] = between(pointAt(means, before), pointAt(means, after), onward);
+  const turned = rotation(loops * turn);
   const time = start + ((stop - start) * (before + 1 + onward)) / frames;
   const scale = (0.42 * side) / radius;
-  const place = (i: number): Point => [
-    left + side / 2 + scale * (stream.path[2 * i]! - x),
-    top + side / 2 - scale * (stream.path[2 * i + 1]! - y),
-  ];
+  const place = (i: number): Point => {
+    const [x, y] = turned([stream.path[2 * i]! - meanX, stream.path[2 * i + 1]! - meanY]);
+    return [left + side / 2 + scale * x, top + side / 2 - scale * y];
+  };
   context.beginPath();
   context.arc(...place(0), 3, 0, 2 * Math.PI);
   context.moveTo(...place(0));
