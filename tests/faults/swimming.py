@@ -1,8 +1,8 @@
 """Whether what evolves truly swims: presets over five seeds, and variants of 50 elites each.
 
-The variants change what should not matter: limits, the grid, the step and the heading. On half
-the grid spacing a slender body is thinner and goes further whoever swims, so elites are
-compared with a hand-made travelling wave there.
+The variants change what should not matter: limits, the grid, the step and the heading. The best
+travelling wave is printed beside them: the delta function resolves its small amplitude worse
+than the strokes that evolve, so on half the grid spacing it goes much further.
 """
 
 import statistics
@@ -38,7 +38,7 @@ BARS = {
     "fine": (0.85, 1.15),
     "turned": (0.85, 1.15),
 }
-"""Displacement relative to the recorded one; on the fine grid, relative to the hand-made."""
+"""Displacement relative to the recorded one."""
 FEASIBLE_SHARE = 0.7
 """Least share of feasible evaluations in the second half of a run."""
 FASTER = 1.3
@@ -81,7 +81,8 @@ def examine(product: Installation, preset: str) -> bool:
         f"{preset}: best travelling wave {waves[wave]:.3f} ({named}); "
         f"the median fittest is {ratio:.2f} × as fast"
     )
-    good = [min(shares) >= FEASIBLE_SHARE, *agree(preset, scene, elites, handmade(scene, wave))]
+    good = [min(shares) >= FEASIBLE_SHARE, *agree(preset, scene, elites)]
+    handmade(scene, wave)
     if preset == "standard":
         good += [statistics.median(best) >= SPEED, ratio >= FASTER]
     return all(good)
@@ -104,19 +105,14 @@ def chosen(product: Installation, run: str) -> list[dict[str, Any]]:
     return [product.get(f"creatures/{archive['creature'][i]}") for i in names]
 
 
-def agree(preset: str, scene: Scene, elites: list[dict[str, Any]], wave: float) -> list[bool]:
-    """Print how far elites go in each variant, relative to the recorded distance.
-
-    On the fine grid it is also relative to a travelling wave, which goes `wave` times as far.
-    """
+def agree(preset: str, scene: Scene, elites: list[dict[str, Any]]) -> list[bool]:
+    """Print how far elites go in each variant, relative to the recorded distance."""
     rests = [rest_of(scene, file) for file in elites]
     speeds = np.array([file["measured"]["fitness"] for file in elites])
     plain = displacements(build_task(scene), rests)
     good = []
     for name, (found, turn) in in_variants(scene, rests).items():
         shares = along(found, plain, turn)
-        if name == "fine":
-            shares /= wave
         low, high = BARS[name]
         inside = np.mean((shares >= low) & (shares <= high))
         middle = float(np.median(shares))
@@ -217,14 +213,13 @@ def wave_speeds(scene: Scene) -> dict[tuple[float, ...], float]:
     return {grid[i]: float(found[i, 0]) for i in np.flatnonzero(feasible)}
 
 
-def handmade(scene: Scene, point: tuple[float, ...]) -> float:
-    """How much further a travelling wave goes on the fine grid."""
+def handmade(scene: Scene, point: tuple[float, ...]) -> None:
+    """Print how much further a travelling wave goes on the fine grid."""
     task = build_task(scene)
     made = jax.jit(lambda point: travelling(scene, task, point).inputs)
     rests = [made(jnp.asarray(point, jnp.float32))]
     share = along(on_fine_grid(scene, rests), displacements(task, rests), 0.0)
     rich.print(f"on the fine grid the best travelling wave goes {share[0]:.3f} times as far")
-    return float(share[0])
 
 
 def zigzags(scene: Scene, rests: list[Rest]) -> np.ndarray:
