@@ -16,7 +16,7 @@ pytestmark = pytest.mark.fast
 ROOT = Path(__file__).parents[1]
 OLD = {
     *("own", "own_specs", "own_schemas", "own_of", "is_own", "Own", "OwnBody", "OwnControl"),
-    *("OwnName", "MaybeOwn", "Told", "Shelf", "origin", "origins", "Origin", "born", "kin"),
+    *("OwnName", "MaybeOwn", "Told", "Shelf", "origins", "Origin", "born", "kin"),
     *("brood", "Brood", "fates", "FATES", "told", "niches", "again", "telling", "agreement"),
     *("feature", "features", "Feature", "FEATURES", "Said", "played", "answered", "seen"),
     *("Seen", "at_once", "heard", "bands", "planning", "sweeping", "binned"),

@@ -39,6 +39,14 @@ MeasureName = Literal[
     "speed",
     "stride",
     "impulse",
+    "cost_of_transport",
+    "beats",
+    "wave_number",
+    "wave_direction",
+    "heading_angle",
+    "aspect",
+    "strouhal",
+    "trial_spread",
 ]
 """Names of the measures, in the order in which they are recorded."""
 

@@ -2,6 +2,7 @@
 
 import csv
 import io
+import struct
 from collections.abc import Sequence
 from typing import Annotated, Any
 
@@ -29,6 +30,9 @@ BINARY = sends("application/octet-stream", {404: {}})
 
 HISTORY_ENTRIES = 400_000
 """About 50 MB."""
+POSE_CELLS = 1000
+"""About 10 MB."""
+LENGTH = struct.Struct("<I")
 
 
 @router.get("/archive", dependencies=[MAY_READ_SHARED])
@@ -77,6 +81,28 @@ def read_history(run: RunDep, session: SessionDep, measures: str = "") -> Histor
     ordered = elites.all_time(run, names).order_by(Elite.generation, Elite.cell)
     columns = _columns(session.execute(ordered).all(), names)
     return HistoryRead(generation=run.generation, **columns)
+
+
+@router.get("/archive/poses", **BINARY, dependencies=[MAY_READ_SHARED])
+def read_poses(
+    run: RunDep,
+    session: SessionDep,
+    cells: Annotated[str, Query(pattern=r"^\d{1,9}(,\d{1,9})*$")],
+    generation: Annotated[int | None, Query(ge=0)] = None,
+) -> Response:
+    """Return the pose streams of the elites of some cells, now or as of a generation.
+
+    `cells` are numbers, separated by commas. The length of each stream precedes it, as a
+    little-endian uint32. Elites without a stream are left out.
+    """
+    _refuse_table(run)
+    numbers = sorted({int(cell) for cell in cells.split(",")})
+    if len(numbers) > POSE_CELLS:
+        raise invalid_field("cells", f"at most {POSE_CELLS:,} cells", f"{len(numbers):,}")
+    as_of = run.generation if generation is None else min(generation, run.generation)
+    found = filter(None, session.scalars(elites.poses(run, as_of, numbers)))
+    content = b"".join(LENGTH.pack(len(stream)) + stream for stream in found)
+    return Response(content, media_type="application/octet-stream")
 
 
 @router.get("/archive/centroids", dependencies=[MAY_READ_SHARED])

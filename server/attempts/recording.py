@@ -32,6 +32,8 @@ class Rows:
 
 def rows_of(report: Report, seconds: float) -> Rows:
     """Convert a report; `seconds` is the run's wall time so far."""
+    elites = [(elite, elite.poses) for elite in report.elites]
+    found = [*elites, *((row, None) for row in report.rows if row.creature is not None)]
     summary = json_values(report.summary)
     run = {
         "generation": int(report.generation),
@@ -42,7 +44,6 @@ def rows_of(report: Report, seconds: float) -> Rows:
         "infeasible": int(report.infeasible),
         "seconds": seconds,
     }
-    found = [*report.elites, *(row for row in report.rows if row.creature is not None)]
     return Rows(
         run=run if summary is None else {**run, "summary": summary},
         curve={**run, "mean": finite(report.mean), "summary": summary},
@@ -66,7 +67,8 @@ def rows_of(report: Report, seconds: float) -> Rows:
         ],
         creatures=[
             creature_columns(one.creature, one.identity, one.measured, one.provenance, LICENCE)
-            for one in found
+            | {"poses": poses}
+            for one, poses in found
         ],
     )
 

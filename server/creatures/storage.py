@@ -6,7 +6,7 @@ from operator import itemgetter
 from typing import Any, cast
 from uuid import UUID
 
-from sqlalchemy import Select, select, update
+from sqlalchemy import Select, func, literal_column, select, update
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from microcosmos.archive import creature, pedigree
@@ -45,11 +45,15 @@ def creature_columns(
 
 
 def insert_and_lock(session: Session, rows: Sequence[dict[str, Any]]) -> None:
-    """Insert creatures. Existing ones cannot be deleted before the transaction ends."""
+    """Insert creatures. Existing ones cannot be deleted before the transaction ends.
+
+    An existing creature without a pose stream gets the new one.
+    """
     if rows:
-        # This update changes nothing; it takes the lock of the row.
-        same = {"licence": Creature.__table__.c.licence}
-        insert_or_update(session, Creature, rows, ["sha256"], same)
+        # The update takes the lock of the row, also if it changes nothing.
+        known, new = Creature.__table__.c.poses, literal_column("excluded.poses")
+        values = {"poses": func.coalesce(known, new)}
+        insert_or_update(session, Creature, rows, ["sha256"], values)
 
 
 def link(session: Session, names: Sequence[str]) -> None:

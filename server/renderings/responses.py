@@ -7,7 +7,7 @@ from sqlalchemy.orm import Session
 from ..services.services import Services
 from ..storage import ranges
 from ..tables import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP, Creature
-from . import motions, storage
+from . import storage
 from .schemas import Rendering
 
 MEDIA_TYPES = {
@@ -35,20 +35,6 @@ def existing(
         name = f"creature-{row.sha256[:12]}.{kind.rpartition('.')[2]}"
         headers["Content-Disposition"] = f'inline; filename="{name}"'
     return ranges.file(request, services.artifacts, artifact, headers, MEDIA_TYPES[kind])
-
-
-def existing_motion(
-    request: Request, row: Creature, session: Session, services: Services
-) -> Response | None:
-    """Return the answer with the motion of a replay, or None if there is no replay."""
-    replay = storage.find(session, row.sha256, REPLAY)
-    if replay is None:
-        return None
-    headers = {"Cache-Control": "no-cache", "ETag": f'"motion-{replay.sha256}"'}
-    if headers["ETag"] in request.headers.get("if-none-match", ""):
-        return Response(status_code=304, headers=headers)
-    content = motions.motion(services.artifacts, replay)
-    return Response(content, headers=headers, media_type="application/octet-stream")
 
 
 def enqueued(services: Services, sha: str, kind: str, *, anonymous: bool = False) -> Response:

@@ -1,22 +1,30 @@
-"""Routes of renderings: motion, films, pictures, audits and measurements of a creature."""
+"""Routes of renderings: pose streams, films, pictures, audits, measurements of a creature."""
 
 from collections.abc import Callable
+from hashlib import sha256
 
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
+from microcosmos.archive.poses import PoseStream, decode
+
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE, ShareAccessDep
 from ..core.api import Answers, sends
 from ..core.errors import ProblemError
+from ..core.static_files import FRESH, IMMUTABLE
 from ..creatures.deps import CreatureDep
 from ..services.services import ServicesDep, SessionDep
 from ..tables import AUDIT, MEASUREMENT, PREVIEW, REPLAY
-from . import storage
-from .responses import MEDIA_TYPES, ON_REQUEST, enqueued, existing, existing_motion
+from . import poses, storage
+from .responses import MEDIA_TYPES, ON_REQUEST, enqueued, existing
 from .schemas import Measurement, Rendering
 
 router = APIRouter(prefix="/creatures/{sha}", tags=["creatures"])
 PENDING: Answers = {202: {"model": Rendering}}
+EXPORTS = (
+    ("csv", "text/csv", PoseStream.csv),
+    ("npz", "application/octet-stream", PoseStream.npz),
+)
 NOT_ORDERED: Answers = {204: {"description": "Nobody has ordered this measurement"}}
 
 
@@ -49,18 +57,49 @@ for kind in ON_REQUEST:
 
 
 @router.get(
-    "/motion", **sends("application/octet-stream", PENDING), dependencies=[MAY_READ_SHARED]
+    "/poses", **sends("application/octet-stream", PENDING), dependencies=[MAY_READ_SHARED]
 )
-def read_motion(
+def read_poses(
     request: Request,
     row: CreatureDep,
     share: ShareAccessDep,
     session: SessionDep,
     services: ServicesDep,
 ) -> Response:
-    """Return the body's motion from the replay, without the fluid, or 202."""
-    found = existing_motion(request, row, session, services)
-    return found or enqueued(services, row.sha256, REPLAY, anonymous=share is not None)
+    """Return the pose stream; without one, that of the replay, or 202 while it is recorded."""
+    data = poses.find(session, services, row)
+    if data is None:
+        return enqueued(services, row.sha256, REPLAY, anonymous=share is not None)
+    # A share may be revoked, and a stream made from a replay gives way to a recorded one.
+    lasting = row.poses is not None and share is None
+    headers = {**(IMMUTABLE if lasting else FRESH), "ETag": f'"{sha256(data).hexdigest()}"'}
+    if headers["ETag"] in request.headers.get("if-none-match", ""):
+        return Response(status_code=304, headers=headers)
+    return Response(data, headers=headers, media_type="application/octet-stream")
+
+
+def _poses_exporter(
+    ending: str, media_type: str, export: Callable[[PoseStream], str | bytes]
+) -> Callable[..., Response]:
+    def read(
+        row: CreatureDep, share: ShareAccessDep, session: SessionDep, services: ServicesDep
+    ) -> Response:
+        data = poses.find(session, services, row)
+        if data is None:
+            return enqueued(services, row.sha256, REPLAY, anonymous=share is not None)
+        name = f"poses-{row.sha256[:12]}.{ending}"
+        headers = {**FRESH, "Content-Disposition": f'attachment; filename="{name}"'}
+        return Response(export(decode(data)), headers=headers, media_type=media_type)
+
+    read.__name__ = f"read_poses_{ending}"
+    read.__doc__ = f"Return the pose stream as {ending.upper()}, or 202 like `poses`."
+    return read
+
+
+for ending, media_type, export in EXPORTS:
+    router.get(
+        f"/poses.{ending}", **sends(media_type, PENDING), dependencies=[MAY_READ_SHARED]
+    )(_poses_exporter(ending, media_type, export))
 
 
 @router.post("/measure", status_code=202, dependencies=[MAY_WRITE])

@@ -4,7 +4,7 @@ from datetime import datetime
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import ForeignKey, Index, Text
+from sqlalchemy import ForeignKey, Index, LargeBinary, Text
 from sqlalchemy.orm import Mapped, mapped_column
 
 from ..core.database import clock
@@ -30,6 +30,8 @@ class Creature(Base):
     created_at: Mapped[datetime] = mapped_column(default=clock())
     imported: Mapped[bool] = mapped_column(default=False)
     """Imported creatures are never deleted, even if no run uses them."""
+    poses: Mapped[bytes | None] = mapped_column(LargeBinary, deferred=True)
+    """The pose stream, if an evaluation recorded one."""
 
 
 class Parent(Base):

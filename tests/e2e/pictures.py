@@ -101,7 +101,7 @@ def photographed(page: Page, width: int, height: int) -> bytes:
     page.set_viewport_size({"width": width, "height": high})
     page.evaluate("scrollTo(0, 0)")  # A replay that was held still was scrolled to.
     page.wait_for_timeout(300)  # What is as large as the window allows has been drawn again.
-    await_motions(page)
+    await_poses(page)
     png = page.screenshot()
     if page.locator(GALLERY).count():  # At the beginning of its loop every body is straight.
         page.wait_for_timeout(1700)
@@ -110,12 +110,12 @@ def photographed(page: Page, width: int, height: int) -> bytes:
     return png
 
 
-def await_motions(page: Page) -> None:
-    """Wait until a gallery has requested no motion for three seconds."""
+def await_poses(page: Page) -> None:
+    """Wait until a gallery has requested no pose stream for three seconds."""
     if page.locator(GALLERY).count():
         with suppress(TimeoutError):
             while True:
-                page.wait_for_event("request", lambda one: "/motion" in one.url, timeout=3000)
+                page.wait_for_event("request", lambda one: "/poses" in one.url, timeout=3000)
 
 
 def save(png: bytes, name: str) -> None:

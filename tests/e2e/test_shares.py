@@ -122,7 +122,7 @@ def find_it_in_the_commons(anonymous_page: Page, address: str, link: str) -> Non
     tile = anonymous_page.get_by_role("link", name=re.compile("An eel <b>&"))
     expect(tile).to_have_attribute("href", urlsplit(link).path)
     public = re.compile("/commons|/assets/.+|/favicon.svg|/api/v1/(commons|shares/.+)")
-    moves = re.compile("/api/v1/creatures/[0-9a-f]{64}/motion")
+    moves = re.compile("/api/v1/creatures/[0-9a-f]{64}/poses")
     through = {path for path, share in asked if share and moves.fullmatch(path)}
     assert [
         path for path, _ in asked if path not in through and not public.fullmatch(path)

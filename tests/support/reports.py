@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from microcosmos.archive import creature, file
+from microcosmos.archive import poses as pose_streams
 from microcosmos.naming import encode
 from microcosmos.spec import EXPERIMENTS, QualityDiversity
 
@@ -55,6 +56,29 @@ def replay(positions: np.ndarray, planes: int = 1, **more: Any) -> bytes:
     floats = positions.astype("<f4").tobytes() + np.zeros((frames, angles), "<f4").tobytes()
     fluid = np.zeros((frames, planes, *header["size"]), np.int8).tobytes()
     return struct.pack("<I", len(text)) + text + floats + fluid
+
+
+def pose_stream(creature: str, frames: int = 64) -> bytes:
+    """The pose stream of a body of three nodes that swims to the right over two strokes."""
+    stroke = np.arange(1, frames + 1)[:, None] * 2 / frames
+    node = np.arange(3)[None]
+    swing = np.sin(2 * np.pi * (stroke - node / 3))
+    places = np.stack([40 + node + 10 * stroke, 30 + swing], -1)
+    positions, origin, scale = pose_streams.quantised(places)
+    return pose_streams.PoseStream(
+        positions=positions,
+        path=places.mean(1)[::8],
+        origin=origin,
+        scale=scale,
+        edges=np.array([[0, 1], [1, 2]]),
+        start=40,
+        stop=120,
+        strokes=2,
+        steps=120,
+        size=(24, 24),
+        length=2.0,
+        creature=creature,
+    ).encode()
 
 
 def identity(number: int = 1) -> dict[str, Any]:
@@ -118,17 +142,20 @@ def report(
     descriptors: tuple[float, ...] = (0.25, 0.5),
     measures: dict[str, float] | None = None,
     summary: dict[str, Any] | None = None,
+    poses: bool = False,
 ) -> Any:
-    """The report of a generation: new elites by cell, with their fitness."""
+    """The report of a generation: new elites by cell, with their fitness, or also poses."""
     efforts = {"bending_effort": 0.25, "stretching_effort": 0.5}
 
     def elite(cell: int, fitness: float) -> Any:
+        named = creature_of(1000 * generation + cell)
         return SimpleNamespace(
             cell=cell,
             fitness=fitness,
             descriptors=descriptors,
             generation=generation,
-            **creature_of(1000 * generation + cell),
+            **named,
+            poses=pose_stream(named["creature"]) if poses else None,
             measured={
                 "fitness": fitness,
                 "descriptors": efforts,

@@ -6,24 +6,32 @@ The layout is described in `docs/formats.md`.
 import csv as csv_module
 import json
 import struct
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO, StringIO
+from typing import Any
 
 import numpy as np
 
 FORMAT = "microcosmos-poses/1"
 FRAMES = 64
 """Recorded poses, at equal times: 32 for each of the last two strokes."""
+STROKES = 2
+"""Strokes that the frames span."""
 MOMENTS = 65
 """Recorded places of the centre, at equal times from the start to the end."""
 LEVELS = np.iinfo(np.int16).max
 _LENGTH = struct.Struct("<I")
-_NUMBERS = ("start", "stop", "strokes", "steps", "scale", "length")
+_COUNTS = ("start", "stop", "strokes")
+_NUMBERS = (*_COUNTS, "steps", "scale", "length")
 
 
 @dataclass(frozen=True)
 class PoseStream:
-    """The poses of one creature; places are in cells, not wrapped around the world."""
+    """The poses of one creature; places are in cells, not wrapped around the world.
+
+    Nodes are those that have grown, edges pairs of them.
+    """
 
     positions: np.ndarray
     """Offsets of nodes from `origin` in units of `scale`: int16 (frame, node, 2)."""
@@ -57,8 +65,8 @@ class PoseStream:
     def times(self) -> np.ndarray:
         """Steps done at each frame."""
         frames = len(self.positions)
-        every = (self.stop - self.start) / frames
-        return np.rint(self.start + every * np.arange(1, frames + 1)).astype(int)
+        passed = np.arange(1, frames + 1) * (self.stop - self.start)
+        return self.start + (2 * passed + frames) // (2 * frames)
 
     def encode(self) -> bytes:
         """Return the file: the length of a JSON header, the header, path and positions."""
@@ -130,3 +138,54 @@ def quantised(positions: np.ndarray) -> tuple[np.ndarray, tuple[float, float], f
     scale = float(max(np.max(high - low) / 2, 1e-6)) / LEVELS
     units = np.clip(np.rint((positions - origin) / scale), -LEVELS, LEVELS)
     return units.astype(np.int16), (float(origin[0]), float(origin[1])), scale
+
+
+_ROWS = {"origin": "f4", "scale": "f4", "length": "f4", **dict.fromkeys(_COUNTS, "i4")}
+"""Types of the values that are columns as they are."""
+
+
+def columns(streams: Sequence[PoseStream]) -> dict[str, np.ndarray]:
+    """Return streams as the group `archive/poses` of an archive file, a row each.
+
+    Where bodies differ, rows of smaller ones are filled with 0 at the end.
+    """
+    found = {
+        name: np.array([getattr(one, name) for one in streams], kind)
+        for name, kind in _ROWS.items()
+    }
+    nodes = _filled([one.positions.swapaxes(0, 1) for one in streams], (FRAMES, 2), "i2")
+    return found | {
+        "origin": found["origin"].reshape(-1, 2),
+        "nodes": np.array([one.positions.shape[1] for one in streams], "i4"),
+        "positions": nodes.swapaxes(1, 2),
+        "connected": np.array([len(one.edges) for one in streams], "i4"),
+        "edges": _filled([one.edges for one in streams], (2,), "i4"),
+        "path": _filled([one.path for one in streams], (2,), "f4"),
+    }
+
+
+def _filled(rows: list[np.ndarray], rest: tuple[int, ...], kind: str) -> np.ndarray:
+    """Stack arrays (item, *rest) whose numbers of items may differ."""
+    found = np.zeros((len(rows), max(map(len, rows), default=0), *rest), kind)
+    for whole, row in zip(found, rows, strict=True):
+        whole[: len(row)] = row
+    return found
+
+
+def streams(tree: Mapping[str, Any], attributes: Mapping[str, str]) -> list[PoseStream]:
+    """Return the pose streams of the elites in an archive file, as `file.load` returns it."""
+    archive, spec = tree["archive"], json.loads(attributes["spec"])
+    kept, world = archive["poses"], spec["world"]
+    return [
+        PoseStream(
+            positions=kept["positions"][i, :, : kept["nodes"][i]],
+            path=kept["path"][i],
+            origin=(float(kept["origin"][i, 0]), float(kept["origin"][i, 1])),
+            edges=kept["edges"][i, : kept["connected"][i]],
+            steps=spec["task"]["steps"],
+            size=(world["width"], world["height"]),
+            creature=bytes(creature).hex(),
+            **{name: kept[name][i].item() for name in ("scale", "length", *_COUNTS)},
+        )
+        for i, creature in enumerate(archive["creature"])
+    ]

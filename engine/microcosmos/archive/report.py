@@ -23,6 +23,8 @@ class Elite:
     generation: int
     measured: dict[str, Any]
     provenance: dict[str, Any]
+    poses: bytes | None = None
+    """Its pose stream, as `archive.poses` encodes it."""
 
 
 @dataclass(frozen=True)

@@ -126,6 +126,7 @@ def build_plan(chosen: spec.Evolution) -> Plan:
         force_free=chosen.coupling.force_free,
         measures=measures_of(scene),
         plugins=plugin_versions(scene),
+        edges=np.asarray(spec.shape(scene.body).edges),
     )
 
 

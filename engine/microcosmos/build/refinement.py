@@ -42,6 +42,7 @@ def build_refinement(chosen: spec.Refinement) -> refinement.Refinement:
         parent=found["sha256"],
         provenance=found["provenance"],
         device=device.device_kind(),
+        feasible=chosen.feasible,
         measures=measures_of(scene),
         plugins=plugin_versions(scene),
     )

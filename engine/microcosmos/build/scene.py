@@ -64,6 +64,7 @@ def build_task(
         plugin_measures=build_measures(scene),
         actuators=build_actuators(scene.control, body, dtype),
         period=build_period(scene.control),
+        trials=scene.task.trials,
     )
 
 
@@ -90,6 +91,8 @@ def build_period(control: spec.Controller | spec.Gait | spec.Fold) -> float | No
 def build_goal(task: spec.Task) -> search.Goal:
     if task.plugin is not None or task.fitness == "speed":
         return search.Goal(measure=task.fitness)
+    if task.fitness == "cost_of_transport":
+        return search.Goal(measure=task.fitness, sign=-1.0)
     displacement, energy = GOALS[task.fitness]
     return search.Goal(displacement, energy * task.energy_weight)
 

@@ -1,4 +1,4 @@
 """The command line: each module registers its commands. JAX is loaded only to compute."""
 
-from . import creature, doctor, draw, manage, modules, monitor, pictures, run, sharing
+from . import archive, creature, doctor, draw, manage, modules, monitor, pictures, run, sharing
 from .app import app

@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Array, PyTree
 
 from .. import neat, search
-from ..archive import file
+from ..archive import file, poses
 from ..genomes import Genotype
 from ..version import VERSION
 from .resume_check import devices_of
@@ -65,6 +65,7 @@ def save(plan: Plan, state: State) -> bytes:
             "device": state.device_of[cells],
             "genomes": vars(elites.genotypes),
             "repeats": vars(jax.tree.map(lambda x: x[cells], state.repeats)),
+            "poses": poses.columns([state.poses[cell] for cell in cells.tolist()]),
             **{name: getattr(elites, name) for name in ROWS},
         },
         "curves": {name: state.curves[:, i] for i, name in enumerate(CURVES)},
@@ -113,6 +114,7 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
         ),
         devices=devices,
         unrepeated=before or None,
+        poses=dict(zip(cells.tolist(), poses.streams(tree, attributes), strict=True)),
         initial=initial
         and InitialCreatures(initial["creature"], _genotypes(state, initial["genomes"])),
     )

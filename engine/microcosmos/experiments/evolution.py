@@ -16,12 +16,16 @@ import numpy as np
 
 from .. import search
 from ..archive.report import Elite, Report
+from ..archive.variety import variety
 from ..genomes import Genotype
 from ..search.emitters.population import Population
 from ..search.emitters.tensorneat import TensorNeatState
 from . import archive_file, lineage, reevaluation
 from .offspring import Offspring, Programs, next_offspring
 from .state import CURVES, ENDS, MAX_INFEASIBLE, Infeasible, Plan, State, start
+
+VARIETY = ("motion_distance", "nearest_motion", "kinds")
+"""Figures of `Variety` in the summary of the last generation."""
 
 
 @dataclass(frozen=True)
@@ -191,9 +195,21 @@ def _summary(plan: Plan, state: State, seconds: float, status: np.ndarray) -> di
     named = list(zip(search.STATUSES, counts, strict=True))[1:]
     found |= {f"infeasible: {reason}": count for reason, count in named if count}
     found |= _species(state)
+    if state.ended or state.generation >= plan.generations:
+        found |= _variety(state)
     if state.ended:
         found["ended"] = f"{ENDS[state.ended]} after generation {state.generation}"
     return found
+
+
+def _variety(state: State) -> dict[str, float | int]:
+    """Return motion distances of the elites; about a second for 512."""
+    if len(state.poses) < 2:
+        return {}
+    fitness = np.asarray(state.elites.fitness)
+    cells = sorted(state.poses, key=lambda cell: (-fitness[cell], cell))
+    found = variety([state.poses[cell] for cell in cells])
+    return {name: getattr(found, name) for name in VARIETY}
 
 
 def _species(state: State) -> dict[str, str]:

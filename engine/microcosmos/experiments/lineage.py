@@ -9,6 +9,7 @@ import jax
 import numpy as np
 
 from .. import naming, search
+from ..archive.poses import PoseStream, decode
 from ..archive.report import Elite
 from ..genomes import Genotype, take, write
 from .state import Lineage, Plan, State
@@ -45,6 +46,7 @@ def record(
             operator=int(operator[slot]),
             parents=ancestors[slot],
             device=plan.device,
+            poses=jax.tree.map(lambda x, slot=slot: x[slot], evaluation.poses),
         )
         for slot, cell in zip(slots.tolist(), cells, strict=True)
     )
@@ -56,6 +58,7 @@ def record(
     nearest_ancestors[slots] = 0
     nearest_ancestors[slots, 0] = new.creature
     lineage = jax.tree.map(lambda a, b: np.concatenate([a, b]), state.lineage, new)
+    poses = {elite.cell: decode(elite.poses) for elite in elites if elite.poses}
     return replace(
         state,
         creatures=creatures,
@@ -63,6 +66,7 @@ def record(
         device_of=device_of,
         nearest_ancestors=nearest_ancestors,
         lineage=lineage,
+        poses={**state.poses, **poses},
     ), elites
 
 
@@ -157,6 +161,7 @@ def _elite(
     operator: int,
     parents: np.ndarray,
     device: str,
+    poses: search.Poses | None = None,
 ) -> Elite:
     whole = identity(plan.identity_template, genotype)
     measures: dict[str, float] = dict(zip(plan.measures, values.tolist(), strict=True))
@@ -188,4 +193,25 @@ def _elite(
         generation=generation,
         measured=measured,
         provenance=provenance,
+        poses=None if poses is None else pose_stream(plan, poses, creature).encode(),
+    )
+
+
+def pose_stream(plan: Plan, poses: search.Poses, creature: str) -> PoseStream:
+    """Return the pose stream of one creature; its nodes are those that have grown."""
+    spec, present, last = json.loads(plan.spec), poses.present, poses.window
+    edges = plan.edges[np.all(present[plan.edges], 1)]
+    return PoseStream(
+        positions=poses.positions[:, present],
+        path=poses.path,
+        origin=(float(poses.origin[0]), float(poses.origin[1])),
+        scale=float(poses.scale),
+        edges=(np.cumsum(present) - 1)[edges].astype(np.int32),
+        start=int(last.start),
+        stop=int(last.stop),
+        strokes=int(last.strokes),
+        steps=spec["task"]["steps"],
+        size=(spec["world"]["width"], spec["world"]["height"]),
+        length=float(poses.length),
+        creature=creature,
     )

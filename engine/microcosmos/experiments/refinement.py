@@ -86,6 +86,8 @@ class Refinement:
     provenance: Mapping[str, Any] | None
     """Provenance of the creature, if known."""
     device: str
+    feasible: bool = False
+    """True if a trial at a limit, too fast or pushing itself is refused."""
     measures: tuple[str, ...] = search.MEASURES
     plugins: Mapping[str, Any] = field(default_factory=dict)
     """Versions of the plug-ins among the measures."""
@@ -105,6 +107,8 @@ class Refinement:
         found = search.evaluate_blocks(
             self.evaluate_block, self._genotypes(tried.genes), block=self.block, stop=stop
         )
+        if self.feasible and state.table.rows:  # The creature as it is counts in any case.
+            found = search.judged(found)
         best = self._best(state, found)
         if best is None:
             row, length = _unchanged(state), state.length / TRIAL_RATIO

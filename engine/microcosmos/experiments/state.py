@@ -12,6 +12,7 @@ import numpy as np
 from jaxtyping import Array, Float, Int, PRNGKeyArray, PyTree, UInt8
 
 from .. import neat, search
+from ..archive.poses import PoseStream
 from ..genomes import Encoding, Genotype
 from ..search.emitters.population import PopulationNeat
 
@@ -91,6 +92,8 @@ class Plan:
     counters: neat.Counters
     """The first numbers that no newcomer's gene has."""
     device: str
+    edges: np.ndarray
+    """Edges of the body, (edge, 2)."""
     limits: Limits = Limits()
     reevaluation: Reevaluation | None = None
     feasible: bool = False
@@ -182,6 +185,8 @@ class State(eqx.Module):
     """Time of evaluation, summed over devices; used only for the limit on it."""
     lineage: Lineage
     failures: Infeasible
+    poses: Mapping[int, PoseStream]
+    """The pose stream of each cell's elite."""
     devices: tuple[str, ...] = eqx.field(static=True)
     """Kinds of device that computed the run, the present one last."""
     unrepeated: search.reevaluation.Repeats | None = None
@@ -234,6 +239,7 @@ def start(plan: Plan) -> State:
             descriptors=descriptors,
         ),
         failures=Infeasible(none, none, none, no_genotypes),
+        poses={},
         devices=(plan.device,),
         initial=plan.initial,
     )

@@ -1,6 +1,7 @@
 """Search: evaluation by blocks, variation, and insertion into an archive."""
 
 from . import cvt, emitters, folding, gradients, reevaluation
+from .blocks import Stopped, block_program, evaluate_blocks, mapped, never
 from .cells import Axis, Cells, Grid, Voronoi, voronoi
 from .emitters import NO_PARENT, OPERATORS, Children, Emitter, Outcome
 from .evaluation import (
@@ -8,16 +9,12 @@ from .evaluation import (
     Actuator,
     Evaluation,
     Goal,
-    Stopped,
     Task,
-    block_program,
     drive,
     evaluate,
-    evaluate_blocks,
+    in_trials,
     judged,
-    mapped,
     motion_of,
-    never,
     shift_energy,
     simulate,
 )
@@ -35,3 +32,4 @@ from .insertion import (
 )
 from .measures import MEASURES, Measure, Motion, motion, observe
 from .strokes import STROKE_MEASURES, Conditions, swim
+from .window import Poses

@@ -1,11 +1,5 @@
-"""Evaluation: from genomes to fitness, descriptors and measures.
+"""Evaluation of one creature: from its genome to fitness, descriptors and measures."""
 
-One compiled program evaluates a block of a fixed number of creatures. Rollouts are chaotic, and
-a program of another shape rounds differently; so this one program evaluates every
-creature, whatever its batch, slot, neighbours or device.
-"""
-
-from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
@@ -15,14 +9,23 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float, Int, PyTree
+from jaxtyping import Array, Float, Int
 
 from .. import units
-from ..device import compiler_options
 from ..filaments import Rest
 from ..genomes import Actuators, Drive, Encoding, Genotype, carried_out
-from ..world import Measures, State, World, flow, rollout
-from .measures import MEASURES, Measure, motion, motion_for_plugins, observe, swimming
+from ..world import Measures, State, World, centre, flow, rollout
+from .kinematics import kinematics
+from .measures import (
+    MEASURES,
+    Measure,
+    cost_of_transport,
+    motion,
+    motion_for_plugins,
+    observe,
+    swimming,
+)
+from .window import Poses, poses, window
 
 STATUSES = ("ok", "non-finite", "supersonic", "limits", "compressible", "impulse")
 """Outcome of an evaluation by status code: feasible, or the reason why not.
@@ -42,6 +45,7 @@ class Evaluation(eqx.Module):
     fitness: Float[Array, "*block"]
     measures: Float[Array, "*block measure"]
     status: Int[Array, "*block"]
+    poses: Poses | None = None
 
 
 class Goal(eqx.Module):
@@ -51,6 +55,8 @@ class Goal(eqx.Module):
     energy: float = eqx.field(static=True, default=0.0)
     measure: str | None = eqx.field(static=True, default=None)
     """Name of the measure that replaces both terms; None: displacement and energy."""
+    sign: float = eqx.field(static=True, default=1.0)
+    """−1: the smaller the measure, the fitter the creature."""
 
 
 class Task(eqx.Module):
@@ -66,6 +72,10 @@ class Task(eqx.Module):
     """Steps of the controller's clock in a stroke; None: it has no strokes."""
     phase: Float[Array, ""] | None = None
     """Lead of a periodic timer, in rad."""
+    turn: Float[Array, ""] | None = None
+    """Turn of the body about its middle at the start, in rad."""
+    trials: int = eqx.field(static=True, default=1)
+    """Simulations of each creature, which differ in heading and phase."""
     placements: Int[Array, "placement 2"] | None = None
     """Shift of the energy, in cells, in each world that a creature is measured in; None: one
     world, unshifted."""
@@ -81,8 +91,40 @@ class Task(eqx.Module):
 
 
 def evaluate(task: Task, genotype: Genotype) -> Evaluation:
-    """Simulate one creature and measure it."""
-    return evaluate_drive(task, genotype, drive(task, genotype))
+    """Simulate one creature in all trials and measure it.
+
+    Returns the mean fitness and measures; `trial_spread` is the standard deviation of fitness.
+    The largest values of `FEASIBLE` count, and the first trial's poses are kept.
+    """
+    if task.trials == 1:
+        return evaluate_drive(task, genotype, drive(task, genotype))
+
+    found = in_trials(task, lambda one: evaluate_drive(one, genotype, drive(one, genotype)))
+    measures = jnp.mean(found.measures, 0)
+    for name, _ in FEASIBLE.values():
+        at = MEASURES.index(name)
+        measures = measures.at[at].set(jnp.max(found.measures[:, at]))
+    measures = measures.at[MEASURES.index("trial_spread")].set(jnp.std(found.fitness, ddof=1))
+    first = jax.tree.map(lambda x: x[0], found.poses)
+    return Evaluation(jnp.mean(found.fitness), measures, jnp.max(found.status), first)
+
+
+Result = TypeVar("Result")
+
+
+def in_trials(task: Task, function: Callable[[Task], Result]) -> Result:
+    """Apply a function to the task of every trial; results have the trial as first axis."""
+    numbers = jnp.arange(task.trials)
+    return jax.lax.map(lambda number: function(trial(task, number)), numbers)
+
+
+def trial(task: Task, number: Int[Array, ""]) -> Task:
+    """Return the task of one trial: 45° more of heading and a share of a stroke more of phase
+    than in the trial before."""
+    dtype = task.start.positions.dtype
+    number = number.astype(dtype)
+    phase = 2 * jnp.pi * number / task.trials
+    return replace(task, phase=phase, turn=jnp.pi / 4 * number, trials=1)
 
 
 def evaluate_drive(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
@@ -93,7 +135,7 @@ def evaluate_drive(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
         lambda shift: _evaluate(task, genotype, shift_energy(driven, shift)), task.placements
     )
     means = jnp.mean(found.fitness), jnp.mean(found.measures, 0)
-    return Evaluation(*means, jnp.max(found.status))
+    return Evaluation(*means, jnp.max(found.status), jax.tree.map(lambda x: x[0], found.poses))
 
 
 def shift_energy(driven: Drive, shift: Int[Array, "2"]) -> Drive:
@@ -112,7 +154,9 @@ def _evaluate(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
     dtype = observed.centre.dtype
     measures = jnp.stack([values[name].astype(dtype) for name in task.measures])
     fitness = fitness_of(task, values)
-    return Evaluation(fitness.astype(dtype), measures, status(driven.world, end, measures))
+    valid = status(driven.world, end, measures)
+    shown = poses_of(task, driven, observed)
+    return Evaluation(fitness.astype(dtype), measures, valid, shown)
 
 
 def drive(task: Task, actuator: Actuator) -> Drive:
@@ -120,7 +164,19 @@ def drive(task: Task, actuator: Actuator) -> Drive:
     if isinstance(actuator, Rest) or task.encoding is None:
         return Drive(task.world, task.start, actuator)
     driven = task.encoding.drive(task.world, task.start, actuator, task.phase)
-    return driven if task.actuators is None else carried_out(driven, task.actuators)
+    driven = driven if task.actuators is None else carried_out(driven, task.actuators)
+    if task.turn is None:
+        return driven
+    return replace(driven, start=turned(driven.start, task.turn))
+
+
+def turned(state: State, turn: Scalar) -> State:
+    """Return the state with the bodies turned about the mean of all nodes, in rad."""
+    c, s = jnp.cos(turn), jnp.sin(turn)
+    middle = jnp.mean(state.positions, 0)
+    x, y = (state.positions - middle[None]).T
+    positions = jnp.stack([c * x - s * y, s * x + c * y], 1) + middle[None]
+    return replace(state, positions=positions, angles=state.angles + turn)
 
 
 def simulate(
@@ -137,13 +193,25 @@ def motion_of(task: Task, driven: Drive, end: State, observed: Measures) -> dict
     """Return measures of any actuator's motion."""
     length = task.length if driven.length is None else driven.length
     values = motion(driven.world, driven.start, end, observed, length)
-    values["speed"], values["stride"] = swimming(
-        observed.centre, strokes(driven, task.period, len(observed.centre)), length
+    done = strokes(driven, task.period, len(observed.centre))
+    values["speed"], values["stride"] = swimming(observed.centre, done, length)
+    values["cost_of_transport"] = cost_of_transport(
+        centre(driven.world, driven.start), observed, done, length
     )
+    values |= kinematics(driven.world, observed, window(done), length)
+    values["trial_spread"] = jnp.zeros_like(values["speed"])
     if not task.plugin_measures:
         return values
     whole = motion_for_plugins(driven.world, driven.start, end, observed, values)
     return values | {measure.name: measure.of(whole) for measure in task.plugin_measures}
+
+
+def poses_of(task: Task, driven: Drive, observed: Measures) -> Poses:
+    """Return the pose stream of a simulation."""
+    length = task.length if driven.length is None else driven.length
+    last = window(strokes(driven, task.period, len(observed.centre)))
+    begun, present = centre(driven.world, driven.start), driven.world.present
+    return poses(begun, observed.centre, observed.positions, present, last, length)
 
 
 def strokes(driven: Drive, period: float | None, steps: int) -> Float[Array, "time"]:
@@ -159,7 +227,7 @@ def fitness_of(task: Task, values: Mapping[str, Any]) -> Scalar:
     """
     goal = task.goal
     if goal.measure is not None:
-        return values[goal.measure]
+        return goal.sign * values[goal.measure]
     displacement, energy = values["displacement"], values["energy"]
     if goal.energy == 0:
         return displacement
@@ -194,59 +262,3 @@ def status(world: World, end: State, measures: Float[Array, "measure"]) -> Int[A
     finite = jnp.all(jnp.isfinite(measures)) & jnp.isfinite(fastest)
     # The expansion in Mach number is invalid from the lattice's speed of sound.
     return jnp.where(finite, jnp.where(fastest < 1, 0, 2), 1)
-
-
-def block_program(function: Callable) -> Callable:
-    """Compile a program that applies a function to every item of a block, such as genotypes."""
-    return jax.jit(lambda block: mapped(function, block), compiler_options=compiler_options())
-
-
-def mapped(function: Callable, block: PyTree[Array]) -> Any:
-    """Apply a function to every item of a block: in turn on a CPU, elsewhere as a batch.
-
-    On a CPU one world fits in a core's cache and a block keeps one core busy (measured
-    faster than a batch, with one device per core).
-    """
-    if jax.default_backend() == "cpu":
-        return jax.lax.map(function, block)
-    return jax.vmap(function)(block)
-
-
-Found = TypeVar("Found")
-
-
-class Stopped(Exception):
-    """The run was asked to stop; the unfinished generation is dropped and repeated."""
-
-
-def never() -> bool:
-    return False
-
-
-def evaluate_blocks(
-    program: Callable[[PyTree], Found],
-    items: PyTree[np.ndarray],
-    *,
-    block: int,
-    stop: Callable[[], bool] = never,
-) -> Found:
-    """Evaluate networks (or other items) in NumPy arrays whose first axis counts them.
-
-    The last block is padded with its first item. Each device has one block in flight. Raises
-    `Stopped` if `stop` is true before a block.
-    """
-    devices = jax.local_devices()
-    in_flight: deque[Found] = deque()
-    finished: list[Found] = []
-    count = len(jax.tree.leaves(items)[0])
-    for number, start in enumerate(range(0, count, block)):
-        if stop():
-            raise Stopped
-        if len(in_flight) == len(devices):
-            finished.append(jax.device_get(in_flight.popleft()))
-        rows = np.arange(start, start + block)
-        rows = np.where(rows < count, rows, start)
-        part = jax.tree.map(lambda x, rows=rows: x[rows], items)
-        in_flight.append(program(jax.device_put(part, devices[number % len(devices)])))
-    finished += [jax.device_get(one) for one in in_flight]
-    return jax.tree.map(lambda *parts: np.concatenate(parts)[:count], *finished)

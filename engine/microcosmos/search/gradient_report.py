@@ -16,7 +16,8 @@ from jaxtyping import Array, Float
 
 from ..device import compiler_options
 from . import gradients
-from .evaluation import Actuator, Task, drive, mapped, motion_of, simulate
+from .blocks import mapped
+from .evaluation import Actuator, Task, drive, motion_of, simulate
 from .reevaluation import Disturbance, Spread, disturbance, moved
 
 STEPS = {"float64": (1e-3, 1e-4, 1e-5, 1e-6), "float32": (1e-1, 3e-2, 1e-2, 3e-3, 1e-3)}

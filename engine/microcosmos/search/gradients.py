@@ -16,12 +16,13 @@ from jaxtyping import Array, Bool, Float
 from ..filaments import Rest
 from ..genomes import CPPN, Drive, Genotype, Vector
 from ..world import State, World
+from .blocks import mapped
 from .evaluation import (
     Actuator,
     Task,
     drive,
     fitness_of,
-    mapped,
+    in_trials,
     motion_of,
     shift_energy,
     simulate,
@@ -30,7 +31,7 @@ from .evaluation import (
 PARTS = ("genes", "rest_angle", "rest_length", "stretch", "shear", "bend", "viscosity")
 """Parts of a creature that derivatives are taken by."""
 
-CONSTANT = ("hidden_nodes", "connections", "nodes", "limited")
+CONSTANT = ("hidden_nodes", "connections", "nodes", "limited", "trial_spread")
 """Measures without a derivative."""
 
 Values = dict[str, Float[Array, "..."]]
@@ -99,27 +100,35 @@ def measures(
 
     Raises `ValueError` for names that are unknown or have no derivative.
     """
-    driven = changed(task, actuator, values)
-    if horizon is not None:
-        driven = replace(driven, inputs=jax.tree.map(lambda x: x[:horizon], driven.inputs))
 
-    def measure(driven: Drive) -> dict[str, Any]:
+    def measure(task: Task, driven: Drive) -> dict[str, Any]:
         end, observed = simulate(driven, segment=segment)
         found = motion_of(task, driven, end, observed)
         return {**found, "fitness": fitness_of(task, found)}
 
-    if task.placements is None:
-        found = measure(driven)
+    def measured(task: Task) -> dict[str, Any]:
+        driven = changed(task, actuator, values)
+        if horizon is not None:
+            driven = replace(driven, inputs=jax.tree.map(lambda x: x[:horizon], driven.inputs))
+        if task.placements is None:
+            return measure(task, driven)
+        # Checkpointed: what reverse mode keeps is one simulation's, not all of them.
+        anew = jax.checkpoint(lambda x: measure(task, shift_energy(driven, x)))
+        return _mean(jax.lax.map(anew, task.placements))
+
+    if task.trials == 1:
+        found = measured(task)
     else:
-        # Checkpointed: what reverse mode keeps is one world's, not all of them.
-        anew = jax.checkpoint(lambda x: measure(shift_energy(driven, x)))
-        worlds = jax.lax.map(anew, task.placements)
-        found = jax.tree.map(lambda x: jnp.mean(x, 0), worlds)
+        found = _mean(in_trials(task, jax.checkpoint(measured)))
     known = [name for name in found if name not in CONSTANT]
     unknown = [name for name in of if name not in known]
     if unknown:
         raise ValueError(f"`of` must be of {', '.join(known)}, got {', '.join(unknown)}")
     return jnp.stack([found[name] for name in of])
+
+
+def _mean(found: dict[str, Any]) -> dict[str, Any]:
+    return jax.tree.map(lambda x: jnp.mean(x, 0), found)
 
 
 def value_and_jacobian(

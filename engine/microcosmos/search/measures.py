@@ -86,6 +86,30 @@ def swimming(
     )
 
 
+def cost_of_transport(
+    start: Float[Array, "2"],
+    observed: Measures,
+    strokes: Float[Array, "time"],
+    length: Scalar | float,
+) -> Scalar:
+    """Return the work on the fluid per length of the body that its centre moves.
+
+    Over whole strokes after the first; over the whole simulation if there are fewer than two.
+    A distance below a thousandth of the length counts as that.
+    """
+    work = jnp.concatenate([jnp.zeros(1, strokes.dtype), jnp.cumsum(observed.power)])
+    path = jnp.concatenate([start[None], observed.centre])
+    done = jax.lax.stop_gradient(jnp.floor(strokes[-1] + 1e-3))
+    ends = jnp.where(done >= 2, jnp.stack([jnp.ones_like(done), done]), jnp.zeros(2))
+    since = jnp.concatenate([jnp.zeros(1, strokes.dtype), strokes])
+    steps = jnp.arange(0.0, len(since), dtype=strokes.dtype)
+    at = jnp.interp(ends, since, steps)
+    at = jnp.where(done >= 2, at, jnp.stack([steps[0], steps[-1]]))
+    spent = jnp.diff(jnp.interp(at, steps, work))[0]
+    moved = [jnp.diff(jnp.interp(at, steps, path[:, axis]))[0] for axis in (0, 1)]
+    return spent / jnp.maximum(_norm(jnp.stack(moved)) / length, 1e-3)
+
+
 def impulse(force: Float[Array, "time group 2"]) -> Scalar:
     """Return the largest net momentum that a body has given to the fluid at any time."""
     return jnp.max(_norm(jnp.cumsum(force, 0)))

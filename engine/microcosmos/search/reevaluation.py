@@ -14,7 +14,7 @@ from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 from ..genomes import Genotype
 from ..world import State
 from .cells import Cells
-from .evaluation import Evaluation, Task, drive, evaluate_drive
+from .evaluation import Evaluation, Task, drive, evaluate_drive, turned
 from .insertion import Elites
 
 Scalar = Float[Array, "*block"]
@@ -94,19 +94,11 @@ def evaluate_disturbed(task: Task, genotype: Genotype, changed: Disturbance) -> 
 
 def moved(start: State, changed: Disturbance) -> State:
     """Return the start with the body turned and moved, and the energy moved."""
-    c, s = jnp.cos(changed.turn), jnp.sin(changed.turn)
-    middle = jnp.mean(start.positions, 0)
-    x, y = (start.positions - middle[None]).T
-    turned = jnp.stack([c * x - s * y, s * x + c * y], 1) + middle[None]
+    start = turned(start, changed.turn)
     energy = start.energy
     if energy is not None:
         energy = jnp.roll(energy, changed.energy, (0, 1))
-    return replace(
-        start,
-        positions=turned + changed.shift[None],
-        angles=start.angles + changed.turn,
-        energy=energy,
-    )
+    return replace(start, positions=start.positions + changed.shift[None], energy=energy)
 
 
 def forget(repeats: Repeats, cells: Int[Array, "row"], entered: Bool[Array, "row"]) -> Repeats:

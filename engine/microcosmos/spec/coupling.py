@@ -61,3 +61,12 @@ class Coupling(Part):
         if not self.limits:
             return None
         return self.max_force or (0.1 if viscosity >= 0.003 else 0.03)
+
+
+def refuse_without_feasible(coupling: Coupling, name: str) -> None:
+    """Raise `ValueError` if no body is force-free, as the field `name` demands."""
+    if not coupling.force_free:
+        raise ValueError(
+            f"`{name}` must be false where `coupling.projection` is 'none', since every body "
+            "then pushes itself; got true"
+        )

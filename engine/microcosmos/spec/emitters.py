@@ -160,7 +160,7 @@ NUMBERING = ("neat", "lamarckian")
 USING_GRADIENTS = ("lamarckian", "cma-mega")
 """Operators that need the derivatives of all descriptors."""
 
-WITHOUT_GRADIENT = ("hidden_nodes", "connections", "nodes", "limited")
+WITHOUT_GRADIENT = ("hidden_nodes", "connections", "nodes", "limited", "trial_spread")
 """Measures without derivatives."""
 
 

@@ -127,7 +127,8 @@ def placements(world: World) -> int:
 def cell_steps_of(scene: Scene) -> int:
     """Return the fluid cells times steps of one creature."""
     world = scene.world
-    return placements(world) * world.width * world.height * scene.task.steps
+    simulated = placements(world) * scene.task.trials
+    return simulated * world.width * world.height * scene.task.steps
 
 
 def gradient_bytes(scene: Scene, segment: int | None) -> int:
@@ -146,8 +147,9 @@ def simulation_bytes(scene: Scene, network_nodes: int) -> int:
     controls = 10 * scene.task.steps * count * width * FLOAT
     if isinstance(scene.control, Direct | Grown):
         controls += 4 * min(count, LAID_OUT) ** 2 * FLOAT
+    poses = 3 * scene.task.steps * count * FLOAT
     cells = scene.world.width * scene.world.height
-    return fluid_bytes(cells) + node_bytes(count * scene.coupling.layers) + controls
+    return fluid_bytes(cells) + node_bytes(count * scene.coupling.layers) + controls + poses
 
 
 def _width(control: Controller | Gait | Fold) -> int:

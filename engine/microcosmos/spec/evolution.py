@@ -8,7 +8,7 @@ from pydantic import model_validator
 from .base import Part, field
 from .body import Body, Chain, is_unavailable, resolved
 from .control import Control, Genome
-from .coupling import Coupling
+from .coupling import Coupling, refuse_without_feasible
 from .emitters import Emitter, PopulationEmitter, gradients, refuse_unfit_emitters
 from .encodings import Controller, refuse_cramped
 from .scene import Scene, refuse_misfit, refuse_senseless
@@ -70,11 +70,8 @@ class Evolution(Part, Generic[Name, SearchSpec]):
         refuse_cramped(self.control, self.genome)
         refuse_senseless(self.world, self.control, self.task)
         refuse_unfit_emitters(self.emitters, self.control.encoding)
-        if self.search.feasible and not self.coupling.force_free:
-            raise ValueError(
-                "`search.feasible` must be false where `coupling.projection` is 'none', since "
-                "every body then pushes itself; got true"
-            )
+        if self.search.feasible:
+            refuse_without_feasible(self.coupling, "search.feasible")
         return self
 
     @model_validator(mode="after")

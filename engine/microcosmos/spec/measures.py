@@ -17,6 +17,8 @@ class Measure:
     scale: Scale = "linear"
 
 
+WORK = "mass · cells²/step² per length"
+
 MEASURES: dict[str, Measure] = {
     "displacement": Measure("Displacement", "cells", 0.0, 20.0),
     "bending_effort": Measure("Bending effort", "rad²", 1e-4, 1e2, "log10"),
@@ -41,5 +43,13 @@ MEASURES: dict[str, Measure] = {
     "speed": Measure("Speed", "lengths/1,000 steps", 0.0, 0.6),
     "stride": Measure("Stride", "lengths", 0.0, 0.3),
     "impulse": Measure("Net impulse", "mass · cells/step", 1e-8, 1e2, "log10"),
+    "cost_of_transport": Measure("Cost of transport", WORK, 1.0, 1e3, "log10"),
+    "beats": Measure("Beats", "per stroke", 0.0, 8.0),
+    "wave_number": Measure("Wave number", "waves per length", 0.0, 3.0),
+    "wave_direction": Measure("Direction of the wave", "", -1.0, 1.0),
+    "heading_angle": Measure("Heading to the axis", "rad", 0.0, 1.58),
+    "aspect": Measure("Width over length", "", 0.0, 1.0),
+    "strouhal": Measure("Strouhal number", "", 1e-1, 1e3, "log10"),
+    "trial_spread": Measure("Spread over trials", "fitness", 0.0, 0.1),
 }
 """The measures, in the order in which they are recorded."""

@@ -6,9 +6,11 @@ from typing import Any, Literal, Self
 from pydantic import model_validator
 
 from .base import Part, field
-from .creature import CreatureError
+from .coupling import refuse_without_feasible
+from .creature import CreatureError, scene_of
 from .creature import check as checked
 from .search import Archive, refuse_flat_axes
+from .sources import OURS
 
 
 class Refinement(Part):
@@ -26,6 +28,8 @@ class Refinement(Part):
     the longest trial is best and shrinks if no trial is better."""
     block: int = field(8, ge=2, le=256, unit="trials")
     """Trials per step, evaluated together; the exact bits of results depend on it."""
+    feasible: bool = field(True, source=OURS)
+    """Refuse trials that a search with `search.feasible` would refuse."""
     segment: int | None = field(None, ge=1, unit="steps")
     """Steps that a gradient keeps in memory at a time, recomputing the others; empty: all."""
 
@@ -36,6 +40,8 @@ class Refinement(Part):
         if encoding in ("gait", "fold"):
             raise ValueError(f"`creature` must have genes to refine, got a {encoding}")
         refuse_flat_axes(self.archive, "refinement")
+        if self.feasible:
+            refuse_without_feasible(scene_of(file).coupling, "feasible")
         return self
 
     @property

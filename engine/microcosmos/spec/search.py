@@ -13,7 +13,7 @@ from .emitters import NUMBERING, WITHOUT_GRADIENT, Emitter, NeatEmitter, slots
 from .plugins import OR_PLUGIN, MaybePlugin, PluginVersion, complete_plugin, completed
 from .sources import CVT, MAP_ELITES, OURS, PAPER, REEVALUATION
 
-Fitness = Literal["speed", "displacement", "energy", "displacement+energy"]
+Fitness = Literal["speed", "displacement", "energy", "displacement+energy", "cost_of_transport"]
 
 
 class Task(Part):
@@ -24,7 +24,11 @@ class Task(Part):
     fitness: Annotated[Fitness, *OR_PLUGIN] = field("speed", source=f"displacement: {PAPER}")
     """Fitness: speed (body lengths in 1,000 steps over whole strokes after the first),
     displacement (cells between the mean node positions at start and end), energy collected by
-    all nodes, or displacement and energy."""
+    all nodes, displacement and energy, or cost_of_transport (minus the work on the fluid per
+    body length)."""
+    trials: int = field(1, ge=1, le=16, unit="simulations")
+    """Simulations of each creature, each with 45° more of heading and its share of a stroke
+    more of phase; fitness and measures are their means."""
     energy_weight: float = field(1e-3, gt=0.0, le=1e3, unit="cells/energy")
     """Weight of collected energy relative to displacement."""
     plugin: MaybePlugin = None
@@ -154,7 +158,7 @@ class Reevaluation(Part):
 
     every: int = field(25, ge=1, le=1_000_000, unit="generations")
     """Interval; elites are also evaluated after the last generation."""
-    samples: int = field(1, ge=1, le=100, unit="evaluations")
+    samples: int = field(4, ge=1, le=100, unit="evaluations")
     """Evaluations per elite each time."""
     phase: bool = True
     """Start a periodic timer at a random phase."""

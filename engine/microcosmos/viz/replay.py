@@ -152,7 +152,7 @@ def interval(scene: Scene, network_nodes: int) -> int:
     Raises `creature.CreatureError` if the simulation is too long or too large.
     """
     cells = scene.world.width * scene.world.height
-    several = placements(scene.world)
+    several = placements(scene.world) * scene.task.trials
     simulations = 1 + several if several > 1 else 1  # The recorded one, and those averaged.
     for field, limit, found, unit in (
         ("task.steps", CELL_STEPS, cells * scene.task.steps * simulations, "cell steps"),
@@ -210,8 +210,8 @@ def _program(scene_json: str, every: int) -> Callable[[search.Actuator], tuple]:
         driven = search.drive(task, actuator)
         film, end, seen = _filmed(task, driven, scene.task.steps // every, every, changes)
         values = search.motion_of(task, driven, end, seen)
-        if task.placements is not None:
-            values = _mean_motion(task, driven)
+        if task.placements is not None or task.trials > 1:
+            values = _mean_motion(task, actuator)
         if task.encoding is not None:
             values["hidden_nodes"], values["connections"] = task.encoding.size(actuator)
         return film, values
@@ -253,15 +253,27 @@ def _filmed(
     return Recording(positions, curl, velocity, energy, rest, present), end, seen
 
 
-def _mean_motion(task: search.Task, driven: Drive) -> dict[str, Any]:
-    """Average measures over all placements of energy; the film shows the first one."""
+def _mean_motion(task: search.Task, actuator: search.Actuator) -> dict[str, Any]:
+    """Average measures over all trials and placements of energy; the film shows the first."""
 
-    def motion(shift: Array) -> dict[str, Any]:
-        moved = search.shift_energy(driven, shift)
-        return search.motion_of(task, moved, *search.simulate(moved))
+    def measured(one: search.Task, driven: Drive) -> dict[str, Any]:
+        return search.motion_of(one, driven, *search.simulate(driven))
 
-    found = jax.lax.map(motion, task.placements)
-    return jax.tree.map(lambda x: jnp.mean(x, 0), found)
+    def in_placements(one: search.Task) -> dict[str, Any]:
+        driven = search.drive(one, actuator)
+        if task.placements is None:
+            return measured(one, driven)
+        shifted = jax.lax.map(
+            lambda shift: measured(one, search.shift_energy(driven, shift)), task.placements
+        )
+        return mean(shifted)
+
+    def mean(found: dict[str, Any]) -> dict[str, Any]:
+        return jax.tree.map(lambda x: jnp.mean(x, 0), found)
+
+    return (
+        in_placements(task) if task.trials == 1 else mean(search.in_trials(task, in_placements))
+    )
 
 
 def _levels(values: np.ndarray, scale: float, kind: type[np.integer]) -> np.ndarray:

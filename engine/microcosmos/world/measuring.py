@@ -37,6 +37,7 @@ def measure(world: World, end: State, rest: filaments.Rest, pushed: Pushed) -> M
         force=groups.total(pushed.forcing),
         rest=rest,
         centre=centre(world, end),
+        positions=end.positions,
         heading=mean(end.angles, edges_there(world)),
         curvature=_curvature(world, end),
         power=jnp.sum(pushed.forcing * pushed.target),

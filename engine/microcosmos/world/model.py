@@ -83,6 +83,8 @@ class Measures(eqx.Module):
 
     centre: Float[Array, "2"]
     """The mean unwrapped node position at the end of the step, in cells."""
+    positions: Vectors
+    """The unwrapped positions of nodes at the end of the step, in cells."""
     rest: filaments.Rest
     """The rest shape of the step."""
     speed: Float[Array, ""]

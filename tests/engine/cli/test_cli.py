@@ -54,6 +54,8 @@ def test_a_stopped_and_extended_run_ends_with_the_bytes_of_a_longer_one(run, inv
     assert archive.read_bytes() != (tmp_path / "whole.h5").read_bytes()
     invoke("evolve", "spec.json", "--generations", "13")
     assert archive.read_bytes() == (tmp_path / "whole.h5").read_bytes()
+    assert "elites; distances in body lengths" in invoke("variety", "spec.h5")
+    assert json.loads(invoke("variety", "spec.h5", "--json"))["kinds"] >= 1
     text = invoke("evolve", "spec.json", code=2)
     assert "must be at least the file's 13, got 12" in text
     assert "The same, bit for bit." in invoke("replay", "spec.best.json", "--check")
@@ -68,6 +70,7 @@ def test_a_stopped_and_extended_run_ends_with_the_bytes_of_a_longer_one(run, inv
         ("evolve nonsense", "got nonsense"),
         ("evolve nonsense", "demo"),
         ("replay empty.json --check", "identity"),
+        ("variety empty.json", "an archive file must be HDF5"),
         ("figure creature.replay creature.bmp", ".mp4"),
         ("figure empty.json x.mp4", "microcosmos[figures]"),
     ],

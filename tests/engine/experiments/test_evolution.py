@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from microcosmos import naming
-from microcosmos.archive import creature, file
+from microcosmos.archive import creature, file, variety
 from microcosmos.build import build
 from microcosmos.experiments import evolution
 from microcosmos.search import MEASURES, STATUSES, tensorneat
@@ -29,6 +29,16 @@ def test_the_archive_only_improves(course):
     for name in ("qd_score", "coverage", "best"):
         values = [getattr(report, name) for report in reports]
         assert values == sorted(values)
+
+
+def test_the_last_report_has_the_variety_of_the_archive_file(course, experiment):
+    states, reports, *_ = course
+    assert not [report for report in reports[:-1] if "kinds" in report.summary]
+    found = variety.of(experiment.save(states[-1]))
+    assert found.creatures == found.compared == np.count_nonzero(states[-1].elites.occupied)
+    assert found.motion_distance > found.nearest_motion > 0
+    for name in ("motion_distance", "nearest_motion", "kinds"):
+        assert reports[-1].summary[name] == getattr(found, name)
 
 
 def test_reported_elites_are_what_the_archive_holds(experiment, course):

@@ -2,7 +2,10 @@
 
 import itertools
 import json
+from dataclasses import replace
 
+import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -37,6 +40,25 @@ def test_refinement_never_lowers_the_fitness(spec, rows):
     assert rows[0].creature == spec.creature["sha256"]
     assert rows[0].provenance == spec.creature["provenance"]
     assert fitness[0] == pytest.approx(spec.creature["measured"]["fitness"], rel=1e-4)
+
+
+def test_infeasible_trials_are_refused(course):
+    """The same steps, but each trial pushes itself; the creature itself counts in any case."""
+    experiment = course.experiment
+    assert experiment.feasible
+
+    def pushing(genotypes):
+        found = jax.device_get(experiment.evaluate_block(genotypes))
+        measures = np.array(found.measures)
+        measures[:, MEASURES.index("impulse")] = 1.0
+        return eqx.tree_at(lambda one: one.measures, found, measures)
+
+    pushed = replace(experiment, evaluate_block=pushing)
+    first, _ = pushed.advance(pushed.init())
+    assert np.isfinite(first.fitness)
+    second, _ = pushed.advance(first)
+    assert second.fitness == first.fitness
+    assert experiment.advance(first)[0].fitness > first.fitness
 
 
 def test_refinement_stays_in_the_cell(spec, rows):
@@ -76,6 +98,11 @@ def test_damaged_creatures_and_measures_without_derivatives_are_refused(spec):
     file = spec.creature
     with pytest.raises(ValidationError, match=r"creature\.sha256"):
         parse({"experiment": "refinement", "creature": {**file, "sha256": "0" * 64}})
+    pushed = json.loads(json.dumps(file))
+    pushed["identity"]["world"]["coupling"]["projection"] = "none"
+    pushed["sha256"] = creature.name(pushed["identity"])
+    with pytest.raises(ValidationError, match="`feasible` must be false"):
+        parse({"experiment": "refinement", "creature": pushed})
     axes = {"descriptors": [{"name": "connections"}]}
     with pytest.raises(ValidationError, match="derivatives for refinement, got 'connections'"):
         parse({"experiment": "refinement", "creature": file, "archive": axes})

@@ -99,6 +99,23 @@ def test_a_factor_of_viscosity_is_that_viscosity(disturbed, task, network):
     agree(disturbed(viscosity=1.05), measured(other, network))
 
 
+def test_trials_differ_in_heading_and_phase(disturbed, task, network):
+    """Results are means over the trials; of what makes a creature infeasible, the largest."""
+    several = replace(task, trials=3)
+    found = measured(several, network)
+    ones = [disturbed(phase=2 * np.pi * k / 3, turn=np.pi / 4 * k) for k in range(3)]
+    fitness = [one["speed"] for one in ones]
+    for name in ("speed", "path_length", "wave_number"):
+        mean = np.mean([one[name] for one in ones])
+        assert found[name] == pytest.approx(mean, rel=1e-3), name
+    assert found["mach"] == pytest.approx(max(one["mach"] for one in ones), rel=1e-3)
+    assert found["trial_spread"] == pytest.approx(np.std(fitness, ddof=1), rel=0.02)
+    assert found["trial_spread"] > 0.01 * np.mean(fitness)
+    whole = search.gradients.measures(several, network, {}, ("fitness", "path_length"))
+    expected = found["speed"], found["path_length"]
+    np.testing.assert_allclose(whole, expected, rtol=1e-3)
+
+
 def test_disturbances_stay_within_the_spread():
     spread = reevaluation.Spread(viscosity=0.05)
     keys = jax.random.split(jax.random.key(0), 4000)

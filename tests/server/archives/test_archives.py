@@ -9,6 +9,7 @@ from answers import detail, errors, fields
 from reports import archive_file
 
 from microcosmos.archive import file
+from microcosmos.archive.poses import PoseStream, decode
 from microcosmos.spec import parse
 from server.archives import routes as archives
 from server.attempts.claim import claim
@@ -49,6 +50,39 @@ def test_the_archive_in_the_past_is_as_it_was(api, run_id, record):
         then = api.get(f"runs/{run_id}/archive", params={"generation": generation}).json()
         assert (then["cell"], then["fitness"]) == (cells, fitness)
         assert then["generation"] == min(generation, 2)
+
+
+@pytest.mark.postgresql
+def test_the_pose_streams_of_cells_come_at_once(api, run_id, services, record):
+    record(1, {5: 1.0, 3: 2.0, 9: 1.0}, poses=True)
+    record(2, {5: 1.5}, poses=True)
+    record(3, {3: 4.0})  # Without a stream.
+    path = f"runs/{run_id}/archive"
+    for generation, cells in ((1, [3, 5]), (2, [3, 5]), (3, [5]), (None, [5])):
+        then = {"generation": generation} if generation else {}
+        archive = api.get(path, params=then).json()
+        names = dict(zip(archive["cell"], archive["creature"], strict=True))
+        answer = api.get(f"{path}/poses", params={"cells": "5,3,200", **then})
+        assert [one.creature for one in streams(answer.content)] == [names[x] for x in cells]
+    assert services.jobs.renderings.count == 0
+
+
+def test_streams_of_too_many_or_malformed_cells_are_refused(api, run_id):
+    path = f"runs/{run_id}/archive/poses"
+    many = ",".join(map(str, range(archives.POSE_CELLS + 1)))
+    (error,) = errors(api.get(path, params={"cells": many}))
+    assert (error["field"], error["needed"]) == ("cells", "at most 1,000 cells")
+    for cells in ("", "a", "1,,2", "-1"):
+        assert api.get(path, params={"cells": cells}).status_code == 422, cells
+
+
+def streams(content: bytes) -> list[PoseStream]:
+    found = []
+    while content:
+        stop = 4 + int.from_bytes(content[:4], "little")
+        found.append(decode(content[4:stop]))
+        content = content[stop:]
+    return found
 
 
 def test_a_run_without_checkpoint_has_no_file_and_a_grid_no_centroids(api, run_id):

@@ -1,18 +1,21 @@
-"""Replays, films, pictures, motions and measurements on request."""
+"""Replays, films, pictures, pose streams and measurements on request."""
 
 import json
-import struct
+from io import BytesIO
 
 import httpx
 import numpy as np
 import pytest
 from answers import detail
-from reports import replay
+from reports import DEMO, pose_stream, replay
 from sqlalchemy import select
 
 from microcosmos.archive import creature
+from microcosmos.archive.poses import decode
 from microcosmos.viz.replay_file import REPLAY_VERSION
+from server.attempts.claim import claim
 from server.renderings import storage as renderings
+from server.runs.submission import submit
 from server.tables import MEASUREMENT, REPLAY, Artifact
 
 
@@ -120,31 +123,82 @@ def test_a_replay_of_an_earlier_format_is_recorded_anew(api, services, known):
     assert api.get(f"creatures/{known}/replay").content == b"of now again"
 
 
-def read(data: bytes) -> tuple[dict, np.ndarray]:
-    (length,) = struct.unpack_from("<I", data)
-    header = json.loads(data[4 : 4 + length])
-    positions = np.frombuffer(data[4 + length :], "<f4")
-    return header, positions.reshape(header["frames"], header["nodes"], 2)
-
-
-@pytest.mark.parametrize(("frames", "stride"), [(7, 1), (96, 1), (97, 2), (1001, 11)])
-def test_a_motion_is_every_kth_frame_of_the_replay(api, services, known, frames, stride):
-    positions = np.random.default_rng(0).normal(size=(frames, 3, 2)).astype(np.float32)
-    renderings.save(services, known, REPLAY, replay(positions))
-    answer = api.get(f"creatures/{known}/motion")
-    header, motion = read(answer.content)
-    np.testing.assert_array_equal(motion, positions[::stride])
-    assert header["every"] == 5 * stride
-    assert (header["nodes"], header["edges"], header["size"]) == (3, [[0, 1], [1, 2]], [8, 4])
+@pytest.mark.parametrize(("frames", "stride"), [(7, 1), (65, 1), (66, 2), (1001, 16)])
+def test_poses_without_a_stored_stream_are_every_kth_frame_of_the_replay(
+    api, services, known, frames, stride
+):
+    places = np.random.default_rng(0).normal(size=(frames, 3, 2)).astype(np.float32)
+    renderings.save(services, known, REPLAY, replay(places))
+    answer = api.get(f"creatures/{known}/poses")
+    found = decode(answer.content)
+    np.testing.assert_allclose(found.cells, places[stride::stride], atol=1e-3)
+    np.testing.assert_allclose(found.path, places[::stride].mean(1), atol=1e-6)
+    np.testing.assert_array_equal(np.diff(found.times), 5 * stride)
+    assert (found.creature, found.strokes, found.size) == (known, 0, (8, 4))
+    assert found.length == pytest.approx(np.sum(np.hypot(*np.diff(places[0], axis=0).T)))
+    assert answer.headers["cache-control"] == "no-cache"
     known_already = {"If-None-Match": answer.headers["etag"]}
-    again = api.get(f"creatures/{known}/motion", headers=known_already)
+    again = api.get(f"creatures/{known}/poses", headers=known_already)
     assert (again.status_code, again.content) == (304, b"")
 
 
-def test_a_motion_without_replay_orders_the_replay(api, services, known):
-    answer = api.get(f"creatures/{known}/motion")
+@pytest.mark.parametrize("path", ["poses", "poses.csv", "poses.npz"])
+def test_poses_without_a_stream_and_without_a_replay_order_the_replay(
+    api, services, known, path
+):
+    answer = api.get(f"creatures/{known}/{path}")
     assert (answer.status_code, answer.json()) == (202, {"status": "rendering"})
     assert services.jobs.renderings.count == 1
+
+
+def test_recorded_poses_are_sent_as_stored_and_kept_for_good(api, services, record, report):
+    record(1, {3: 1.5}, poses=True)
+    (elite,) = report(1, {3: 1.5}, poses=True).elites
+    answer = api.get(f"creatures/{elite.creature}/poses")
+    assert answer.content == elite.poses
+    assert "immutable" in answer.headers["cache-control"]
+    known_already = {"If-None-Match": answer.headers["etag"]}
+    again = api.get(f"creatures/{elite.creature}/poses", headers=known_already)
+    assert (again.status_code, again.content) == (304, b"")
+    assert services.jobs.renderings.count == 0
+
+
+def test_poses_are_exported_as_csv_and_for_numpy(api, record, report):
+    record(1, {3: 1.5}, poses=True)
+    (elite,) = report(1, {3: 1.5}, poses=True).elites
+    stream = decode(elite.poses)
+    table = api.get(f"creatures/{elite.creature}/poses.csv")
+    assert f'"poses-{elite.creature[:12]}.csv"' in table.headers["content-disposition"]
+    assert table.headers["content-type"].startswith("text/csv")
+    rows = np.loadtxt(table.text.splitlines(), delimiter=",", skiprows=1)
+    assert rows.shape == (64 * 3, 4)
+    np.testing.assert_allclose(rows[:, 2:].reshape(64, 3, 2), stream.cells, atol=1e-4)
+    arrays = np.load(BytesIO(api.get(f"creatures/{elite.creature}/poses.npz").content))
+    np.testing.assert_array_equal(arrays["positions"], stream.cells)
+    np.testing.assert_array_equal(arrays["times"], rows[::3, 0])
+
+
+def test_a_known_creature_gets_the_first_stream_that_a_run_records(api, upload, record, report):
+    found = report(1, {3: 1.5}, poses=True)
+    (elite,) = found.elites
+    assert upload(json.loads(elite.identity)) == elite.creature
+    assert api.get(f"creatures/{elite.creature}/poses").status_code == 202
+    record(1, {3: 1.5}, poses=True)
+    assert api.get(f"creatures/{elite.creature}/poses").content == elite.poses
+
+
+def test_a_stored_stream_stays_when_another_run_finds_the_creature(
+    api, services, record, report
+):
+    record(1, {3: 1.5}, poses=True)
+    (elite,) = report(1, {3: 1.5}).elites
+    for poses in (None, pose_stream(elite.creature, frames=8)):
+        found = report(1, {3: 1.5})
+        found.elites[0].poses = poses
+        held = claim(services, submit(services, DEMO)[0].id, "worker")
+        held.record(found, 1.0)
+    answer = api.get(f"creatures/{elite.creature}/poses")
+    assert len(decode(answer.content).positions) == 64
 
 
 @pytest.fixture

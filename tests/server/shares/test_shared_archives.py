@@ -43,6 +43,16 @@ def test_an_archive_is_shared_as_it_was(through, archive, attempt, report, run_i
         assert found.status_code == 404
 
 
+def test_a_share_shows_the_poses_of_its_elites_and_no_later_ones(
+    api, through, archive, attempt, report, run_id
+):
+    attempt.record(report(3, {3: 9.0, 8: 9.0}, poses=True), 1.0)
+    path = f"runs/{run_id}/archive/poses"
+    assert len(api.get(path, params={"cells": "3,7,8"}).content) > 0
+    shared = through(archive["slug"], path, params={"cells": "3,7,8"})
+    assert (shared.status_code, shared.content) == (200, b"")
+
+
 def test_a_shared_run_hides_its_owners_notes(api, through, archive, run_id):
     api.patch(f"runs/{run_id}", json={"name": "mine", "tags": ["a"], "note": "secret"})
     answer = through(archive["slug"], f"runs/{run_id}")
@@ -84,7 +94,7 @@ def test_renderings_for_shares_wait_last_and_are_limited(
     (cover,) = (job.args[0] for job in services.jobs.renderings.get_jobs())
     names = through(archive["slug"], f"runs/{archive['run']}/archive/history").json()
     for sha in names["creature"]:
-        answer = through(archive["slug"], f"creatures/{sha}/motion")
+        answer = through(archive["slug"], f"creatures/{sha}/poses")
         assert (answer.status_code, answer.json()) == (202, {"status": "rendering"})
     jobs = services.jobs.renderings.get_jobs()
     assert [job.args for job in jobs] == [[cover, PREVIEW], [names["creature"][0], REPLAY]]

@@ -64,6 +64,14 @@ export const readArchive = (
   measures: string[] = [],
   when: { generation?: number; after?: number } = {},
 ) => success(client.GET("/runs/{run_id}/archive", run(id, { ...joined(measures), ...when })));
+/** The stored pose streams of the elites of cells, now or after a generation. */
+export const readArchivePoses = (id: string, cells: number[], when: { generation?: number }) =>
+  typed<ArrayBuffer>(
+    client.GET("/runs/{run_id}/archive/poses", {
+      ...run(id, { cells: cells.join(), ...when }),
+      parseAs: "arrayBuffer",
+    }),
+  );
 /** Every elite that ever entered the archive, with columns of named measures. */
 export const readHistory = (id: string, measures: string[]) =>
   success(client.GET("/runs/{run_id}/archive/history", run(id, joined(measures))));
@@ -126,11 +134,12 @@ export function importCreature(file: Blob) {
 /** The replay; null while the renderer prepares it. */
 export const readReplay = (sha: string) =>
   whenReady<ArrayBuffer>(client.GET("/creatures/{sha}/replay", { ...creature(sha), parseAs: "arrayBuffer" }));
-export const readMotion = (sha: string, headers = {}) =>
+/** The pose stream; null while the renderer prepares the replay of a creature without one. */
+export const readPoses = (sha: string, headers = {}) =>
   whenReady<ArrayBuffer>(
-    client.GET("/creatures/{sha}/motion", { ...creature(sha), headers, parseAs: "arrayBuffer" }),
+    client.GET("/creatures/{sha}/poses", { ...creature(sha), headers, parseAs: "arrayBuffer" }),
   );
-export const readCover = ({ slug, cover }: wire.Share) => readMotion(cover, { [SHARE_HEADER]: slug });
+export const readCover = ({ slug, cover }: wire.Share) => readPoses(cover, { [SHARE_HEADER]: slug });
 export const readAudit = (sha: string) =>
   whenReady<wire.Audit>(client.GET("/creatures/{sha}/audit", creature(sha)));
 

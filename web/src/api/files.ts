@@ -44,6 +44,7 @@ export const archiveUrl = (id: string, kind: "h5" | "csv") => `${ROOT}/runs/${id
 export const resultsUrl = (id: string) => `${ROOT}/runs/${id}/results.csv`;
 export type PictureFormat = "strip.png" | "film.gif" | "film.mp4";
 export const pictureUrl = (sha: string, kind: PictureFormat) => `${ROOT}/creatures/${sha}/${kind}`;
+export const posesUrl = (sha: string, kind: "csv" | "npz") => `${ROOT}/creatures/${sha}/poses.${kind}`;
 export type NetworkFormat = "svg" | "dot" | "py" | "npz";
 export const networkUrl = (sha: string, kind: NetworkFormat) => `${ROOT}/creatures/${sha}/network.${kind}`;
 export const creatureFileUrl = (sha: string) => `${ROOT}/creatures/${sha}?download=1&ancestors=1`;

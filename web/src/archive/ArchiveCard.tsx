@@ -47,7 +47,7 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
       <MapOptions archive={archive} view={view} />
       <Slices slices={view.slices} />
       {gallery ? (
-        <Gallery key={names} {...props} query={query} />
+        <Gallery key={names} {...props} {...{ at, query }} run={run.id} />
       ) : (
         <ArchiveMap
           key={names}

@@ -1,11 +1,11 @@
-/** The replay of an elite, shown once the pointer rests on it. */
+/** An elite, swimming, shown once the pointer rests on it. */
 
 import { useLayoutEffect, useState } from "preact/hooks";
-import { ReplayLoop } from "../replay/ReplayLoop";
-import { useReplays } from "../replay/replays";
+import { SwimmingBody } from "../replay/SwimmingBody";
+import { usePoseStream } from "../store/poses";
 import { text } from "./text";
 
-/** Delay of a request, so that a moving pointer requests no replays. */
+/** Delay of a request, so that a moving pointer requests nothing. */
 const HOVER_MS = 12;
 
 export function ElitePreview({ sha }: { sha: string }) {
@@ -15,12 +15,11 @@ export function ElitePreview({ sha }: { sha: string }) {
     const timer = setTimeout(() => setRequested(sha), HOVER_MS);
     return () => clearTimeout(timer);
   }, [sha]);
-  const { replays, error } = useReplays(requested === sha ? [sha] : []);
-  const replay = replays?.[0];
+  const { stream, error } = usePoseStream(requested === sha ? sha : null);
   return (
     <div class="inset" data-inset>
-      {replay ? (
-        <ReplayLoop key={sha} replay={replay} name={text.inset} onFirst={markInset} />
+      {stream ? (
+        <SwimmingBody key={sha} stream={stream} label={text.inset} path onFirst={markInset} />
       ) : (
         <p>{error ?? text.simulating}</p>
       )}

@@ -2,8 +2,8 @@
 
 import type { ComponentChildren, RefObject } from "preact";
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
-import { useLoop } from "../replay/clock";
-import { useMotions } from "../store/motions";
+import { useSteps } from "../replay/clock";
+import { usePoses } from "../store/poses";
 import { setQuery } from "../store/router";
 import { type Size, useSize, px, useTheme } from "../ui/canvas";
 import { AxisLabels, ColourLegend } from "./labels";
@@ -19,7 +19,14 @@ const [SMALLEST, LARGEST] = [36, 180];
 /** Smaller tiles are hard to read: the gallery scrolls instead. */
 const MIN_READABLE = 52;
 
-export function Gallery({ query, ...props }: ArchiveViewProps & { query: URLSearchParams }) {
+interface GalleryProps extends ArchiveViewProps {
+  run: string;
+  /** The generation shown; null for the newest. */
+  at: number | null;
+  query: URLSearchParams;
+}
+
+export function Gallery({ query, ...props }: GalleryProps) {
   const { axes } = props;
   const shape: Shape = [axes[0].bins, axes[1].bins];
   const port = useRef<HTMLDivElement>(null);
@@ -104,7 +111,7 @@ function Viewport({ port, focus, total, onScroll, children, ...props }: Viewport
   );
 }
 
-interface TilesProps extends ArchiveViewProps {
+interface TilesProps extends Omit<GalleryProps, "query"> {
   shape: Shape;
   side: number;
   scroll: Offset;
@@ -113,7 +120,8 @@ interface TilesProps extends ArchiveViewProps {
 }
 
 /** The canvas with the visible tiles; it moves while it is on the screen. */
-function Tiles({ projection, colouring, shape, side, scroll, size, marked, selected: cells }: TilesProps) {
+function Tiles({ run, at, projection, selected: cells, ...props }: TilesProps) {
+  const { colouring, shape, side, scroll, size, marked } = props;
   const canvas = useRef<HTMLCanvasElement>(null);
   const theme = useTheme();
   const { tiles } = projection;
@@ -121,12 +129,13 @@ function Tiles({ projection, colouring, shape, side, scroll, size, marked, selec
     () => visibleBins(tiles.keys(), shape, side, { left: scroll[0], top: scroll[1], ...size }),
     [tiles, side, scroll, size.width, size.height],
   );
-  const motions = useMotions(bins.map((bin) => tiles.get(bin)!.elite.creature));
+  const visible = bins.map((bin) => tiles.get(bin)!).map(({ cell, elite }) => ({ cell, ...elite }));
+  const poses = usePoses(run, at, visible);
   const selected = useMemo(() => binsOf(cells, projection), [cells, projection]);
-  const picture = { shape, side, tiles, bins, colouring, motions, theme, marked, selected };
-  useLoop(useOnScreen(canvas), (share) => {
+  const picture = { shape, side, tiles, bins, colouring, poses, theme, marked, selected };
+  useSteps(useOnScreen(canvas), (steps) => {
     const element = canvas.current; // Null in the frame after the page was left.
-    if (element && size.width > 0) drawGallery(element, size, picture, scroll, share);
+    if (element && size.width > 0) drawGallery(element, size, picture, scroll, steps);
   });
   return <canvas ref={canvas} style={px({ ...size })} />;
 }

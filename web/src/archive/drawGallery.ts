@@ -1,13 +1,14 @@
 /** Draw the visible part of a gallery at one moment. */
 
-import type { Motion } from "../decode/replay";
+import type { PoseStream } from "../decode/poses";
 import { type Size, type Theme, prepare } from "../ui/canvas";
 import { css, sequential } from "../ui/colours";
 import { type Colouring, colourPosition } from "./colouring";
 import { type Shape, cornerOf } from "./layout";
 import { FADED } from "./mapCanvas";
 import type { Tiles } from "./projection";
-import { BODY_INK, traceBody } from "../replay/motion";
+import { BODY_INK } from "../replay/motion";
+import { traceBody } from "../replay/poses";
 
 export interface GalleryPicture {
   shape: Shape;
@@ -16,7 +17,7 @@ export interface GalleryPicture {
   /** The bins to draw. */
   bins: readonly number[];
   colouring: Colouring;
-  motions: ReadonlyMap<string, Motion>;
+  poses: ReadonlyMap<string, PoseStream>;
   theme: Theme;
   marked: number | null;
   /** The selected bins; null without a selection. */
@@ -28,13 +29,13 @@ const INKS = {
   dark: { body: BODY_INK.dark, quiet: "rgb(240 244 246 / 0.3)", tint: 0.38 },
 };
 
-/** `share` is the elapsed share of the replays; the window starts at `left` and `top` of the gallery. */
+/** `steps` are the simulated steps so far; the window starts at `left` and `top` of the gallery. */
 export function drawGallery(
   canvas: HTMLCanvasElement,
   size: Size,
   picture: GalleryPicture,
   [left, top]: readonly [number, number],
-  share: number,
+  steps: number,
 ): void {
   const context = prepare(canvas, size);
   const { side, theme } = picture;
@@ -42,7 +43,7 @@ export function drawGallery(
   context.lineWidth = Math.max(1.25, side / 32);
   for (const bin of picture.bins) {
     const [x, y] = cornerOf(bin, picture.shape, side);
-    drawTile(context, picture, bin, [x - left, y - top, side], share);
+    drawTile(context, picture, bin, [x - left, y - top, side], steps);
   }
   if (picture.marked === null) return;
   const [x, y] = cornerOf(picture.marked, picture.shape, side);
@@ -53,10 +54,10 @@ export function drawGallery(
 
 function drawTile(
   context: CanvasRenderingContext2D,
-  { tiles, colouring, motions, theme, selected }: GalleryPicture,
+  { tiles, colouring, poses, theme, selected }: GalleryPicture,
   bin: number,
   [left, top, side]: readonly [number, number, number],
-  share: number,
+  steps: number,
 ): void {
   const { body, quiet, tint } = INKS[theme];
   const tile = tiles.get(bin)!;
@@ -67,9 +68,9 @@ function drawTile(
   context.fillRect(left + 1, top + 1, side - 2, side - 2);
   context.globalAlpha = strength;
   context.fillRect(left + 1, top + side - 4, side - 2, 3);
-  const motion = motions.get(tile.elite.creature);
-  if (motion) {
-    traceBody(context, motion, share, [left, top, side - 3]);
+  const stream = poses.get(tile.elite.creature);
+  if (stream) {
+    traceBody(context, stream, steps, [left, top, side - 3]);
     context.strokeStyle = body;
   } else {
     context.beginPath();

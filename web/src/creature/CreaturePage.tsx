@@ -6,6 +6,7 @@ import { sharedSlug } from "../api/address";
 import type { Creature, Spec } from "../api/types";
 import type { Replay } from "../decode/replay";
 import { useFetched } from "../store/fetch";
+import { usePoseStream } from "../store/poses";
 import { number, shortId, words } from "../ui/format";
 import { NotForceFree, isForceFree } from "../ui/coupling";
 import { Page, reasonOf, useTitle } from "../ui/Page";
@@ -20,6 +21,7 @@ import { Downloads } from "./Downloads";
 import { RemeasureCard } from "./RemeasureCard";
 import { PublishButton } from "../publish/PublishButton";
 import { RefineButton } from "./RefineButton";
+import { SwimmingBody } from "../replay/SwimmingBody";
 import { ReplayStatus, useReplays } from "../replay/replays";
 import { SpaceTimeCard } from "./SpaceTimeCard";
 import { text } from "./text";
@@ -63,13 +65,16 @@ export function CreatureView({ creature, query }: { creature: Creature; query: U
   const playhead = useMemo(newPlayhead, []);
   const rendering = useReplays([sha]);
   const replay = rendering.replays?.[0] ?? null;
+  const { stream } = usePoseStream(replay ? null : sha);
   const panels = useMemo(() => (replay ? [{ replay }] : []), [replay]);
   return (
     <>
       <div class="creature-columns">
         <div class="motion stack">
           <section class="card" aria-label={text.replay}>
-            <ReplayStatus {...rendering} what={text.recording} />
+            <ReplayStatus {...rendering} what={text.recording}>
+              {stream && <SwimmingBody stream={stream} label={text.swimming} path />}
+            </ReplayStatus>
             {replay && <ReplayPlayer {...{ panels, playhead, query }} />}
             {replay && swims(creature) && <ReplayFitness replay={replay} task={identity.task} />}
             <Downloads sha={sha} />

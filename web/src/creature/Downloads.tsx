@@ -8,6 +8,7 @@ import {
   creatureFileUrl,
   creatureH5Url,
   pictureUrl,
+  posesUrl,
 } from "../api/files";
 import { sharedSlug } from "../api/address";
 import { poll } from "../store/polling";
@@ -36,6 +37,8 @@ export function Downloads({ sha }: { sha: string }) {
       {(sharedSlug ? [] : KINDS).map(([kind, title]) => (
         <Download key={kind} url={pictureUrl(sha, kind)} title={title} />
       ))}
+      <Download url={posesUrl(sha, "csv")} title={text.motionCsv} />
+      <Download url={posesUrl(sha, "npz")} title={text.motionNumpy} />
     </p>
   );
 }

@@ -24,7 +24,8 @@ export const text = {
   fork: "Start a new run from this creature",
   loading: "Loading creature …",
   replay: "Replay",
-  recording: "Simulating this creature to record its motion …",
+  recording: "Simulating this creature to record the fluid around it …",
+  swimming: "The creature swims its last two strokes",
   replayFitness: (fitness: string | null, measured: unknown) => {
     if (fitness === null) return "The replay has no fitness: the plug-in of the task was not loaded";
     if (measured === "speed") return `Speed in this replay: ${fitness} body lengths in 1,000 steps`;
@@ -37,6 +38,8 @@ export const text = {
   linkCopied: "Link copied.",
   copyLink: "Copy link",
   jsonAbout: "The creature file with its ancestors, for import into another installation",
+  motionCsv: "Motion (CSV)",
+  motionNumpy: "Motion (NumPy)",
   rendering: (format: string) => `Rendering ${format} …`,
   facts: "Measurements and origin",
   coupling: "Coupling",
@@ -177,6 +180,14 @@ export const text = {
     mach: ["Mach number", ""],
     limited: ["Limits active", "% of node steps"],
     impulse: ["Net impulse", "lattice units"],
+    cost_of_transport: ["Cost of transport", "work per length"],
+    beats: ["Beats", "per stroke"],
+    wave_number: ["Wave number", "waves per length"],
+    wave_direction: ["Direction of the wave", ""],
+    heading_angle: ["Heading to the axis", "rad"],
+    aspect: ["Width over length", ""],
+    strouhal: ["Strouhal number", ""],
+    trial_spread: ["Spread over trials", "fitness"],
   } as Record<string, [title: string, unit: string, digits?: number]>,
   sha: "SHA-256",
   thisCreature: "This creature",

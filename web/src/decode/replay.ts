@@ -1,6 +1,7 @@
-/** Replays: the recorded motion of one creature, its drive and the fluid around it; motions: positions only. */
+/** Replays: the recorded motion of one creature, its drive and the fluid around it. */
 
 import { floatsAt } from "./floats";
+import { readHeader } from "./header";
 
 export interface Header {
   creature: string;
@@ -37,7 +38,7 @@ export interface Replay {
 }
 
 export function decodeReplay(buffer: ArrayBuffer): Replay {
-  const { header, start } = readHeader<Header>(buffer, "microcosmos-replay/2");
+  const { header, start } = readHeader<Header>(buffer, "replay", "microcosmos-replay/2");
   const { frames, nodes, size, joints, edges, energy } = header;
   const cells = size[0] * size[1];
   const floatCounts = [2 * nodes, joints.length, edges.length].map((count) => frames * count);
@@ -56,28 +57,3 @@ export function decodeReplay(buffer: ArrayBuffer): Replay {
 }
 
 const sum = (values: number[]) => values.reduce((total, value) => total + value, 0);
-
-/** The recorded positions of one creature. */
-export interface Motion extends Pick<Replay, "positions"> {
-  header: Pick<Header, "frames" | "every" | "steps" | "nodes" | "edges" | "size">;
-}
-
-export function decodeMotion(buffer: ArrayBuffer): Motion {
-  const { header, start } = readHeader<Motion["header"]>(buffer, "microcosmos-motion/1");
-  const count = header.frames * header.nodes * 2;
-  if (start + 4 * count !== buffer.byteLength) {
-    throw new Error(`motion: needs ${start + 4 * count} bytes, got ${buffer.byteLength}`);
-  }
-  return { header, positions: floatsAt(buffer, start, count) };
-}
-
-/** The JSON that follows its own length, and the offset after it. */
-function readHeader<T>(buffer: ArrayBuffer, format: string): { header: T; start: number } {
-  const length = new DataView(buffer).getUint32(0, true);
-  if (4 + length > buffer.byteLength) {
-    throw new Error(`replay: a header of ${length} bytes does not fit in ${buffer.byteLength}`);
-  }
-  const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
-  if (header.format !== format) throw new Error(`replay: format must be ${format}, got ${header.format}`);
-  return { header, start: 4 + length };
-}

@@ -1,30 +1,57 @@
 /** One small moving creature in a square. */
 
-import { useRef } from "preact/hooks";
-import type { Motion } from "../decode/replay";
+import { useEffect, useRef } from "preact/hooks";
+import type { PoseStream } from "../decode/poses";
 import { prepare, useSize, px, useTheme } from "../ui/canvas";
-import { BODY_INK, traceBody } from "./motion";
-import { useLoop } from "./clock";
+import { BODY_INK } from "./motion";
+import { tracePath, traceBody } from "./poses";
+import { useSteps } from "./clock";
 import "./replay.css";
 
-export function SwimmingBody({ motion }: { motion: Motion | null }) {
+interface Props {
+  stream: PoseStream | null;
+  /** A name for screen readers; without one they skip the creature. */
+  label?: string;
+  /** Draw the path of the mean position too. */
+  path?: boolean;
+  /** Called when the first frame is drawn. */
+  onFirst?: () => void;
+}
+
+export function SwimmingBody({ stream, label, path = false, onFirst }: Props) {
   const box = useRef<HTMLDivElement>(null);
   const canvas = useRef<HTMLCanvasElement>(null);
   const { width } = useSize(box);
   const theme = useTheme();
   const size = { width, height: width };
-  useLoop(motion !== null, (share) => {
-    if (!canvas.current || !motion || width === 0) return;
+  const drawn = stream !== null && width > 0;
+  useSteps(stream !== null, (steps) => {
+    if (!canvas.current || !drawn) return;
     const context = prepare(canvas.current, size);
     context.lineJoin = context.lineCap = "round";
-    context.lineWidth = Math.max(1.25, width / 48);
     context.strokeStyle = BODY_INK[theme];
-    traceBody(context, motion, share, [0, 0, width]);
+    if (path) {
+      context.globalAlpha = 0.35;
+      context.lineWidth = 1;
+      tracePath(context, stream, steps, [0, 0, width]);
+      context.stroke();
+      context.globalAlpha = 1;
+    }
+    context.lineWidth = Math.max(1.25, width / 48);
+    traceBody(context, stream, steps, [0, 0, width]);
     context.stroke();
   });
+  useEffect(() => {
+    if (drawn) onFirst?.();
+  }, [drawn]);
   return (
-    <div ref={box} class="swimming" aria-hidden="true">
-      <canvas ref={canvas} style={px(size)} />
+    <div ref={box} class="swimming" aria-hidden={label === undefined}>
+      <canvas
+        ref={canvas}
+        style={px(size)}
+        role={label === undefined ? undefined : "img"}
+        aria-label={label}
+      />
     </div>
   );
 }

@@ -22,17 +22,17 @@ export function useClock(running: boolean, tick: (seconds: number) => void): voi
   }, [running]);
 }
 
-/** Duration of a loop. */
-const LOOP_SECONDS = 5;
+/** Simulated steps per second in small previews, the same for all creatures. */
+export const STEPS_PER_SECOND = 80;
 
-/** Draw after each render, and in every frame while running; `share` is the elapsed share of a loop. */
-export function useLoop(running: boolean, draw: (share: number) => void): void {
-  const share = useRef(0);
+/** Draw after each render, and in every frame while running; `steps` are the simulated steps so far. */
+export function useSteps(running: boolean, draw: (steps: number) => void): void {
+  const steps = useRef(0);
   useClock(running && !prefersReducedMotion(), (seconds) => {
-    share.current = (share.current + seconds / LOOP_SECONDS) % 1;
-    draw(share.current);
+    steps.current += seconds * STEPS_PER_SECOND;
+    draw(steps.current);
   });
-  useEffect(() => draw(share.current));
+  useEffect(() => draw(steps.current));
 }
 
 /** Elements that use these keys, or text, themselves. */

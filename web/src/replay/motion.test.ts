@@ -1,12 +1,11 @@
 import { describe, expect, it } from "vitest";
-import type { Motion } from "../decode/replay";
 import { type Point, chainsOf, meanOf, positionsAt, splineOf } from "./motion";
 
 describe("motion", () => {
   const replay = {
     header: { frames: 2, nodes: 2 },
     positions: Float32Array.from([0, 0, 2, 0, 1, 2, 3, 2]),
-  } as Motion;
+  };
 
   it("interpolates between recorded frames and stops at the last", () => {
     expect(positionsAt(replay, 0.5)).toEqual([

@@ -1,12 +1,12 @@
 /** Positions between recorded frames, and lines through them. */
 
-import type { Motion } from "../decode/replay";
+import type { Replay } from "../decode/replay";
 
 export type Point = [number, number];
 
 /** Node positions at a fractional frame, unwrapped. */
 export function positionsAt(
-  { header, positions }: Pick<Motion, "positions" | "header">,
+  { header, positions }: Pick<Replay, "positions"> & { header: Pick<Replay["header"], "nodes" | "frames"> },
   time: number,
 ): Point[] {
   const { nodes, frames } = header;
@@ -85,43 +85,3 @@ export function splineOf(points: Point[]): [Point, Point, Point][] {
 
 /** The colour of a body on a background of each theme. */
 export const BODY_INK = { light: "#12222c", dark: "#fdf8ec" };
-
-const cache = new WeakMap<Motion, ReturnType<typeof extentOf>>();
-
-/** The chains of a body, and the largest distance of a node from the mean position, in cells. */
-function extentOf(motion: Motion) {
-  const { frames, edges } = motion.header;
-  let radius = 0;
-  for (let frame = 0; frame < frames; frame++) {
-    const points = positionsAt(motion, frame);
-    const [x, y] = meanOf(points);
-    for (const point of points) radius = Math.max(radius, Math.hypot(point[0] - x, point[1] - y));
-  }
-  return { chains: chainsOf(edges), radius: radius || 1 };
-}
-
-/** Trace the body at a share of its time, with its mean position in the middle of a square. */
-export function traceBody(
-  context: CanvasRenderingContext2D,
-  motion: Motion,
-  share: number,
-  [left, top, side]: readonly [number, number, number],
-): void {
-  const extent = cache.get(motion) ?? extentOf(motion);
-  cache.set(motion, extent);
-  const { chains, radius } = extent;
-  const points = positionsAt(motion, share * (motion.header.frames - 1));
-  const [x, y] = meanOf(points);
-  const scale = (0.42 * side) / radius;
-  context.beginPath();
-  for (const chain of chains) {
-    chain.forEach((node, i) => {
-      const place = [
-        left + side / 2 + scale * (points[node]![0] - x),
-        top + side / 2 - scale * (points[node]![1] - y),
-      ] as const;
-      if (i === 0) context.moveTo(...place);
-      else context.lineTo(...place);
-    });
-  }
-}

@@ -1,5 +1,6 @@
 /** Load replays, which workers render on request. */
 
+import type { ComponentChildren } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { type Replay, decodeReplay } from "../decode/replay";
@@ -55,14 +56,21 @@ export function useReplays(shas: string[]): Rendered {
 
 const decoded = (bytes: ArrayBuffer | null) => bytes && decodeReplay(bytes);
 
+interface StatusProps extends Rendered {
+  what: string;
+  /** Shown in place of the ripple. */
+  children?: ComponentChildren;
+}
+
 /** Shown while replays are rendered. */
-export function ReplayStatus({ replays, note, error, what }: Rendered & { what: string }) {
+export function ReplayStatus({ replays, note, error, what, children }: StatusProps) {
   if (error) return <p class="banner wrong">{error}</p>;
   if (replays) return null;
   return (
     <div class="stage rendering" role="status">
+      {children}
       <p>
-        <span class="ripple" aria-hidden="true" />
+        {!children && <span class="ripple" aria-hidden="true" />}
         <span>{what}</span>
         <span class="small">{note ? text.retrying(note) : text.firstReplay}</span>
       </p>

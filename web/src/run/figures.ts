@@ -47,8 +47,19 @@ export function figuresOf(run: Run): Figure[] {
       return [
         ...SCORES.map(([name, title, format]): Figure => [title, format(run[name])]),
         [text.infeasible, count(run.infeasible)],
+        ...varietyOf(run),
       ];
   }
+}
+
+/** How far the motions of the elites are from each other; known at the end of a search. */
+function varietyOf(run: Run): Figure[] {
+  const distance = summaryOf(run, "motion_distance");
+  if (distance === null) return [];
+  return [
+    [text.motionDistance, text.bodyLengths(number(distance))],
+    [text.kindsOfMotion, count(summaryOf(run, "kinds"))],
+  ];
 }
 
 /** Positions of the figure that lists show; the first one for other experiments. */

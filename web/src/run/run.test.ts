@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { LogEntry, Run } from "../api/types";
-import { endReasonOf } from "./figures";
+import { endReasonOf, figuresOf } from "./figures";
 import { activityOf, elapsedOf } from "./RunStatus";
 import { atLeast, summaryOf, textOf } from "./LogCard";
 
@@ -67,5 +67,18 @@ describe("the reason why a run ended", () => {
     ["device_hours after generation 3", "Ended early: device hours after generation 3."],
   ])("%j becomes %j", (ended, sentence) => {
     expect(endReasonOf({ ...run, summary: ended ? { ended } : null })).toBe(sentence);
+  });
+});
+
+describe("the variety of a search", () => {
+  const run = { experiment: "quality-diversity", summary: null } as unknown as Run;
+
+  it("is shown once the run has measured it", () => {
+    expect(Object.fromEntries(figuresOf(run))).not.toHaveProperty("Motion distance");
+    const summary = { motion_distance: 0.1234, nearest_motion: 0.05, kinds: 12 };
+    expect(figuresOf({ ...run, summary }).slice(-2)).toEqual([
+      ["Motion distance", "0.123 body lengths"],
+      ["Kinds of motion", "12"],
+    ]);
   });
 });

@@ -99,6 +99,9 @@ export const text = {
   coverage: "Coverage",
   bestFitness: "Best fitness",
   infeasible: "Infeasible",
+  motionDistance: "Motion distance",
+  bodyLengths: (value: string) => `${value} body lengths`,
+  kindsOfMotion: "Kinds of motion",
   generations: { gaits: "Strokes", scaling: "Sizes", folding: "Updates", refinement: "Steps" },
   generation: "Generation",
 };

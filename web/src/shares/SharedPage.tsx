@@ -13,7 +13,7 @@ import { FilesCard } from "../run/FilesCard";
 import { Card, Loading, NotFound, Page, useTitle, Empty } from "../ui/Page";
 import { copyText } from "../ui/clipboard";
 import { text } from "./text";
-import { decodeMotion } from "../decode/replay";
+import { decodePoses } from "../decode/poses";
 import { usePages } from "../store/paging";
 import { usePolled } from "../store/polling";
 import { SwimmingBody } from "../replay/SwimmingBody";
@@ -156,11 +156,11 @@ export function CommonsPage() {
 }
 
 function Tile({ share }: { share: Share }) {
-  // Without a motion the tile stays empty; the page of the share shows the error.
-  const { value: motion } = usePolled(async () => decoded(await api.readCover(share)), [share.slug]);
+  // Without a pose stream the tile stays empty; the page of the share shows the error.
+  const { value: stream } = usePolled(async () => decoded(await api.readCover(share)), [share.slug]);
   return (
     <a class="commons-tile card" href={`/s/${share.slug}`} target="_self">
-      <SwimmingBody motion={motion} />
+      <SwimmingBody stream={stream} />
       <strong>{share.title}</strong>
       <span class="quiet small">
         {share.run ? text.archive(share.generation) : text.creature}
@@ -171,4 +171,4 @@ function Tile({ share }: { share: Share }) {
   );
 }
 
-const decoded = (bytes: ArrayBuffer | null) => bytes && decodeMotion(bytes);
+const decoded = (bytes: ArrayBuffer | null) => bytes && decodePoses(bytes);

@@ -90,6 +90,8 @@ def fitness_of(task: Task, measures: Mapping[str, float]) -> float:
     """Return the fitness in float32, as an evaluation computes it."""
     if task.plugin is not None or task.fitness == "speed":
         return measures.get(task.fitness, np.nan)
+    if task.fitness == "cost_of_transport":
+        return -measures.get(task.fitness, np.nan)
     displacement = np.float32(measures.get("displacement", np.nan))
     energy = np.float32(task.energy_weight) * np.float32(measures.get("energy", np.nan))
     both = {"displacement": displacement, "energy": energy}

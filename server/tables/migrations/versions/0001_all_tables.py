@@ -55,6 +55,7 @@ def _creatures() -> None:
         sa.Column("licence", sa.Text(), nullable=False),
         sa.Column("created_at", MOMENT, nullable=False),
         sa.Column("imported", sa.Boolean(), nullable=False),
+        sa.Column("poses", sa.LargeBinary()),
     )
     op.create_table(
         "garbage_creatures",

@@ -1,0 +1,100 @@
+"""Pose streams as bytes, as columns of an archive file, and as tables."""
+
+import csv
+from dataclasses import fields, replace
+from io import BytesIO, StringIO
+
+import numpy as np
+import pytest
+
+from microcosmos.archive.poses import (
+    FRAMES,
+    MOMENTS,
+    PoseStream,
+    columns,
+    decode,
+    quantised,
+    streams,
+)
+
+pytestmark = pytest.mark.fast
+
+SPEC = '{"task": {"steps": 900}, "world": {"width": 48, "height": 40}}'
+
+
+def stream(nodes=5, seed=0, **changes):
+    random = np.random.default_rng(seed)
+    positions, origin, scale = quantised(20 + random.normal(size=(FRAMES, nodes, 2)))
+    edges = np.stack([np.arange(nodes - 1), np.arange(1, nodes)], 1)
+    made = PoseStream(
+        positions=positions,
+        path=random.normal(size=(MOMENTS, 2)).astype(np.float32),
+        origin=origin,
+        scale=float(np.float32(scale)),
+        edges=edges,
+        start=500,
+        stop=900,
+        strokes=2,
+        steps=900,
+        size=(48, 40),
+        length=nodes - 1.0,
+        creature=f"{seed:064x}",
+    )
+    return replace(made, **changes)
+
+
+def equal(a, b):
+    return all(np.array_equal(getattr(a, f.name), getattr(b, f.name)) for f in fields(a))
+
+
+def test_a_stream_returns_from_its_bytes():
+    assert equal(decode(stream().encode()), stream())
+
+
+@pytest.mark.parametrize(
+    ("damage", "named"),
+    [
+        (lambda data: data[:-1], "needs"),
+        (lambda data: data + b"\0", "needs"),
+        (lambda data: b"", "header"),
+        (lambda data: b"\xff\xff\xff\xff" + data[4:], "header"),
+        (lambda data: data.replace(b"poses/1", b"poses/9"), "format"),
+    ],
+)
+def test_other_bytes_are_refused(damage, named):
+    with pytest.raises(ValueError, match=named):
+        decode(damage(stream().encode()))
+
+
+def test_quantised_positions_are_within_half_a_unit():
+    positions = np.random.default_rng(0).uniform(-300, 700, (FRAMES, 9, 2))
+    units, origin, scale = quantised(positions)
+    assert np.abs(origin + scale * units - positions).max() < 0.51 * scale
+    assert scale == pytest.approx(500 / 32767, rel=0.01)
+    still = np.full((FRAMES, 2, 2), 3.0)
+    units, origin, scale = quantised(still)
+    np.testing.assert_array_equal(origin + scale * units, still)
+
+
+@pytest.mark.parametrize("sizes", [(5, 5, 5), (5, 2, 9), ()])
+def test_streams_return_from_the_columns_of_an_archive(sizes):
+    given = [stream(nodes, seed) for seed, nodes in enumerate(sizes)]
+    names = [np.frombuffer(bytes.fromhex(one.creature), np.uint8) for one in given]
+    tree = {"archive": {"poses": columns(given), "creature": names}}
+    found = streams(tree, {"spec": SPEC})
+    assert all(equal(a, b) for a, b in zip(found, given, strict=True))
+
+
+def test_exports_are_in_steps_and_cells():
+    one = stream()
+    rows = list(csv.reader(StringIO(one.csv())))
+    assert rows[0] == ["step", "node", "x", "y"]
+    assert len(rows) == 1 + FRAMES * 5
+    step, node, x, y = map(float, rows[-1])
+    assert (step, node) == (900, 4)
+    assert (x, y) == pytest.approx(tuple(one.cells[-1, -1]), abs=1e-4)
+    with np.load(BytesIO(one.npz())) as found:
+        np.testing.assert_array_equal(found["positions"], one.cells)
+        np.testing.assert_array_equal(found["times"], one.times)
+        np.testing.assert_array_equal(found["edges"], one.edges)
+    assert one.npz() == one.npz()

@@ -1,0 +1,53 @@
+import { describe, expect, it } from "vitest";
+import { decodePoses } from "../decode/poses";
+import { header, poseBytes } from "../decode/poses.fixture";
+import { momentOf, traceBody, tracePath } from "./poses";
+
+/** Two frames, ten steps apart. */
+const stream = decodePoses(poseBytes());
+const whole = decodePoses(poseBytes({ ...header, strokes: 0 }));
+
+/** The points that are traced in a square of 100 pixels. */
+function traced(trace: typeof traceBody, of: typeof stream, steps: number): number[][] {
+  const points: number[][] = [];
+  const add = (x: number, y: number) => points.push([x, y]);
+  const context = { beginPath: () => {}, moveTo: add, lineTo: add };
+  trace(context as never, of, steps, [0, 0, 100]);
+  return points;
+}
+
+describe("the pose at a time", () => {
+  it("keeps the pace of the simulation, and repeats two strokes without a jump", () => {
+    expect(momentOf(stream, 0)).toEqual([0, 1, 0]);
+    expect(momentOf(stream, 5)).toEqual([0, 1, 0.5]);
+    expect(momentOf(stream, 15)).toEqual([1, 0, 0.5]);
+    expect(momentOf(stream, 20)).toEqual([0, 1, 0]);
+  });
+
+  it("starts again after the last frame where the frames are no whole strokes", () => {
+    expect(momentOf(whole, 9)).toEqual([0, 1, 0.9]);
+    expect(momentOf(whole, 10)).toEqual([0, 1, 0]);
+  });
+});
+
+describe("a traced body", () => {
+  const [a, b] = traced(traceBody, stream, 5);
+
+  it("has its mean position in the middle, and its largest reach within the square", () => {
+    expect((a![0]! + b![0]!) / 2).toBeCloseTo(50, 4);
+    expect((a![1]! + b![1]!) / 2).toBeCloseTo(50, 4);
+    for (const point of [a!, b!]) for (const value of point) expect(Math.abs(value - 50)).toBeLessThan(42);
+  });
+
+  it("has the path that it came along behind it", () => {
+    const still = decodePoses(poseBytes());
+    still.positions.set(still.positions.subarray(0, 4), 4); // In place at (10, 20) in both frames.
+    const [middle, ...path] = traced(tracePath, still, 0);
+    expect(middle).toEqual([50, 50]);
+    // At step 50 of 60, after the moments at steps 30 and 0; the body is 1 cell to each side.
+    expect(path).toEqual([
+      [50 + 42, 50],
+      [50, 50],
+    ]);
+  });
+});
