@@ -2,8 +2,9 @@
 
 Multi-direct forcing: Wang, Fan and Luo, Int. J. Multiphase Flow 34, 283 (2008). Each
 increment is scaled by β = 1 / (row sum of J S / ρ), which converges for any packing of nodes,
-and by a step length, which converges in fewer iterations. A projection removes the mean (and the rigid rotation) of each increment, body by body, so that
-no body pushes itself: displacements by constraints sum to zero, but (J S)⁻¹ of them do not.
+and by a step length, with which fewer iterations do. A projection removes the mean (and the
+rigid rotation) of each increment, body by body, so that no body pushes itself: displacements
+by constraints sum to zero, but (J S)⁻¹ of them do not.
 """
 
 from collections.abc import Callable
