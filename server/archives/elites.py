@@ -8,14 +8,17 @@ from sqlalchemy import ColumnElement, FromClause, Select, and_, func, select
 from ..tables import Creature, Elite, Run
 from . import measures
 
-COLUMNS = (Elite.cell, Elite.generation, Elite.fitness, Elite.descriptors, Elite.creature)
+COLUMNS = (
+    *(Elite.cell, Elite.generation, Elite.fitness, Elite.descriptors, Elite.creature),
+    Creature.trusted,
+)
 
 
 def all_time(run: Run, names: Sequence[str] = ()) -> Select[*tuple[Any, ...]]:
     """Select a run's elites, also those that were replaced, with measures by name."""
     columns = [measures.column(name) for name in names]
-    statement = select(*COLUMNS, *columns).where(recorded_in(run))
-    return statement.join(Creature, Creature.sha256 == Elite.creature) if names else statement
+    joined = select(*COLUMNS, *columns).join(Creature, Creature.sha256 == Elite.creature)
+    return joined.where(recorded_in(run))
 
 
 def recorded_in(run: Run) -> ColumnElement[bool]:

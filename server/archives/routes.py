@@ -135,6 +135,7 @@ def _columns(found: Sequence[Any], names: Sequence[str]) -> dict[str, Any]:
         "descriptors": [elite.descriptors for elite in found],
         "elite_generation": [elite.generation for elite in found],
         "creature": [elite.creature for elite in found],
+        "trusted": [elite.trusted for elite in found],
         "measures": {
             name: [elite[first + i] for elite in found] for i, name in enumerate(names)
         },

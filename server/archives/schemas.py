@@ -33,6 +33,8 @@ class HistoryRead(Wire):
     descriptors: list[list[float]]
     elite_generation: list[int]
     creature: list[str]
+    trusted: list[bool | None]
+    """Verdicts of the creatures' audits; null for a creature without an audit."""
     measures: dict[str, list[float | None]]
     """Columns of the requested measures."""
 

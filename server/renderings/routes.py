@@ -17,7 +17,7 @@ from ..services.services import ServicesDep, SessionDep
 from ..tables import AUDIT, MEASUREMENT, PREVIEW, REPLAY
 from . import poses, storage
 from .responses import MEDIA_TYPES, ON_REQUEST, enqueued, existing
-from .schemas import Measurement, Rendering
+from .schemas import Measurement, Rendering, Verdict
 
 router = APIRouter(prefix="/creatures/{sha}", tags=["creatures"])
 PENDING: Answers = {202: {"model": Rendering}}
@@ -100,6 +100,12 @@ for ending, media_type, export in EXPORTS:
     router.get(
         f"/poses.{ending}", **sends(media_type, PENDING), dependencies=[MAY_READ_SHARED]
     )(_poses_exporter(ending, media_type, export))
+
+
+@router.get("/verdict", dependencies=[MAY_READ_SHARED])
+def read_verdict(row: CreatureDep) -> Verdict:
+    """Return the verdict of the saved audit; reading it enqueues none."""
+    return Verdict(trusted=row.trusted)
 
 
 @router.post("/measure", status_code=202, dependencies=[MAY_WRITE])

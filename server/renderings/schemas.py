@@ -9,6 +9,13 @@ class Rendering(Wire):
     status: Literal["rendering"] = "rendering"
 
 
+class Verdict(Wire):
+    """The verdict of a creature's audit."""
+
+    trusted: bool | None
+    """Null without an audit."""
+
+
 class Comparison(Wire):
     """A recorded figure and the same one measured here; None if it is not finite."""
 

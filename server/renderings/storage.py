@@ -1,10 +1,11 @@
 """Renderings of creatures: find, enqueue, save and delete them."""
 
+import json
 import re
 from typing import Any
 
 from rq.job import JobStatus
-from sqlalchemy import ColumnElement, delete, select
+from sqlalchemy import ColumnElement, delete, select, update
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
@@ -74,7 +75,7 @@ def enqueue_again(services: Services, creature: str, kind: str) -> None:
     job = services.jobs.find(services.jobs.rendering_id(creature, kind))
     if job is None or job.get_status(refresh=False) not in UNDERWAY:
         with services.sessions.write.begin() as session:
-            session.execute(delete(Artifact).where(_matches(creature, kind)))
+            _delete(session, creature, kind)
         services.jobs.render(creature, kind)
 
 
@@ -89,13 +90,22 @@ def save(services: Services, creature: str, kind: str, data: bytes) -> None:
     """Save a rendering in place of an earlier one."""
     stored = services.artifacts.write(rendering_path(creature, kind), data)
     row = {**vars(stored), "kind": kind, "number": VERSIONS.get(kind), "creature": creature}
+    trusted = json.loads(data)["verdict"]["trusted"] if kind == AUDIT else None
     try:
         with services.sessions.write.begin() as session:
-            session.execute(delete(Artifact).where(_matches(creature, kind)))
+            _delete(session, creature, kind, trusted)
             insert_missing(session, Artifact, [row])
     except IntegrityError:  # The creature was deleted with its run meanwhile.
         services.artifacts.delete(stored.path)
         raise
+
+
+def _delete(session: Session, creature: str, kind: str, trusted: bool | None = None) -> None:
+    """Delete a rendering; `trusted` is the verdict of the audit that replaces an audit."""
+    session.execute(delete(Artifact).where(_matches(creature, kind)))
+    if kind == AUDIT:
+        audited = update(Creature).where(Creature.sha256 == creature)
+        session.execute(audited.values(trusted=trusted))
 
 
 def existing(services: Services, creature: str, kind: str) -> bytes | None:

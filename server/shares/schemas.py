@@ -61,6 +61,8 @@ class ShareRead(Wire):
     run: UUID | None
     generation: int | None
     cover: str
+    trusted: bool | None
+    """The verdict of the creature's audit; null for an archive, or without an audit."""
     title: str
     credit: list[str]
     licence: str

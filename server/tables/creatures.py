@@ -17,6 +17,9 @@ class Creature(Base):
     __tablename__ = "creatures"
 
     sha256: Mapped[str] = mapped_column(Sha256, primary_key=True)
+    trusted: Mapped[bool | None]
+    """The verdict of the saved audit; null without one. It precedes the large columns, which
+    SQLite would otherwise read first."""
     identity: Mapped[bytes]
     """The canonical bytes, whose hash is the name."""
     parents: Mapped[list[str]]

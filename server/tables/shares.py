@@ -3,11 +3,12 @@
 from datetime import datetime
 from uuid import UUID
 
-from sqlalchemy import CheckConstraint, ForeignKey, Index, String, Text
-from sqlalchemy.orm import Mapped, mapped_column
+from sqlalchemy import CheckConstraint, ForeignKey, Index, String, Text, select
+from sqlalchemy.orm import Mapped, column_property, mapped_column
 
 from ..core.database import clock
 from .base import Base, Expiring, Owned, Sha256
+from .creatures import Creature
 
 
 class Share(Owned, Expiring, Base):
@@ -32,3 +33,7 @@ class Share(Owned, Expiring, Base):
     licence: Mapped[str] = mapped_column(Text)
     listed: Mapped[bool]
     created_at: Mapped[datetime] = mapped_column(default=clock())
+    trusted: Mapped[bool | None] = column_property(
+        select(Creature.trusted).where(Creature.sha256 == creature).scalar_subquery()
+    )
+    """The verdict of the shared creature's audit; null for an archive, or without an audit."""

@@ -23,6 +23,36 @@ WHERE_DRAWN_DIFFERENTLY = """before => {
 }"""
 """The pixels of the map, and where it looks otherwise than before, as shares of its sides."""
 
+TILES = """side => {
+  const canvas = document.querySelector("[data-gallery] canvas");
+  if (!canvas?.width) return [0, 0];
+  const {width, height} = canvas;
+  const copy = new OffscreenCanvas(width, height).getContext("2d");
+  copy.drawImage(canvas, 0, 0);
+  const {data} = copy.getImageData(0, 0, width, height);
+  const drawn = new Uint32Array(data.buffer);
+  const {clientWidth} = document.querySelector(".gallery-port > div");
+  const tile = clientWidth / side;
+  let filled = 0, bodies = 0;
+  for (let top = 0; top + tile <= height; top += tile) {
+    for (let left = 0; left + tile <= width; left += tile) {
+      const at = (x, y) => drawn[Math.round(top + y) * width + Math.round(left + x)];
+      const ground = at(4, 4);
+      if (!(ground >>> 24)) continue;
+      filled++;
+      let ink = 0;
+      for (let y = 5; y < tile - 8; y++)
+        for (let x = 5; x < tile - 8; x++)
+          ink += Math.hypot(x - tile / 2, y - tile / 2) > 6 && at(x, y) !== ground;
+      bodies += ink > 10;
+    }
+  }
+  return [filled, bodies];
+}"""
+"""Whole tiles with an elite, and those of them with more than a dot in the middle."""
+ALL_BODIES = f"side => {{ const [a, b] = ({TILES})(side); return a > 0 && a === b; }}"
+GALLERY_MS = 2000
+
 CHANGED = "before => before !== document.querySelector('[data-gallery] canvas').toDataURL()"
 
 
@@ -114,6 +144,26 @@ def test_the_gallery_moves_and_is_walked_by_keys(page, searched):
     sha = page.locator("#elite-measures code").inner_text()
     page.keyboard.press("Enter")
     page.wait_for_url(re.compile(f"/creatures/{sha}"))
+
+
+def test_every_tile_of_a_gallery_has_a_body_without_the_renderer(shared, page, searched, size):
+    bins = shared.product.get(f"runs/{searched}/archive")["axes"][0]["bins"]
+    expect(the_map(page)).to_be_visible()
+    asked: list[str] = []
+    page.on("request", lambda request: asked.append(request.url))
+    page.evaluate(
+        "[...document.querySelectorAll('button')].find((b) => b.innerText === 'Gallery')"
+        ".addEventListener('click', () => (window.opened = performance.now()))"
+    )
+    page.get_by_role("button", name="Gallery").click()
+    page.wait_for_function(ALL_BODIES, arg=bins, timeout=SLOW)
+    took = page.evaluate("performance.now() - window.opened")
+    filled, bodies = page.evaluate(TILES, bins)
+    print(f"{bodies} of {size()} elites have bodies {took:.0f} ms after the gallery opened")
+    assert filled == bodies > 10
+    assert took < GALLERY_MS
+    assert any("/archive/poses?" in url for url in asked)
+    assert [url for url in asked if "/creatures/" in url] == [], "which may render"
 
 
 @pytest.mark.parametrize("motion", ["no-preference", "reduce"])

@@ -5,7 +5,7 @@ from io import BytesIO
 
 import h5py
 from drive import Installation
-from pages import stage
+from pages import TOUR_TAKEN, stage, the_map
 from playwright.sync_api import Page, expect
 
 SLOW = 300_000
@@ -22,6 +22,38 @@ def test_a_creature_is_watched_read_and_kept(shared, page):
     see_what_the_network_computes(page)
     download_as_hdf5(page, sha)
     walk_to_a_parent_and_back(page, sha, parent)
+
+
+def test_a_badge_becomes_the_verdict_of_the_audit(shared, page, anonymous_page):
+    address, run = shared.product.url, shared.finished("voronoi")
+    page.add_init_script(TOUR_TAKEN)
+    page.goto(f"{address}/runs/{run}")
+    the_map(page).press("ArrowRight")
+    measures = page.locator("#elite-measures")
+    measures.get_by_role("link", name="not audited").click()
+    page.wait_for_url(re.compile("/creatures/.*#audit$"))
+    sha = page.url.partition("/creatures/")[2][:64]
+    head = page.locator(".page-head")
+    expect(head.get_by_role("link", name="not audited")).to_be_visible()
+    page.get_by_role("button", name="Run audit").click()
+    badge = head.get_by_role("link", name=re.compile("^(not )?trusted$"))
+    expect(badge).to_be_visible(timeout=SLOW)
+    trusted = shared.product.get(f"creatures/{sha}/audit")["verdict"]["trusted"]
+    verdict = re.compile("^trusted$" if trusted else "^not trusted$")
+    shown = "✓trusted" if trusted else "✕not trusted"
+    expect(badge).to_have_text(shown)
+    badge.hover()
+    expect(page.get_by_role("tooltip")).to_contain_text("The physics check of one creature.")
+    page.go_back()
+    expect(measures.get_by_role("link", name=verdict)).to_be_visible()
+    share = page.request.post(f"{address}/api/v1/shares", data={"creature": sha}).json()
+    page.goto(f"{address}/shares")
+    expect(page.get_by_role("link", name=verdict)).to_be_visible()
+    page.get_by_role("link", name=verdict).click()
+    expect(page.get_by_role("region", name="Physics audit")).to_be_in_viewport()
+    expect(page.get_by_role("region", name="Figures of the audit")).to_be_visible()
+    anonymous_page.goto(share["url"])
+    expect(anonymous_page.locator(".page-head .badge")).to_have_text(shown)
 
 
 def child_and_parent(product: Installation, run: str) -> tuple[str, str]:

@@ -37,6 +37,14 @@ def archive_file(spec: dict[str, Any]) -> bytes:
     return file.dump({"archive": archive}, attributes)
 
 
+def audit(trusted: bool) -> bytes:
+    """The file of an audit without rows."""
+    reasons = [] if trusted else ["it pushes itself"]
+    return json.dumps(
+        {"verdict": {"trusted": trusted, "reasons": reasons}, "rows": []}
+    ).encode()
+
+
 def replay(positions: np.ndarray, planes: int = 1, **more: Any) -> bytes:
     """A replay with these positions, (frame, node, 2), and still fluid, 8 x 4 cells."""
     frames, nodes, _ = positions.shape

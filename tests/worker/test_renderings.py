@@ -50,7 +50,7 @@ def asked(monkeypatch):
     engine = {
         "viz.replay": {"record": answer("record", replay())},
         "audit": {
-            "audit": answer("audit", {"verdict": {"survives": True, "reasons": []}}),
+            "audit": answer("audit", {"verdict": {"trusted": True, "reasons": []}}),
             "measurement": answer("measurement", {"exact": True}),
         },
     }
@@ -86,6 +86,6 @@ def test_audits_and_measurements_are_json_and_other_kinds_refused(services, know
         make(services, known, "film.avi")
     assert asked == []
     document = json.loads(make(services, known, AUDIT))
-    assert document["verdict"] == {"survives": True, "reasons": []}
+    assert document["verdict"] == {"trusted": True, "reasons": []}
     assert json.loads(make(services, known, MEASUREMENT)) == {"exact": True}
     assert asked == [("audit", known), ("measurement", known)]

@@ -25,14 +25,14 @@ def write_run(services: Services, of: str, side: int, filled: int, creatures: li
         run = copied(session.get_one(Run, UUID(of)), side, fitness)
         session.add(run)
         session.flush()
-        ends = [(axis["low"], axis["high"]) for axis in run.spec["archive"]["descriptors"]]
+        axes = run.spec["archive"]["descriptors"]
         rows = [
             {
                 "run_id": run.id,
                 "cell": int(cell),
                 "generation": int(generation),
                 "fitness": float(value),
-                "descriptors": middle(int(cell), side, ends),
+                "descriptors": middle(int(cell), side, axes),
                 "creature": creatures[i % len(creatures)],
             }
             for i, (cell, value, generation) in enumerate(
@@ -49,12 +49,15 @@ def hill(cells: np.ndarray, side: int) -> np.ndarray:
     return 2 + np.sin(3 * x) * np.cos(2 * y)
 
 
-def middle(cell: int, side: int, ends: list[tuple[float, float]]) -> list[float]:
-    """The middle of a cell on logarithmic axes."""
+def middle(cell: int, side: int, axes: list[dict]) -> list[float]:
+    """The descriptors in the middle of a cell."""
     parts = [(part + 0.5) / side for part in divmod(cell, side)]
-    return [
-        float(low * (high / low) ** part) for part, (low, high) in zip(parts, ends, strict=True)
-    ]
+    return [between(axis, part) for axis, part in zip(axes, parts, strict=True)]
+
+
+def between(axis: dict, part: float) -> float:
+    low, high = axis["low"], axis["high"]
+    return low * (high / low) ** part if axis["scale"] == "log10" else low + (high - low) * part
 
 
 def copied(run: Run, side: int, fitness: np.ndarray) -> Run:

@@ -1,8 +1,8 @@
 """The speed of the page in Chromium on two cores; prints a table and asserts nothing.
 
-A small search finds creatures, which fill archives of 10,000 and 65,536 cells; 100 of them are
-rendered beforehand. The page reports times: the mark `map` after the archive is drawn, the
-measure `map-draw` around each drawing, the mark `inset` at the first frame of a replay.
+A small search finds creatures, which fill archives of 10,000 and 65,536 cells. The page reports
+times: the mark `map` after the archive is drawn, the measure `map-draw` around each
+drawing, the mark `inset` at the first frame of a hovered creature.
 """
 
 import gzip
@@ -12,15 +12,14 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import partial
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "faults"))
 
 from browser import launched
-from drive import ROOT, Installation, running, wait_until
+from drive import ROOT, Installation, running
 from large import creatures_of, write_run
-from playwright.sync_api import Browser, Page, Response, ViewportSize
+from playwright.sync_api import Browser, Page, ViewportSize
 from playwright.sync_api import TimeoutError as Late
 from rich.console import Console
 from rich.table import Table
@@ -98,7 +97,7 @@ def main() -> None:
 
 
 def prepare(product: Installation) -> tuple[str, str, str]:
-    """Carry out a search, fill archives with what it found, and have replays rendered."""
+    """Carry out a search, and fill archives with what it found."""
     found = searched(product)
     services = connect(Settings(data=product.folder))
     creatures = creatures_of(services, found)[:CREATURES]
@@ -109,14 +108,7 @@ def prepare(product: Installation) -> tuple[str, str, str]:
         write_run(services, found, side, side**2, creatures),
     )
     services.close()
-    for creature in creatures:
-        ready = partial(is_ready, product, f"/api/v1/creatures/{creature}/replay")
-        wait_until(ready, 300, f"creature {creature} is rendered")
     return runs
-
-
-def is_ready(product: Installation, path: str) -> bool:
-    return product.http.get(path).raise_for_status().status_code == 200
 
 
 def searched(product: Installation) -> str:
@@ -223,7 +215,7 @@ def play(browser: Browser, url: str) -> str:
 
 
 def hover(browser: Browser, url: str) -> str:
-    """Time from a pointer event to the first frame of the replay, over several cells."""
+    """Time from a pointer event to the first frame of the creature, over several cells."""
     side = round(CREATURES**0.5)
     times = []
     with opened(browser, url) as page:
@@ -241,26 +233,18 @@ def hover(browser: Browser, url: str) -> str:
 
 def gallery(browser: Browser, url: str) -> str:
     """Frames per second while all creatures are visible and move."""
-    fetched: set[str] = set()
-
-    def note_motion(answer: Response) -> None:
-        if answer.url.endswith(("/motion", "/replay")) and answer.status == 200:
-            fetched.add(answer.url)
-
     side = round(CREATURES**0.5)
     with opened(browser, url, WALL) as page:
-        page.on("response", note_motion)
-        page.reload()
         canvas = page.locator("[data-gallery] canvas").first
         canvas.wait_for()
         canvas.scroll_into_view_if_needed()
-        page.wait_for_timeout(8000)  # The motions are fetched.
+        page.wait_for_timeout(2000)  # The pose streams are fetched.
         rate = page.evaluate(FRAMES, [5, False])
         before = page.evaluate(BLOCKS, side)
         page.wait_for_timeout(700)
         after = page.evaluate(BLOCKS, side)
     moving = sum(one != other for one, other in zip(before, after, strict=False))
-    return f"{rate:.0f} frames/s, {len(fetched)} of them there, {moving} tiles moving"
+    return f"{rate:.0f} frames/s, {moving} tiles moving"
 
 
 def script(browser: Browser, product: Installation, run: str) -> str:

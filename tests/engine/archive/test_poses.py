@@ -1,8 +1,11 @@
 """Pose streams as bytes, as columns of an archive file, and as tables."""
 
 import csv
+import json
+import re
 from dataclasses import fields, replace
 from io import BytesIO, StringIO
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,6 +22,7 @@ from microcosmos.archive.poses import (
 
 pytestmark = pytest.mark.fast
 
+DOCUMENT = Path(__file__).parents[3] / "docs" / "formats.md"
 SPEC = '{"task": {"steps": 900}, "world": {"width": 48, "height": 40}}'
 
 
@@ -98,3 +102,14 @@ def test_exports_are_in_steps_and_cells():
         np.testing.assert_array_equal(found["times"], one.times)
         np.testing.assert_array_equal(found["edges"], one.edges)
     assert one.npz() == one.npz()
+
+
+def test_the_example_in_the_documents_reads_a_stream(tmp_path, monkeypatch):
+    (tmp_path / "creature.poses").write_bytes(stream().encode())
+    monkeypatch.chdir(tmp_path)
+    section = DOCUMENT.read_text().partition("## Pose stream\n")[2]
+    (example,) = re.findall("```python\n(.*?)```", section.partition("\n## ")[0], re.DOTALL)
+    names = {"json": json, "np": np, "Path": Path}
+    exec(example, names)
+    np.testing.assert_allclose(names["cells"], stream().cells, rtol=1e-5)
+    np.testing.assert_array_equal(names["path"], stream().path)

@@ -6,14 +6,16 @@ from uuid import UUID
 import numpy as np
 import pytest
 from answers import detail, errors, fields
-from reports import archive_file
+from reports import archive_file, audit
 
 from microcosmos.archive import file
 from microcosmos.archive.poses import PoseStream, decode
 from microcosmos.spec import parse
 from server.archives import routes as archives
 from server.attempts.claim import claim
+from server.renderings import storage as renderings
 from server.runs.submission import submit
+from server.tables import AUDIT
 
 
 @pytest.fixture
@@ -50,6 +52,23 @@ def test_the_archive_in_the_past_is_as_it_was(api, run_id, record):
         then = api.get(f"runs/{run_id}/archive", params={"generation": generation}).json()
         assert (then["cell"], then["fitness"]) == (cells, fitness)
         assert then["generation"] == min(generation, 2)
+
+
+@pytest.mark.postgresql
+def test_elites_state_the_verdicts_of_their_audits(api, services, run_id, record):
+    record(1, {5: 1.0, 3: 2.0})
+    record(2, {5: 1.5})
+    url = f"runs/{run_id}/archive"
+    replaced, distrusted = api.get(url, params={"generation": 1}).json()["creature"][::-1]
+    for name, trusted in ((replaced, True), (distrusted, False)):
+        renderings.save(services, name, AUDIT, audit(trusted))
+    for measures in ("", "displacement"):
+        asked = {"measures": measures}
+        assert api.get(url, params=asked).json()["trusted"] == [False, None]
+        before = api.get(url, params={**asked, "generation": 1}).json()
+        assert before["trusted"] == [False, True]
+        history = api.get(f"{url}/history", params=asked).json()
+        assert history["trusted"] == [False, True, None]
 
 
 @pytest.mark.postgresql

@@ -14,7 +14,7 @@ from server.maintenance.reconcile import reconcile
 from server.renderings.storage import save
 from server.storage.artifacts import rendering_path
 from server.tables import (
-    AUDIT,
+    GIF,
     REPLAY,
     Artifact,
     Creature,
@@ -200,11 +200,11 @@ def test_a_file_that_cannot_be_removed_is_removed_later(
 def test_a_rendering_that_was_made_again_stays(services, run_id, report, identity):
     finish(services, run_id, report(1, {0: 1.0}), files=False)
     name = creature.name(identity(1000))
-    save(services, name, AUDIT, b"audit")
+    save(services, name, GIF, b"a film")
     with services.sessions.write.begin() as session:
-        session.add(GarbageFile(path=rendering_path(name, AUDIT)))
+        session.add(GarbageFile(path=rendering_path(name, GIF)))
     reconcile(services)
-    assert files(services) == [rendering_path(name, AUDIT)]
+    assert files(services) == [rendering_path(name, GIF)]
     assert row_counts(services)["garbage_files"] == 0
 
 

@@ -7,8 +7,9 @@ import httpx
 import numpy as np
 import pytest
 from answers import detail
-from reports import DEMO, pose_stream, replay
+from reports import DEMO, audit, pose_stream, replay
 from sqlalchemy import select
+from sqlalchemy.exc import IntegrityError
 
 from microcosmos.archive import creature
 from microcosmos.archive.poses import decode
@@ -16,7 +17,7 @@ from microcosmos.viz.replay_file import REPLAY_VERSION
 from server.attempts.claim import claim
 from server.renderings import storage as renderings
 from server.runs.submission import submit
-from server.tables import MEASUREMENT, REPLAY, Artifact
+from server.tables import AUDIT, GIF, MEASUREMENT, REPLAY, Artifact
 
 
 def test_a_refused_replay_answers_with_the_engines_reason(api, services, known):
@@ -45,16 +46,16 @@ def test_a_range_beyond_all_numbers_is_ignored(api, services, known):
 
 
 @pytest.mark.parametrize(
-    ("kind", "media_type"),
+    ("kind", "media_type", "made"),
     [
-        ("replay", "application/octet-stream"),
-        ("audit", "application/json"),
-        ("strip.png", "image/png"),
-        ("film.gif", "image/gif"),
-        ("film.mp4", "video/mp4"),
+        ("replay", "application/octet-stream", b"a replay"),
+        ("audit", "application/json", b'{"verdict": {"trusted": true}}'),
+        ("strip.png", "image/png", b"a picture"),
+        ("film.gif", "image/gif", b"a film"),
+        ("film.mp4", "video/mp4", b"another film"),
     ],
 )
-def test_each_kind_is_made_once_and_then_kept(api, services, known, kind, media_type):
+def test_each_kind_is_made_once_and_then_kept(api, services, known, kind, media_type, made):
     for _ in range(2):
         answer = api.get(f"creatures/{known}/{kind}")
         assert (answer.status_code, answer.json()) == (202, {"status": "rendering"})
@@ -62,14 +63,44 @@ def test_each_kind_is_made_once_and_then_kept(api, services, known, kind, media_
     jobs = services.jobs
     (job_id,) = (*jobs.renderings.get_job_ids(), *jobs.audits.get_job_ids())
     assert jobs.find(job_id).args == [known, kind]
-    renderings.save(services, known, kind, b"what was made")
+    renderings.save(services, known, kind, made)
     answer = api.get(f"creatures/{known}/{kind}")
-    assert (answer.status_code, answer.content) == (200, b"what was made")
+    assert (answer.status_code, answer.content) == (200, made)
     assert answer.headers["content-type"] == media_type
     known_already = {"If-None-Match": answer.headers["etag"]}
     again = api.get(f"creatures/{known}/{kind}", headers=known_already)
     assert again.status_code == 304
-    assert renderings.existing(services, known, kind) == b"what was made"
+    assert renderings.existing(services, known, kind) == made
+
+
+def test_the_verdict_is_that_of_the_saved_audit(api, services, known):
+    def verdict():
+        return api.get(f"creatures/{known}/verdict").json()["trusted"]
+
+    assert verdict() is None
+    assert services.jobs.audits.count == 0, "reading the verdict must not enqueue an audit"
+    for trusted in (True, False):
+        renderings.save(services, known, AUDIT, audit(trusted))
+        assert verdict() is trusted
+    renderings.save(services, known, GIF, b"a film")
+    renderings.enqueue_again(services, known, GIF)
+    assert verdict() is False
+    renderings.enqueue_again(services, known, AUDIT)
+    assert renderings.existing(services, known, AUDIT) is None
+    assert verdict() is None
+
+
+def test_an_audit_that_cannot_be_saved_leaves_the_verdict(api, services, known, monkeypatch):
+    renderings.save(services, known, AUDIT, audit(True))
+
+    def refuse(*_):
+        raise IntegrityError("", {}, ValueError())
+
+    with monkeypatch.context() as patch:
+        patch.setattr(renderings, "insert_missing", refuse)
+        with pytest.raises(IntegrityError):
+            renderings.save(services, known, AUDIT, audit(False))
+    assert api.get(f"creatures/{known}/verdict").json() == {"trusted": True}
 
 
 def test_a_film_is_saved_under_the_creatures_name(api, services, known):

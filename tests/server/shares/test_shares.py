@@ -7,11 +7,12 @@ import httpx
 import pytest
 from answers import detail, fields
 from pydantic import SecretStr
+from reports import audit
 
 from microcosmos.archive import creature
 from server.auth.authorize import SHARE_HEADER
 from server.renderings import storage as renderings
-from server.tables import PREVIEW, Share
+from server.tables import AUDIT, PREVIEW, Share
 
 STRANGE = {"Host": "microcosmos.example"}
 
@@ -35,6 +36,23 @@ def test_a_share_has_a_slug_that_cannot_be_guessed(api, shared, known):
     assert (shared["licence"], shared["credit"]) == ("CC-BY-4.0", ["Ada"])
     assert api.get(f"shares/{shared['slug']}").json() == shared
     assert api.get("shares").json()["items"] == [shared]
+
+
+def test_a_share_states_the_verdict_of_its_creatures_audit(
+    api, through, services, shared, known, statements
+):
+    slug = shared["slug"]
+    assert shared["trusted"] is None
+    for trusted in (True, False):
+        renderings.save(services, known, AUDIT, audit(trusted))
+        assert api.get(f"shares/{slug}").json()["trusted"] is trusted
+        assert api.get("shares").json()["items"][0]["trusted"] is trusted
+        assert through(slug, f"creatures/{known}/verdict").json() == {"trusted": trusted}
+    one = statements(api.get, "shares")
+    for title in ("Two", "Three"):
+        more = api.post("shares", json={"creature": known, "title": title}).json()
+        assert more["trusted"] is False
+    assert statements(api.get, "shares") == one
 
 
 def test_publishing_twice_gives_the_same_live_share(api, services, shared, known):
@@ -79,7 +97,7 @@ def test_a_share_shows_its_creature_and_no_other(api, through, shared, known, ot
     document = through(slug, f"creatures/{known}").json()
     assert creature.parse(document)["sha256"] == known
     files = ("/creature.h5", "/network.svg", "/network.json", "/poses.csv")
-    for path in ("", "/ancestors", *files, "/replay", "/poses"):
+    for path in ("", "/verdict", "/ancestors", *files, "/replay", "/poses"):
         assert through(slug, f"creatures/{known}{path}").status_code in (200, 202), path
         assert through(slug, f"creatures/{other}{path}").status_code == 404, path
     for path in (f"creatures/{known}/children", f"creatures/{known}/audit", "runs", "workers"):

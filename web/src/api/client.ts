@@ -140,6 +140,8 @@ export const readPoses = (sha: string, headers = {}) =>
     client.GET("/creatures/{sha}/poses", { ...creature(sha), headers, parseAs: "arrayBuffer" }),
   );
 export const readCover = ({ slug, cover }: wire.Share) => readPoses(cover, { [SHARE_HEADER]: slug });
+/** The verdict of the saved audit, null without one; requests no audit. */
+export const readVerdict = (sha: string) => success(client.GET("/creatures/{sha}/verdict", creature(sha)));
 export const readAudit = (sha: string) =>
   whenReady<wire.Audit>(client.GET("/creatures/{sha}/audit", creature(sha)));
 

@@ -446,6 +446,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/creatures/{sha}/verdict": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Verdict
+         * @description Return the verdict of the saved audit; reading it enqueues none.
+         */
+        get: operations["read_verdict_api_v1_creatures__sha__verdict_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/events": {
         parameters: {
             query?: never;
@@ -1431,6 +1451,8 @@ export interface components {
             };
             /** Recorded */
             recorded: components["schemas"]["Measure"][];
+            /** Trusted */
+            trusted: (boolean | null)[];
         };
         /** Axis */
         Axis: {
@@ -1773,6 +1795,8 @@ export interface components {
             measures: {
                 [key: string]: (number | null)[];
             };
+            /** Trusted */
+            trusted: (boolean | null)[];
         };
         /** Log */
         Log: {
@@ -2339,6 +2363,8 @@ export interface components {
             state: "live" | "expired" | "revoked";
             /** Title */
             title: string;
+            /** Trusted */
+            trusted: boolean | null;
             /** Url */
             url: string;
         };
@@ -2670,6 +2696,14 @@ export interface components {
             module: string;
             /** Reason */
             reason: string;
+        };
+        /**
+         * Verdict
+         * @description The verdict of a creature's audit.
+         */
+        Verdict: {
+            /** Trusted */
+            trusted: boolean | null;
         };
         /** WorkerRead */
         WorkerRead: {
@@ -3543,6 +3577,37 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Rendering"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_verdict_api_v1_creatures__sha__verdict_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Verdict"];
                 };
             };
             /** @description A problem (RFC 9457) */

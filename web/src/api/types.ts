@@ -61,7 +61,9 @@ export type History = Wire["HistoryRead"];
 export type ArchiveColumns = Pick<
   Archive,
   "cell" | "fitness" | "descriptors" | "elite_generation" | "creature"
->;
+> &
+  // Events have no verdicts: new elites are not audited.
+  Partial<Pick<Archive, "trusted">>;
 export type Generations = Wire["Curves"];
 export type LogEntry = Wire["LogEntryRead"];
 export type SpeciesHistory = Wire["Species"];

@@ -1,7 +1,7 @@
 /** The archive of a run, as a map or a gallery, at any generation. */
 
 import { useCallback, useEffect, useRef, useState } from "preact/hooks";
-import { pageUrl } from "../api/address";
+import { pageUrl, sharedSlug } from "../api/address";
 import type { Archive, Run } from "../api/types";
 import { type Elite, type Elites, fittest } from "../store/elites";
 import { navigate, setQuery } from "../store/router";
@@ -11,6 +11,7 @@ import { TimeSlider } from "./TimeSlider";
 import { count } from "../ui/format";
 import { Segments } from "../ui/Select";
 import { Tour } from "../ui/Tour";
+import { TrustBadge } from "../ui/TrustBadge";
 import { ForkLink } from "../ui/links";
 import { SelectToggle, SelectionBar, useSelection } from "./SelectionBar";
 import { stepsOf, useTour } from "./tour";
@@ -96,8 +97,12 @@ function useViewProps(
     onMark,
     ...selection,
     projection,
-    actions: ({ creature }, cell) => (
+    actions: ({ creature, trusted }, cell) => (
       <>
+        <TrustBadge
+          trusted={trusted}
+          href={sharedSlug ? undefined : `/creatures/${creature}?run=${run.id}#audit`}
+        />
         <ForkLink run={run.id} creature={creature} title={text.forkCreature} inline />
         <SelectToggle {...{ cell, projection }} {...selection} />
       </>

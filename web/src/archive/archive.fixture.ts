@@ -20,7 +20,7 @@ export function archiveOf(count: number, kind: Archive["kind"] = "grid"): Archiv
 }
 
 export function elite(fitness: number, ...descriptors: number[]): Elite {
-  return { fitness, descriptors, generation: 1, creature: `c${fitness}`, reportedAt: 1 };
+  return { fitness, descriptors, generation: 1, creature: `c${fitness}`, trusted: null, reportedAt: 1 };
 }
 
 /** Elites by cell. */

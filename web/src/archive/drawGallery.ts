@@ -6,6 +6,7 @@ import { css, sequential } from "../ui/colours";
 import { type Colouring, colourPosition } from "./colouring";
 import { type Shape, cornerOf } from "./layout";
 import { FADED } from "./mapCanvas";
+import { markDistrusted } from "./distrust";
 import type { Tiles } from "./projection";
 import { BODY_INK } from "../replay/motion";
 import { traceBody } from "../replay/poses";
@@ -78,5 +79,10 @@ function drawTile(
     context.strokeStyle = quiet;
   }
   context.stroke();
+  if (tile.elite.trusted === false) {
+    const { lineWidth } = context;
+    markDistrusted(context, [left + side - 9, top + 9], 3, theme);
+    context.lineWidth = lineWidth;
+  }
   context.globalAlpha = 1;
 }

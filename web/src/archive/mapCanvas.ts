@@ -7,9 +7,12 @@ import { type Size, type Theme, prepare, useSize, prefersReducedMotion, useTheme
 import { type Rgb, pixel } from "../ui/colours";
 import { type Colouring, binColours } from "./colouring";
 import { type Layout, rasterOf } from "./layout";
+import { markDistrusted } from "./distrust";
 import type { Tiles } from "./projection";
 
 const FLASH_MS = 1200;
+/** Side of the smallest bins that are marked, in pixels. */
+const MIN_MARKED = 8;
 /** Opacity of cells that are not selected. */
 export const FADED = 0.28;
 
@@ -108,6 +111,7 @@ function drawMap(canvas: HTMLCanvasElement, size: Size, raster: Raster, picture:
   if (selected) fade(colours, tiles, selected);
   paint(image, raster.bins, colours);
   context.putImageData(image, 0, 0);
+  drawDistrusted(context, size, picture);
   drawFlashes(context, size, picture, flash, now);
   performance.measure("map-draw", { start });
 }
@@ -124,6 +128,21 @@ function fade(colours: Uint32Array, tiles: Tiles, selected: ReadonlySet<number>)
 function paint(image: ImageData, bins: Int32Array, colours: Uint32Array): void {
   const pixels = new Uint32Array(image.data.buffer);
   for (let k = 0; k < bins.length; k++) pixels[k] = bins[k]! < 0 ? 0 : colours[bins[k]!]!;
+}
+
+/** Mark elites that are not trusted, unless bins are too small for a mark. */
+function drawDistrusted(
+  context: CanvasRenderingContext2D,
+  { width, height }: Size,
+  { tiles, layout }: Picture,
+): void {
+  const side = Math.sqrt((width * height) / layout.count);
+  if (side < MIN_MARKED) return;
+  for (const [bin, { elite }] of tiles) {
+    if (elite.trusted !== false) continue;
+    const [x, y] = layout.centre(bin);
+    markDistrusted(context, [x * width, y * height], Math.min(3.5, side / 6), "dark");
+  }
 }
 
 function drawFlashes(

@@ -2,6 +2,7 @@ import { describe, expect, it } from "vitest";
 import type { Principal } from "../api/types";
 import { refusalOf } from "../store/principal";
 import { parseCells, formatCells } from "../store/draft";
+import { elite } from "./archive.fixture";
 import { binsOf, binsWithin, cellsIn, selectByKey, toggle } from "./selection";
 import { gridLayout } from "./layout";
 import type { Projection } from "./projection";
@@ -29,8 +30,7 @@ const mapOf = <T>(entries: Record<number, T>) =>
 
 /** A map of 4 × 4 bins with two elites in bin 5. */
 const layout = gridLayout([4, 4]);
-const elite = { fitness: 1, descriptors: [], generation: 1, creature: "c", reportedAt: 1 };
-const tile = (cell: number, hidden = 0) => ({ cell, elite, hidden });
+const tile = (cell: number, hidden = 0) => ({ cell, elite: elite(1), hidden });
 const projection: Projection = {
   layout,
   tiles: mapOf({ 0: tile(100), 5: tile(101, 1), 15: tile(103) }),

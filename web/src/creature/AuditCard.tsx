@@ -1,24 +1,44 @@
 /** The physics audit of a creature: start it, wait for it, show its result. */
 
 import * as api from "../api/client";
-import type { AuditRow } from "../api/types";
+import type { Audit, AuditRow } from "../api/types";
+import { useFetched } from "../store/fetch";
 import { usePolled } from "../store/polling";
 import { setQuery } from "../store/router";
 import { number } from "../ui/format";
 import { type Column, Table } from "../ui/Table";
+import { TrustBadge } from "../ui/TrustBadge";
 import { CheckCard } from "./CheckCard";
 import { text } from "./text";
 
-export function AuditCard({ sha, query }: { sha: string; query: URLSearchParams }) {
-  const requested = query.has("audit");
+/** The address of the card below that of its page. */
+export const AUDIT_HASH = "#audit";
+
+export interface AuditState {
+  /** The verdict, null without an audit; undefined until it is known. */
+  trusted: boolean | null | undefined;
+  requested: boolean;
+  audit: Audit | null;
+  note: string | null;
+  error: string | null;
+}
+
+/** The audit of a creature: read if there is one, made if the address requests it. */
+export function useAudit(sha: string, query: URLSearchParams): AuditState {
+  const saved = useFetched(() => api.readVerdict(sha), [sha]).value?.trusted;
+  const requested = query.has("audit") || typeof saved === "boolean";
   const polled = usePolled(requested ? () => api.readAudit(sha) : null, [sha, requested]);
   const { value: audit, note, error } = polled;
+  return { trusted: audit ? audit.verdict.trusted : saved, requested, audit, note, error };
+}
+
+export function AuditCard({ trusted, requested, audit, note, error }: AuditState) {
   return (
     <CheckCard
       {...{ note, error }}
       name="audit"
       title={text.audit}
-      verdict={audit && (audit.verdict.trusted ? ["finished", text.trusted] : ["failed", text.notTrusted])}
+      verdict={typeof trusted === "boolean" && <TrustBadge trusted={trusted} />}
       button={requested ? null : text.runAudit}
       onStart={() => setQuery({ audit: "" })}
       running={requested && !audit ? text.auditing : null}

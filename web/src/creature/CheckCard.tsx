@@ -7,8 +7,8 @@ import { text } from "./text";
 interface Props {
   name: string;
   title: string;
-  /** Class and text of a badge. */
-  verdict: readonly [kind: string, word: string] | null;
+  /** A badge; null without a result. */
+  verdict: ComponentChildren;
   button: string | null;
   onStart: () => void;
   /** Text while the check runs; null if it does not run. */
@@ -24,7 +24,7 @@ export function CheckCard({ name, title, verdict, button, onStart, running, note
       id={name}
       title={title}
       kind={name}
-      note={verdict && <span class={`badge ${verdict[0]}`}>{verdict[1]}</span>}
+      note={verdict}
       actions={button && <button onClick={onStart}>{button}</button>}
     >
       {running && !error && (

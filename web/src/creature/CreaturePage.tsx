@@ -1,8 +1,7 @@
 /** The page of a creature: motion, network, measures and origin. */
 
-import { useMemo } from "preact/hooks";
+import { useEffect, useMemo } from "preact/hooks";
 import * as api from "../api/client";
-import { sharedSlug } from "../api/address";
 import type { Creature, Spec } from "../api/types";
 import type { Replay } from "../decode/replay";
 import { useFetched } from "../store/fetch";
@@ -10,9 +9,10 @@ import { usePoseStream } from "../store/poses";
 import { number, shortId, words } from "../ui/format";
 import { NotForceFree, isForceFree } from "../ui/coupling";
 import { Page, reasonOf, useTitle } from "../ui/Page";
+import { TrustBadge } from "../ui/TrustBadge";
 import { ReplayPlayer } from "../replay/ReplayPlayer";
 import { newPlayhead } from "../replay/playhead";
-import { AuditCard } from "./AuditCard";
+import { AUDIT_HASH, AuditCard, type AuditState, useAudit } from "./AuditCard";
 import { FactsCard } from "./FactsCard";
 import { FamilyCard } from "./FamilyCard";
 import { ForkLink } from "../ui/links";
@@ -36,6 +36,7 @@ interface Props {
 export function CreaturePage({ id: sha, query }: Props) {
   const { value: creature, error } = useFetched(() => api.readCreature(sha), [sha]);
   useTitle(text.title(shortId(sha)));
+  const audit = useAudit(sha, query);
   const run = query.get("run");
   return (
     <Page crumbs={[["/", text.runs], ...(run ? [[`/runs/${run}`, shortId(run)] as const] : [])]}>
@@ -47,6 +48,9 @@ export function CreaturePage({ id: sha, query }: Props) {
           <code>{shortId(sha)}</code>
         </h1>
         {creature && !isForceFree(creature.identity.world.coupling) && <NotForceFree />}
+        {creature && swims(creature) && audit.trusted !== undefined && (
+          <TrustBadge trusted={audit.trusted} href={AUDIT_HASH} />
+        )}
         <span class="spring" />
         {creature && <PublishButton of={{ creature: sha }} file={creature} title="" />}
         {creature && isEvolved(creature) && <ForkLink run={run} creature={sha} title={text.fork} />}
@@ -54,19 +58,30 @@ export function CreaturePage({ id: sha, query }: Props) {
       </header>
       {error && <p class="banner wrong">{reasonOf(error, sha)}</p>}
       {!creature && !error && <p class="quiet loading">{text.loading}</p>}
-      {creature && <CreatureView key={sha} {...{ creature, query }} />}
+      {creature && <CreatureView key={sha} {...{ creature, query, audit }} />}
     </Page>
   );
 }
 
+interface ViewProps {
+  creature: Creature;
+  query: URLSearchParams;
+  /** Missing in a share, whose visitors cannot start an audit. */
+  audit?: AuditState;
+}
+
 /** All cards of a creature; they share the playhead of its replay. */
-export function CreatureView({ creature, query }: { creature: Creature; query: URLSearchParams }) {
+export function CreatureView({ creature, query, audit }: ViewProps) {
   const { sha256: sha, identity } = creature;
   const playhead = useMemo(newPlayhead, []);
   const rendering = useReplays([sha]);
   const replay = rendering.replays?.[0] ?? null;
   const { stream } = usePoseStream(replay ? null : sha);
   const panels = useMemo(() => (replay ? [{ replay }] : []), [replay]);
+  useEffect(() => {
+    // The browser looked for the card before the page had its cards and its height.
+    if (location.hash === AUDIT_HASH) document.querySelector(AUDIT_HASH)?.scrollIntoView();
+  }, [replay]);
   return (
     <>
       <div class="creature-columns">
@@ -85,7 +100,7 @@ export function CreatureView({ creature, query }: { creature: Creature; query: U
           <GenomeCard {...{ creature, playhead }} every={replay?.header.every ?? null} />
           <FamilyCard {...{ creature, query }} />
           {creature.measured && <RemeasureCard sha={sha} />}
-          {swims(creature) && !sharedSlug && <AuditCard sha={sha} query={query} />}
+          {swims(creature) && audit && <AuditCard {...audit} />}
         </div>
       </div>
       <FactsCard creature={creature} />

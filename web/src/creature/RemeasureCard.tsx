@@ -23,7 +23,7 @@ export function RemeasureCard({ sha }: { sha: string }) {
       {...{ note, error }}
       name="measured"
       title={text.remeasured}
-      verdict={result && (result.exact ? ["finished", text.identical] : ["paused", text.differs])}
+      verdict={result && <Agreement exact={result.exact} />}
       button={mayStart ? (result ? text.measureAgain : text.measure) : null}
       onStart={() => void start()}
       running={running ? text.measuring : null}
@@ -31,6 +31,12 @@ export function RemeasureCard({ sha }: { sha: string }) {
       {measurement === "never" && <p class="quiet small">{text.measureAbout}</p>}
       {result && <MeasurementResult {...result} />}
     </CheckCard>
+  );
+}
+
+function Agreement({ exact }: Pick<Measurement, "exact">) {
+  return (
+    <span class={`badge ${exact ? "finished" : "paused"}`}>{exact ? text.identical : text.differs}</span>
   );
 }
 

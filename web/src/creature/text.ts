@@ -8,8 +8,6 @@ export const text = {
     "The audit simulates the creature again: with limits doubled and without, on half the grid spacing with a quarter of the step, with another delta kernel, with a heading of 45°, and with a reciprocal gait. A creature that fails a check is not trusted.",
   retrying: (note: string) => `${note} Trying again …`,
   auditing: "Simulating at higher resolution; this takes minutes …",
-  trusted: "trusted",
-  notTrusted: "not trusted",
   auditVerdict: (trusted: boolean, reasons: string) =>
     trusted ? "The creature passes every check." : `Not trusted: ${reasons}.`,
   figure: "Quantity",

@@ -31,8 +31,8 @@ export function SwimmingBody({ stream, label, path = false, onFirst }: Props) {
     context.lineJoin = context.lineCap = "round";
     context.strokeStyle = BODY_INK[theme];
     if (path) {
-      context.globalAlpha = 0.35;
-      context.lineWidth = 1;
+      context.globalAlpha = 0.55;
+      context.lineWidth = 1.25;
       tracePath(context, stream, steps, [0, 0, width]);
       context.stroke();
       context.globalAlpha = 1;

@@ -1,7 +1,10 @@
 /** Draw the body of a pose stream, with its mean position in the middle. */
 
 import type { PoseStream } from "../decode/poses";
-import { type Point, chainsOf } from "./motion";
+import { type Point, chainsOf, splineOf } from "./motion";
+
+/** In smaller squares, in pixels, straight edges cannot be told from a spline and are drawn faster. */
+const SMOOTH_SIDE = 150;
 
 interface Shape {
   chains: number[][];
@@ -66,18 +69,20 @@ export function traceBody(
   const { nodes } = stream.header;
   const moment = momentOf(stream, steps);
   const scale = (0.42 * side) / radius;
+  const place = (node: number): Point => {
+    const [x, y] = at(offsets, nodes, node, moment);
+    return [left + side / 2 + scale * x, top + side / 2 - scale * y];
+  };
   context.beginPath();
   for (const chain of chains) {
-    chain.forEach((node, i) => {
-      const [x, y] = at(offsets, nodes, node, moment);
-      const place = [left + side / 2 + scale * x, top + side / 2 - scale * y] as const;
-      if (i === 0) context.moveTo(...place);
-      else context.lineTo(...place);
-    });
+    const points = chain.map(place);
+    context.moveTo(...points[0]!);
+    if (side < SMOOTH_SIDE) for (const point of points.slice(1)) context.lineTo(...point);
+    else for (const [a, b, end] of splineOf(points)) context.bezierCurveTo(...a, ...b, ...end);
   }
 }
 
-/** Trace the way of the mean position up to now, in the same square. */
+/** Trace the path of the mean position from a circle at its start to now, in the same square. */
 export function tracePath(
   context: CanvasRenderingContext2D,
   stream: PoseStream,
@@ -86,15 +91,18 @@ export function tracePath(
 ): void {
   const { means, radius } = shapeOf(stream);
   const { start, stop, frames, moments, steps: whole } = stream.header;
-  const moment = momentOf(stream, steps);
-  const [before, after, share] = moment;
-  const now = at(means, 1, 0, after > before ? moment : [before, before, 0]);
-  const time = start + ((stop - start) * (before + 1 + (after > before ? share : 0))) / frames;
+  const [before, after, share] = momentOf(stream, steps);
+  const onward = after > before ? share : 0; // The path does not lead from the last frame to the first.
+  const [x, y] = at(means, 1, 0, [before, after, onward]);
+  const time = start + ((stop - start) * (before + 1 + onward)) / frames;
   const scale = (0.42 * side) / radius;
+  const place = (i: number): Point => [
+    left + side / 2 + scale * (stream.path[2 * i]! - x),
+    top + side / 2 - scale * (stream.path[2 * i + 1]! - y),
+  ];
   context.beginPath();
-  context.moveTo(left + side / 2, top + side / 2);
-  for (let i = Math.min(moments - 1, Math.ceil((time * (moments - 1)) / whole) - 1); i >= 0; i--) {
-    const [x, y] = [stream.path[2 * i]! - now[0], stream.path[2 * i + 1]! - now[1]];
-    context.lineTo(left + side / 2 + scale * x, top + side / 2 - scale * y);
-  }
+  context.arc(...place(0), 3, 0, 2 * Math.PI);
+  context.moveTo(...place(0));
+  for (let i = 1; i < moments && i * whole < time * (moments - 1); i++) context.lineTo(...place(i));
+  context.lineTo(left + side / 2, top + side / 2);
 }

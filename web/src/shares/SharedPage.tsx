@@ -11,6 +11,7 @@ import { ArchiveRun } from "../run/ArchiveRun";
 import { CreatureView } from "../creature/CreaturePage";
 import { FilesCard } from "../run/FilesCard";
 import { Card, Loading, NotFound, Page, useTitle, Empty } from "../ui/Page";
+import { TrustBadge } from "../ui/TrustBadge";
 import { copyText } from "../ui/clipboard";
 import { text } from "./text";
 import { decodePoses } from "../decode/poses";
@@ -42,6 +43,7 @@ export function SharedPage({ slug, sha, query }: Props) {
   return (
     <Page
       title={[title, " ", id && <code>{id}</code>]}
+      actions={creature && <SharedVerdict key={creature} sha={creature} />}
       crumbs={share.run && sha ? [[`/s/${slug}`, share.title]] : undefined}
     >
       <Terms share={share} />
@@ -49,6 +51,11 @@ export function SharedPage({ slug, sha, query }: Props) {
       {share.run && !sha && <SharedArchive {...{ share, query }} id={share.run} />}
     </Page>
   );
+}
+
+function SharedVerdict({ sha }: { sha: string }) {
+  const { value: verdict } = useFetched(() => api.readVerdict(sha), [sha]);
+  return verdict && <TrustBadge trusted={verdict.trusted} />;
 }
 
 const LICENCE_URLS: Record<string, string> = {

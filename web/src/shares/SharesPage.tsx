@@ -9,6 +9,7 @@ import { dateTime } from "../ui/format";
 import { ConfirmButton } from "../ui/ConfirmButton";
 import { Empty, Page } from "../ui/Page";
 import { type Column, Table } from "../ui/Table";
+import { TrustBadge } from "../ui/TrustBadge";
 import { copyText } from "../ui/clipboard";
 import { text } from "./text";
 import "./shares.css";
@@ -55,9 +56,14 @@ function Title({ state, slug, title }: Share) {
   );
 }
 
-function Content({ run, creature, generation }: Share) {
+function Content({ run, creature, generation, trusted }: Share) {
   if (run) return <a href={`/runs/${run}`}>{text.archiveOf(generation)}</a>;
-  return <a href={`/creatures/${creature}`}>{text.creatureLink}</a>;
+  return (
+    <>
+      <a href={`/creatures/${creature}`}>{text.creatureLink}</a>{" "}
+      <TrustBadge trusted={trusted} href={`/creatures/${creature}#audit`} />
+    </>
+  );
 }
 
 function Actions({ share, onChange }: { share: Share; onChange: (share: Share) => void }) {

@@ -8,6 +8,7 @@ describe("the history of an archive", () => {
     generation: 4,
     elite_generation: [1, 1, 4],
     creature: ["a", "b", "c"],
+    trusted: [null, false, true],
     measures: {},
   };
 
@@ -19,6 +20,11 @@ describe("the history of an archive", () => {
   ])("after generation %s has the last elite of each cell", (generation, creatures) => {
     const then = elitesByGeneration(history)(generation);
     expect([...then.values()].map(({ creature }) => creature)).toEqual(creatures);
+  });
+
+  it("has the verdicts of that time's elites", () => {
+    const then = elitesByGeneration(history)(4);
+    expect([...then.values()].map(({ trusted }) => trusted)).toEqual([true, false]);
   });
 
   it("is the same in any order of generations", () => {

@@ -7,6 +7,8 @@ export interface Elite {
   descriptors: number[];
   generation: number;
   creature: string;
+  /** The verdict of its audit; null without one. */
+  trusted: boolean | null;
   /** The generation whose event reported it. */
   reportedAt: number;
 }
@@ -61,6 +63,7 @@ function eliteAt(columns: ArchiveColumns, i: number, reportedAt: number): Elite 
     descriptors: columns.descriptors[i]!,
     generation: columns.elite_generation[i]!,
     creature: columns.creature[i]!,
+    trusted: columns.trusted?.[i] ?? null,
     reportedAt,
   };
 }

@@ -30,6 +30,7 @@ const ARCHIVE: Archive = {
   ],
   elite_generation: [1, 2],
   creature: ["aa", "bb"],
+  trusted: [false, true],
 };
 
 const column = [1, 2];

@@ -21,6 +21,14 @@ describe("events", () => {
     expect(creatures(opened)).toEqual({ 0: "aa", 5: "bb" });
   });
 
+  it("keep the verdicts of other elites, and have none of new ones", () => {
+    const elitesThen = after(opened, elites(3, 5, "cc")).details.get("a")!.elites;
+    expect([...elitesThen].map(([cell, { trusted }]) => [cell, trusted])).toEqual([
+      [0, false],
+      [5, null],
+    ]);
+  });
+
   it("extend curves and update figures, each generation once", () => {
     const next = after(opened, generation(3), generation(3));
     expect(next.details.get("a")!.curves!.generation).toEqual([1, 2, 3]);

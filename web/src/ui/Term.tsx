@@ -17,7 +17,7 @@ const showAbove = (popover: HTMLElement | null) => popover?.showPopover();
 
 /** Additions, plurals and units are ignored: “Evaluations/s” is explained as “evaluation”. */
 export function Term({ name, children }: Props) {
-  const about = define(name) ?? define(name.replace(/ (of|\().*$/, "").replace(/s?(\/s)?$/, ""));
+  const about = define(name) ?? define(name.replace(/ (of|so far|\().*$/, "").replace(/s?(\/s)?$/, ""));
   const [place, setPlace] = useState<{ left: number; top: number } | null>(null);
   const id = useId();
   if (!about) return <>{children ?? name}</>;

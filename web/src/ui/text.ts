@@ -21,6 +21,10 @@ export const text = {
   next: "Next",
   partlyNotForceFree: "partly not force-free",
   notForceFree: "not force-free",
+  audit: "Audit",
+  trusted: "trusted",
+  notTrusted: "not trusted",
+  notAudited: "not audited",
   noClipboard: "The browser refused to copy. Select the text and copy it with Ctrl + C.",
   forms: {
     ours: ["Ours", "Force- and torque-free; every actuator has the same strength."],

@@ -48,6 +48,7 @@ def _creatures() -> None:
     op.create_table(
         "creatures",
         sa.Column("sha256", HASH, primary_key=True),
+        sa.Column("trusted", sa.Boolean()),
         sa.Column("identity", sa.LargeBinary(), nullable=False),
         *_required(sa.JSON(), "parents", "credit"),
         sa.Column("operator", sa.Text()),

@@ -91,8 +91,8 @@ function NewestValues({ series, format }: { series: Series[]; format: Plot["form
   const several = series.filter(({ other }) => !other).length > 1;
   return (
     <span class="curve-keys">
-      {series.map(({ name, colour, dots, other, y }) => (
-        <span key={name} class="curve-key" title={name}>
+      {series.map(({ name, about, colour, dots, other, y }) => (
+        <span key={name} class="curve-key" title={about ?? name}>
           {series.length > 1 && (
             <>
               <i class={dots ? "dot" : ""} style={{ background: `var(${colour})` }} />{" "}

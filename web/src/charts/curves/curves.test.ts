@@ -76,6 +76,15 @@ describe("infeasible evaluations", () => {
     ]);
   });
 
+  it("have a sentence for each reason of the engine", () => {
+    const reasons = ["non-finite", "supersonic", "limits", "compressible", "impulse"];
+    const counted = Object.fromEntries(reasons.map((reason) => [`infeasible: ${reason}`, [1]]));
+    const plot = workOf(curvesOf([1], 16, counted)).find(({ title }) => title === "Infeasible so far");
+    expect(plot!.series.map(({ about }) => about)).toEqual(
+      reasons.map(() => expect.stringMatching(/^[A-Z].*\.$/)),
+    );
+  });
+
   it("are not lost if a long history is thinned out", () => {
     let curves = NO_CURVES;
     const length = 2 * MAX_POINTS + 3;

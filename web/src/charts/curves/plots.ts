@@ -6,6 +6,8 @@ import { text } from "./text";
 
 export interface Series {
   name: string;
+  /** A sentence on what it counts, shown at its name. */
+  about?: string;
   /** A CSS variable. */
   colour: string;
   y: Column;
@@ -90,7 +92,7 @@ function infeasibleSoFar(curves: Curves): Series[] {
   return infeasibleBy(curves).map(([reason], i) => {
     let sum = 0;
     const y = curves.summary[INFEASIBLE + reason]!.map((value) => (sum += value ?? 0));
-    return { name: reason, colour: `--series-${3 + (i % 3)}`, y };
+    return { name: reason, about: REASONS[reason], colour: `--series-${3 + (i % 3)}`, y };
   });
 }
 
