@@ -1,6 +1,7 @@
 """Acceptance checks: `make acceptance` repeats tests of `make test` at full size.
 
-Four searches at equal evaluations, five seeds each, submitted over HTTP; a run that is
+Presets over five seeds, whose elites are simulated again in variants that should not matter;
+four searches at equal evaluations, five seeds each, submitted over HTTP; a run that is
 killed, stopped, paused and resumed, whose archive has to be byte for byte the undisturbed
 one, as has that of a second installation, on PostgreSQL and a Redis server; creatures that
 sense and collect energy; searches with derivatives and without; a page that is left open for
@@ -19,6 +20,7 @@ from databases import Missing, service_settings
 from drive import Installation, interrupt, kill_job, pause_and_resume, running, stop_worker
 from left_open import leave_open
 from searches import HOURS, METHODS, SEEDS, carry_out, compare, compare_slopes, forage, spec
+from swimming import swimming
 from uploads import all_cases, send, watched
 
 FAULTS = (kill_job, stop_worker, kill_job, pause_and_resume, kill_job)
@@ -87,6 +89,7 @@ def uploads(product: Installation) -> bool:
 
 
 PARTS = {
+    "swimming": swimming,
     "searches": searches,
     "databases": databases,
     "foraging": forage,

@@ -1,6 +1,6 @@
 """The command `figure`: pictures, films, and figures for print."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
@@ -13,7 +13,9 @@ from typer.core import TyperGroup
 from ..archive.creature import parse
 from ..archive.file import HDF5, load
 from ..viz.figures import drawing, experiments
+from ..viz.figures.verdicts import WORDS, verdicts
 from ..viz.film import check, export
+from ..viz.replay_file import read_replay
 from .app import CACHE, app, console, fail, failing, with_options
 from .modules import Modules, load_modules, prepare_engine
 
@@ -70,6 +72,14 @@ def of_file(
     out: Annotated[
         Path, Argument(help=".png, .gif or .mp4 for a creature; .png, .svg or .pdf for a run.")
     ],
+    audit: Annotated[
+        Path | None,
+        Option(
+            exists=True,
+            dir_okay=False,
+            help="Report of `audit FILE --out`; a .png of the creature states its verdict.",
+        ),
+    ] = None,
     module: Modules = None,
 ) -> None:
     """Draw a picture or a film of a creature or its replay, or the figure of a run.
@@ -78,7 +88,7 @@ def of_file(
     """
     load_modules(module)
     with failing(file):
-        _draw(file, out)
+        _draw(file, out, audit)
     print(out)
 
 
@@ -127,6 +137,10 @@ def sheet(
     columns: Annotated[int, Option(help="Number of regions along the first axis.")] = 6,
     rows: Annotated[int, Option(help="Number of regions along the second axis.")] = 4,
     moments: Annotated[int, Option(help="Number of moments of each swimmer.")] = 5,
+    audit: Annotated[
+        list[Path] | None,
+        Option(help="Report of `audit FILE --out` on an elite of the archive; repeatable."),
+    ] = None,
     module: Modules = None,
 ) -> None:
     """Draw a contact sheet of gaits: the fittest swimmer of each region of the archive."""
@@ -142,6 +156,7 @@ def sheet(
                 (columns, rows),
                 moments,
                 lambda done, of: bar.update(task, completed=done, total=of),
+                audit or (),
             )
         )
 
@@ -174,9 +189,12 @@ def _names(text: str | None) -> list[str] | None:
     return [name.strip() for name in text.split(",") if name.strip()] if text else None
 
 
-def _draw(file: Path, out: Path) -> None:
+def _draw(file: Path, out: Path, audit: Path | None) -> None:
     """A creature file is simulated first; the file of a run holds its table or its archive."""
     data = file.read_bytes()
+    if audit and (data.startswith(HDF5) or out.suffix.lower() != ".png"):
+        raise ValueError(f"`--audit` needs a .png of a creature, got {out} of {file}")
+    trusted = verdicts([audit] if audit else [])
     if data.startswith(HDF5) and "archive" in load(data)[0]:
         drawing.archive(file, out, drawing.Print(), None, "fitness")
         return
@@ -191,4 +209,15 @@ def _draw(file: Path, out: Path) -> None:
 
         prepare(cache=CACHE)
         data = record(parse(data))
-    export(data, out)
+    export(data, out, **_noted(data, trusted))
+
+
+def _noted(replay: bytes, trusted: Mapping[str, bool]) -> dict[str, str]:
+    """Return the options of a strip that states the verdict, if one is given."""
+    if not trusted:
+        return {}
+    name = read_replay(replay).header["creature"]
+    if name not in trusted:
+        audited = ", ".join(one[:12] for one in trusted)
+        raise ValueError(f"`--audit` needs the audit of {name[:12]}, got that of {audited}")
+    return {"note": WORDS[trusted[name]]}

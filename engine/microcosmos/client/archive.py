@@ -32,6 +32,8 @@ class Archive:
         self.elite_generation = np.array(document["elite_generation"], np.int32)
         """Generation in which each elite arose."""
         self.creature: list[str] = document["creature"]
+        self.trusted: list[bool | None] = document["trusted"]
+        """Verdicts of the elites' audits on the server; None without an audit."""
         self.measures = {
             name: columns.array(values).astype(np.float32)
             for name, values in document["measures"].items()

@@ -60,6 +60,11 @@ class Creature:
     def fitness(self) -> float | None:
         return self.measured["fitness"] if self.measured else None
 
+    @property
+    def trusted(self) -> bool | None:
+        """Return the verdict of its audit on the server; None without an audit."""
+        return self._connection.read(f"{self._path}/verdict")["trusted"]
+
     def replay(self, timeout: float = 300.0) -> Replay:
         """Return its recorded motion, which plays in a notebook; wait for the renderer."""
         return Replay(self._connection.rendering(f"{self._path}/replay", timeout))

@@ -120,12 +120,12 @@ def swimmer_body(swimmer: str, plugin: PluginVersion | None = None) -> Body:
 
 PRESETS = {
     "demo": (
-        "Worm and ray at three viscosities, seconds on a laptop",
+        "Worm and ray at three viscosities, seconds on a laptop; no limit acts",
         Gaits(
             swimmers=("worm", "ray"),
             forms=("ours",),
             viscosities=(0.05, 0.5, 2.0),
-            period=200,
+            period=600,
             cycles=2,
         ),
     ),

@@ -28,12 +28,13 @@ def strip(
     columns: int | None = None,
     width: int = 240,
     theme: str = "light",
+    note: str = "",
     **options: Any,
 ) -> bytes:
     """Draw `count` moments from the first frame to the last, each with its step, as a PNG.
 
-    They lie side by side, or in rows of `columns`; `width` is one panel's and `options` are
-    those of `frame`.
+    They lie side by side, or in rows of `columns`; `width` is one panel's, `note` is written
+    under the last one, and `options` are those of `frame`.
     """
     numbers = moments(replay, count)
     columns = count if columns is None else columns
@@ -53,6 +54,8 @@ def strip(
         sheet.paste(require("PIL.Image").fromarray(panel), (left, top))
         corner, caption = (left, top + high + GAP // 2), f"step {replay.step(numbers[place]):,}"
         draw.text(corner, caption, fill=ink, font=font, anchor="lt")
+    corner = left + wide, top + high + GAP // 2
+    draw.text(corner, note, fill=ink, font=font, anchor="rt")
     return encoded(np.asarray(sheet))
 
 

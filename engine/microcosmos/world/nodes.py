@@ -9,6 +9,7 @@ from .. import coupling, fields
 from .model import State, World
 
 Vectors = Float[Array, "node 2"]
+Scalars = Float[Array, "node"]
 
 
 def sense(world: World, state: State) -> Float[Array, "node"]:
@@ -38,26 +39,46 @@ def collect(world: World, state: State, at: coupling.Windows) -> State:
 
 
 def repel(world: World, positions: Vectors) -> tuple[Vectors, Vectors]:
-    """Return steric displacements within bodies, and of each body as a whole.
+    """Return steric displacements within bodies, and the rigid motion of each body by contact.
 
-    The forcing on a body sums to zero, which would remove its mean displacement; so the mean
-    is returned apart and moves the body after the fluid's response. It is taken before
-    displacements are limited, so that repulsion within a body cannot move the body.
+    The forcing on a body has neither force nor torque, which would remove its rigid motion; so
+    this motion is returned apart and moves the body after the fluid's response. Displacements
+    within bodies have no rigid part, so that no body moves itself.
     """
     if world.steric is None:
         return jnp.zeros_like(positions), jnp.zeros_like(positions)
     at = coupling.masked(coupling.windows(positions, world.size, coupling.HAT), world.present)
     density = coupling.spread(jnp.ones_like(positions[:, :1]), at, world.size)[0]
     push = -world.steric.strength * coupling.interpolate(world.steric.gradient(density), at)
-    drift = _body_mean(world, push)
-    push = fields.capped(push - drift, world.steric.limit)
-    return push - _body_mean(world, push), fields.capped(drift, world.steric.limit)
+    here = _weights(world, positions)
+    rigid = coupling.torque_free(push, here, positions, world.groups)
+    within = fields.capped(push - rigid, world.steric.limit)
+    within = within - coupling.torque_free(within, here, positions, world.groups)
+    if world.groups.count == 1:
+        return within, jnp.zeros_like(positions)
+    moved = coupling.force_free(push, here, positions, world.groups)
+    turned = _turned(world, rigid - moved, moved, here)
+    return within, fields.capped(moved, world.steric.limit) + turned
 
 
-def _body_mean(world: World, values: Vectors) -> Vectors:
-    ones = jnp.ones_like(values)
-    if world.present is not None:
-        ones = ones * world.present[:, None]
-        values = values * ones
-    nodes = world.groups.total(ones)
-    return world.groups.per_node(world.groups.total(values) / nodes)
+def _turned(world: World, turned: Vectors, moved: Vectors, here: Scalars) -> Vectors:
+    """Limit the rotation of each body by contact, like its translation.
+
+    Pushes between the nodes of a body cancel, but their torques do only up to the lattice:
+    pairs across it push each other slightly off their line. So the torque is at most that of
+    the net push, which is contact alone, at the body's farthest node.
+    """
+    groups = world.groups
+    square = jnp.sum(turned * turned, 1)
+    mean = groups.total(here * square) / groups.total(here)
+    tip = jnp.sqrt(groups.largest(here * square) + 1e-24)
+    push = jnp.sqrt(groups.largest(here * jnp.sum(moved * moved, 1)) + 1e-24)
+    most = jnp.minimum(world.steric.limit / tip, push * tip / (mean + 1e-24))
+    return turned * groups.per_node(jnp.minimum(1.0, most))[:, None]
+
+
+def _weights(world: World, positions: Vectors) -> Scalars:
+    """Return 1 for nodes that are present, else 0."""
+    if world.present is None:
+        return jnp.ones_like(positions[:, 0])
+    return world.present.astype(positions.dtype)

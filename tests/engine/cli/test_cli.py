@@ -10,6 +10,7 @@ from hashlib import md5
 from importlib import import_module
 
 import httpx
+import numpy as np
 import pytest
 from small_spec import SMALL_SCENE
 
@@ -73,6 +74,8 @@ def test_a_stopped_and_extended_run_ends_with_the_bytes_of_a_longer_one(run, inv
         ("variety empty.json", "an archive file must be HDF5"),
         ("figure creature.replay creature.bmp", ".mp4"),
         ("figure empty.json x.mp4", "microcosmos[figures]"),
+        ("figure empty.json x.gif --audit empty.json", "`--audit` needs a .png of a creature"),
+        ("figure empty.json x.png --audit empty.json", "`--audit` needs a report of"),
     ],
 )
 def test_mistakes_are_refused_with_their_reason(command, words, invoke, tmp_path, monkeypatch):
@@ -81,6 +84,23 @@ def test_mistakes_are_refused_with_their_reason(command, words, invoke, tmp_path
     (tmp_path / "empty.json").write_text("{}")
     (tmp_path / "creature.replay").write_bytes(b"nothing")
     assert words in invoke(*command.split(), code=2)
+
+
+def test_a_strip_states_the_verdict_of_the_creatures_own_audit(invoke, tmp_path, replay_bytes):
+    positions = np.zeros((6, 3, 2)) + np.arange(3)[None, :, None]
+    levels = np.zeros((6, 16, 16))
+    data = replay_bytes(positions, [[0, 1], [1, 2]], levels, creature="ab" * 32)
+    (tmp_path / "eel.replay").write_bytes(data)
+    report = {"creature": "ab" * 32, "verdict": {"trusted": True}}
+    (tmp_path / "audit.json").write_text(json.dumps(report))
+    (tmp_path / "other.json").write_text(json.dumps(report | {"creature": "cd" * 32}))
+    invoke("figure", "eel.replay", "plain.png")
+    invoke("figure", "eel.replay", "noted.png", "--audit", "audit.json")
+    plain, noted = (tmp_path / name for name in ("plain.png", "noted.png"))
+    assert plain.read_bytes() != noted.read_bytes()
+    text = invoke("figure", "eel.replay", "x.png", "--audit", "other.json", code=2)
+    assert "needs the audit of abababababab, got that of cdcdcdcdcdcd" in text
+    assert not (tmp_path / "x.png").exists()
 
 
 def test_evolve_sets_fields_and_makes_the_folder_of_its_file(invoke, tmp_path, monkeypatch):

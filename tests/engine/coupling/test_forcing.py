@@ -7,6 +7,8 @@ import pytest
 
 from microcosmos import bodies, coupling, filaments, groups
 from microcosmos.build import build_rods
+from microcosmos.coupling import forcing
+from microcosmos.coupling.forcing import step_lengths
 from microcosmos.coupling.layers import OFFSET
 
 SIZE = (48, 48)
@@ -76,6 +78,42 @@ def test_slip_falls_with_every_iteration(scene, projection):
     slips = [slip(scene, force(scene, n, projection)) for n in (1, 2, 3, 5, 10, 40)]
     assert np.all(np.diff(slips) < 0), slips
     assert slips[-1] <= 0.3 * slips[0], slips
+
+
+@pytest.mark.parametrize("iterations", [1, 2, 3, 7, 20])
+def test_steps_shrink_every_mode_and_overshoot_none(iterations):
+    lengths, modes = step_lengths(iterations), np.linspace(0, 1, 1001)
+    assert lengths[-1] == 1
+    slips = np.cumprod(1 - lengths[:, None] * modes[None], 0)
+    if iterations < 3:
+        np.testing.assert_allclose(lengths, 1)
+        return
+    assert np.all(slips[-2:] >= -1e-8)
+    assert np.all(iterations**2 * modes * slips[-2] <= 1 + 1e-9)
+    # Rounding errors of one iteration grow by these in those that follow.
+    after = np.cumprod((1 - lengths[:, None] * modes[None])[::-1], 0)
+    assert np.abs(after).max() <= 1 + 1e-9
+
+
+def test_the_operator_of_the_iteration_has_eigenvalues_from_zero_to_one(scene):
+    at, nodes = coupling.windows(scene["positions"], SIZE), len(scene["positions"])
+    change = coupling.spread(jnp.eye(nodes), at, SIZE)
+    matrix = np.asarray(coupling.interpolate(change, coupling.divided(at, scene["rho"])))
+    np.testing.assert_allclose(matrix, matrix.T, atol=1e-15)
+    sums = matrix.sum(1)
+    values = np.linalg.eigvalsh(matrix / np.sqrt(sums[:, None] * sums[None]))
+    assert values.min() >= -1e-12
+    np.testing.assert_allclose(values.max(), 1, rtol=1e-12)
+    # One plain iteration divides by these sums.
+    still = force(scene, 1, coupling.unprojected)
+    asked = np.asarray(scene["target"] - scene["velocity"])
+    np.testing.assert_allclose(still.forcing, asked / sums[:, None], rtol=1e-12)
+
+
+def test_ten_iterations_leave_half_of_the_slip_that_equal_steps_leave(scene, monkeypatch):
+    found = slip(scene, force(scene, 10))
+    monkeypatch.setattr(forcing, "step_lengths", np.ones)
+    assert found <= 0.6 * slip(scene, force(scene, 10))
 
 
 @pytest.mark.parametrize("spacing", [0.1, 0.5, 1.0, 2.0])

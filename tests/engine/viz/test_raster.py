@@ -188,6 +188,16 @@ def test_a_png_is_the_frame_itself(swimming):
     np.testing.assert_array_equal(picture, frame(swimming, 7, width=100, theme="dark"))
 
 
+def test_a_note_is_written_under_the_last_moment_alone(swimming):
+    plain, noted = (
+        opened(strip(swimming, 3, width=160, note=note)) for note in ("", "trusted")
+    )
+    changed = np.argwhere((plain != noted).any(-1))
+    assert len(changed) > 0
+    assert changed.min(0)[0] >= GAP + 120
+    assert changed.min(0)[1] > 2 * (160 + GAP) + GAP
+
+
 @pytest.mark.parametrize(("count", "columns"), [(1, None), (4, None), (5, 2), (6, 3)])
 def test_a_strip_has_the_moments_side_by_side(swimming, count, columns):
     sheet = opened(strip(swimming, count, columns=columns, width=64))

@@ -90,8 +90,81 @@ def test_no_body_moves_itself_by_repulsion(name, gradient, float64):
     bent = start.positions + 0.3 * np.random.default_rng(0).normal(size=start.positions.shape)
     push, drift = world.repel(box, bent)
     assert np.abs(push).max() > 0.05
-    np.testing.assert_allclose(drift, 0, atol=1e-13)
+    np.testing.assert_array_equal(drift, 0)
     np.testing.assert_allclose(jnp.sum(push, 0), 0, atol=1e-13)
+    np.testing.assert_allclose(np.sum(cross(np.asarray(bent), np.asarray(push))), 0, atol=1e-11)
+
+
+def cross(a, b):
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
+@BOTH
+def test_bodies_that_do_not_touch_neither_move_nor_turn_each_other(gradient, dtype):
+    bent = bodies.arc(20, 1.0, 0.25)
+    places = ((-14.0, -14.0), 0.4), ((14.0, 14.0), 1.9)
+    two = bodies.combined([bodies.placed(bent, place, turned=turn) for place, turn in places])
+    box, start = scenes.immersed(two, 0.3, dtype, steric=scenes.steric(4.0, dtype, gradient))
+    shaken = 0.3 * np.random.default_rng(0).normal(size=start.positions.shape)
+    push, drift = world.repel(box, start.positions + jnp.asarray(shaken, dtype))
+    assert np.abs(push).max() > 0.05
+    np.testing.assert_allclose(drift, 0, atol=1e-7)
+
+
+NODES, LEVER, GAP = 20, 7.0, 1.5
+
+
+def overlapping(turned, strength, gradient, dtype):
+    """Two rods of `NODES` nodes that touch with their ends, `LEVER` from their centres."""
+    along = np.array([np.cos(turned), np.sin(turned)])
+    apart = LEVER * along + GAP / 2 * np.array([-along[1], along[0]])
+    rod = bodies.chain(NODES, 1.0)
+    pair = [bodies.placed(rod, tuple(sign * apart), turned=turned) for sign in (-1, 1)]
+    body, steric = bodies.combined(pair), scenes.steric(strength, dtype, gradient)
+    limits = scenes.limits(0.3, dtype)
+    return body, *scenes.immersed(body, 0.3, dtype, steric=steric, limits=limits)
+
+
+@BOTH
+@pytest.mark.parametrize("turned", [0.0, 0.3, 1.1])
+def test_contact_off_the_centre_turns_rods_by_the_torque_of_the_push(gradient, turned, float64):
+    _, box, start = overlapping(turned, 0.2, gradient, float64)
+    drift, x = np.asarray(world.repel(box, start.positions)[1]), np.asarray(start.positions)
+    across = np.array([-np.sin(turned), np.cos(turned)])
+    for rod, sign in ((slice(NODES), 1), (slice(NODES, None), -1)):
+        moved, arms = drift[rod].mean(0), x[rod] - x[rod].mean(0)
+        spin = np.sum(cross(arms, drift[rod])) / np.sum(arms**2)
+        expected = NODES * sign * LEVER * (moved @ across) / np.sum(arms**2)
+        np.testing.assert_allclose(spin, expected, rtol=0.08)
+        rigid = moved + spin * np.stack([-arms[:, 1], arms[:, 0]], 1)
+        np.testing.assert_allclose(drift[rod], rigid, atol=1e-14)
+        assert spin < -1e-3
+    # The pushes of a pair are equal and opposite, and along their line to a few per cent.
+    np.testing.assert_allclose(np.sum(drift, 0), 0, atol=1e-14)
+    one = NODES * cross(x[:NODES].mean(0) - 32, drift[:NODES].mean(0))
+    assert abs(np.sum(cross(x - 32, drift))) <= 0.1 * abs(one)
+
+
+@BOTH
+def test_rods_in_a_fluid_turn_each_other_and_not_the_fluid(gradient, float64):
+    body, box, start = overlapping(0.0, 4.0, gradient, float64)
+    _, (positions, force) = watch(box, start, scenes.held(body, 30, float64))
+    rods = np.asarray(positions).reshape(30, 2, NODES, 2)
+    ends = rods[-1, :, -1] - rods[-1, :, 0]
+    turns = np.arctan2(ends[:, 1], ends[:, 0])
+    assert np.all(turns < -0.05), turns
+    np.testing.assert_allclose(turns[0], turns[1], atol=1e-9)
+    np.testing.assert_allclose(rods[-1].mean((0, 1)), 32, atol=1e-9)
+    np.testing.assert_allclose(force, 0, atol=1e-13)
+
+
+@BOTH
+def test_contact_moves_a_centre_and_turns_an_end_at_most_by_the_limit(gradient, float64):
+    _, box, start = overlapping(0.0, 4.0, gradient, float64)
+    drift = np.asarray(world.repel(box, start.positions)[1])[:NODES]
+    moved = drift.mean(0)
+    np.testing.assert_allclose(np.hypot(*moved), 0.1, rtol=1e-9)
+    np.testing.assert_allclose(np.hypot(*(drift - moved).T).max(), 0.1, rtol=1e-9)
 
 
 def driven_together(gradient, speed, dtype):

@@ -10,7 +10,7 @@ from ...spec.emitters import PopulationEmitter
 from .axes import Axis, chosen
 from .groups import Group
 from .reading import Archive, Search
-from .sheet import Layout
+from .sheet import Layout, Motion
 
 NAMES = {"best": "best fitness", "mean": "mean fitness", "qd_score": "QD score"}
 """Names of curves that differ from those of their columns."""
@@ -49,7 +49,7 @@ def of_curves(groups: Sequence[Group], shown: Sequence[str]) -> str:
     return " ".join([first + ".", *compared, common])
 
 
-def of_sheet(found: Archive, plan: Layout, moments: int) -> str:
+def of_sheet(found: Archive, plan: Layout, motions: Sequence[Motion], moments: int) -> str:
     """Return the caption of a contact sheet."""
     first = (
         f"The fittest elite of each of {len(plan.regions)} regions over {_over(plan.axes)}, "
@@ -57,6 +57,8 @@ def of_sheet(found: Archive, plan: Layout, moments: int) -> str:
         f"the end in the colour of its fitness; numbers give its fitness, thin lines the way "
         f"of its mean node. All bodies are at one scale."
     )
+    if any(motion.trusted is not None for motion in motions):
+        first += " Trusted or not is the verdict of the physics audit; the others have none."
     return " ".join([first, run(found)])
 
 

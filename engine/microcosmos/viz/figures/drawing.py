@@ -8,6 +8,7 @@ from . import caption, curves, groups, lineage, maps, saving, sheet
 from .lineage import family
 from .reading import Archive, read
 from .style import millimetres, styled
+from .verdicts import verdicts
 
 
 @dataclass(frozen=True)
@@ -60,19 +61,26 @@ def contact(
     grid: tuple[int, int],
     moments: int,
     tell: Callable[[int, int], None] = lambda done, of: None,
+    audits: Sequence[Path] = (),
 ) -> list[Path]:
-    """Draw the contact sheet of an archive file; `grid` has columns and rows."""
+    """Draw the contact sheet of an archive file; `grid` has columns and rows.
+
+    `audits` are reports whose verdicts the sheet states, where it shows the creature.
+    """
     from . import motions  # Loads JAX.
 
     saving.kind(out)
+    trusted = verdicts(audits)
     found, columns, rows = open_archive(file), *grid
     plan = sheet.layout(found, axes=axes, columns=columns, rows=rows)
     cells = [int(found.cells[region.elite]) for region in plan.regions]
-    moved = motions.motions(file.read_bytes(), cells, lambda done: tell(done, len(cells)))
+    moved = motions.motions(
+        file.read_bytes(), cells, trusted, lambda done: tell(done, len(cells))
+    )
     with styled():
         width, palette = millimetres(options.width), options.palette
         figure = sheet.sheet(found, plan, moved, moments=moments, colours=palette, width=width)
-        return options.publish(figure, out, caption.of_sheet(found, plan, moments))
+        return options.publish(figure, out, caption.of_sheet(found, plan, moved, moments))
 
 
 def tree(file: Path, out: Path, options: Print, cell: int | None) -> list[Path]:

@@ -1,6 +1,6 @@
 """Motions of elites, simulated anew from their creature files."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from ...build import build
 from ...experiments.evolution import Evolution
@@ -11,14 +11,21 @@ from .sheet import Motion
 
 
 def motions(
-    data: bytes, cells: Sequence[int], tell: Callable[[int], None] = lambda done: None
+    data: bytes,
+    cells: Sequence[int],
+    trusted: Mapping[str, bool],
+    tell: Callable[[int], None] = lambda done: None,
 ) -> list[Motion]:
-    """Simulate the elites in some cells; `tell` is called with the number done."""
+    """Simulate the elites in some cells; `tell` is called with the number done.
+
+    `trusted` holds the verdicts of audits by creature.
+    """
     experiment, found = build(read(data).spec), []
     assert isinstance(experiment, Evolution)
     state = experiment.restore(data, other_device=True)
     for cell in cells:
         replay = read_replay(record(experiment.creature(state, int(cell))))
-        found.append(Motion(replay.positions, replay.edges))
+        verdict = trusted.get(replay.header["creature"])
+        found.append(Motion(replay.positions, replay.edges, verdict))
         tell(len(found))
     return found

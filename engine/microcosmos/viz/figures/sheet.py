@@ -10,6 +10,7 @@ from .axes import Axis, chosen, fitness_label
 from .maps import fittest
 from .reading import Archive
 from .style import GREY, INK, PALE, blank, colour_bar, shades
+from .verdicts import WORDS
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,8 @@ class Motion:
     """(frame, node, 2), unwrapped, in cells."""
     edges: np.ndarray
     """(edge, 2) node numbers."""
+    trusted: bool | None = None
+    """The verdict of the creature's audit, if it is known."""
 
 
 def layout(
@@ -124,6 +127,10 @@ def sheet(
         corner = np.array([region.column, region.row])
         _body(panel, motion, corner + 0.5, scale, moments, colouring.to_rgba(fitness[number]))
         _named(panel, corner, names[number], f"{fitness[number]:.{digits}f}")
+        if motion.trusted is not None:
+            right, top = corner + 0.96
+            look = {"fontsize": 4.5, "ha": "right", "va": "top", "color": GREY}
+            panel.text(right, top, WORDS[motion.trusted], **look)
     _dress(panel, plan)
     _bar(panel, plan, scale, side)
     colour_bar(panel, colouring, fitness_label(found), pad=0.01, aspect=32)

@@ -1,5 +1,6 @@
 """Figures are drawn of a real run's file, by the library and by the command line."""
 
+import json
 import re
 import subprocess
 import sys
@@ -10,7 +11,7 @@ import pytest
 from small_spec import SMALL_SCENE
 
 from microcosmos import spec
-from microcosmos.build import local
+from microcosmos.build import build, local
 from microcosmos.experiments import table_file
 from microcosmos.viz.figures import drawing, motions, reading
 
@@ -39,7 +40,7 @@ def figure(invoke):
 def test_elites_of_a_file_are_simulated_as_they_were_measured(archive):
     found = reading.read(archive.read_bytes())
     cell = int(found.cells[found.best])
-    (motion,) = motions.motions(archive.read_bytes(), [cell])
+    (motion,) = motions.motions(archive.read_bytes(), [cell], {})
     ends = motion.positions[[0, -1]].mean(1)
     np.testing.assert_allclose(np.hypot(*(ends[1] - ends[0])), found.fitness.max(), rtol=1e-3)
 
@@ -52,6 +53,23 @@ def test_a_sheet_is_drawn_and_reports_progress(archive, tmp_path):
     text = (tmp_path / "sheet.caption.txt").read_text()
     assert f"each of {len(progress)} regions" in text
     assert "at 3 moments of its 60 steps" in text
+
+
+def test_a_sheet_states_the_verdicts_of_given_audits(archive, tmp_path, figure):
+    found = reading.read(archive.read_bytes())
+    experiment = build(found.spec)
+    state = experiment.restore(archive.read_bytes(), other_device=True)
+    name = experiment.creature(state, int(found.cells[found.best]))["sha256"]
+    report, out = tmp_path / "audit.json", tmp_path / "sheet.svg"
+    report.write_text(json.dumps({"creature": name, "verdict": {"trusted": False}}))
+    sized = ("--columns", "1", "--rows", "1")
+    figure("sheet", archive, out, *sized, "--audit", report)
+    assert "not trusted" in out.read_text()
+    assert "the physics audit" in out.with_suffix(".caption.txt").read_text()
+    figure("sheet", archive, out, *sized)
+    assert "trusted" not in out.read_text()
+    assert "audit" not in out.with_suffix(".caption.txt").read_text()
+    assert "--audit" in figure("sheet", archive, out, "--audit", archive, code=2)
 
 
 def test_each_command_of_the_help_writes_its_figure_and_its_caption(archive, tmp_path, figure):
