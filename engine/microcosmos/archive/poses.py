@@ -59,7 +59,7 @@ class PoseStream:
     @property
     def cells(self) -> np.ndarray:
         """Positions in cells: float32 (frame, node, 2)."""
-        return np.float32(self.origin) + np.float32(self.scale) * self.positions
+        return np.array(self.origin, np.float32) + np.float32(self.scale) * self.positions
 
     @property
     def times(self) -> np.ndarray:
@@ -123,18 +123,23 @@ def decode(data: bytes) -> PoseStream:
     return PoseStream(
         positions=found.reshape(frames, nodes, 2),
         path=path,
-        origin=tuple(header["origin"]),
+        origin=(header["origin"][0], header["origin"][1]),
         edges=np.array(header["edges"], np.int32).reshape(-1, 2),
-        size=tuple(header["size"]),
+        size=(header["size"][0], header["size"][1]),
         creature=header["creature"],
-        **{name: header[name] for name in _NUMBERS},
+        start=header["start"],
+        stop=header["stop"],
+        strokes=header["strokes"],
+        steps=header["steps"],
+        scale=header["scale"],
+        length=header["length"],
     )
 
 
 def quantised(positions: np.ndarray) -> tuple[np.ndarray, tuple[float, float], float]:
     """Return positions (frame, node, 2) as `PoseStream.positions`, its origin and its scale."""
     low, high = positions.min((0, 1)), positions.max((0, 1))
-    origin = np.float32((low + high) / 2)
+    origin = ((low + high) / 2).astype(np.float32)
     scale = float(max(np.max(high - low) / 2, 1e-6)) / LEVELS
     units = np.clip(np.rint((positions - origin) / scale), -LEVELS, LEVELS)
     return units.astype(np.int16), (float(origin[0]), float(origin[1])), scale

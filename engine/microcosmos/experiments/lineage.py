@@ -202,8 +202,8 @@ def pose_stream(plan: Plan, poses: search.Poses, creature: str) -> PoseStream:
     spec, present, last = json.loads(plan.spec), poses.present, poses.window
     edges = plan.edges[np.all(present[plan.edges], 1)]
     return PoseStream(
-        positions=poses.positions[:, present],
-        path=poses.path,
+        positions=np.asarray(poses.positions)[:, present],
+        path=np.asarray(poses.path),
         origin=(float(poses.origin[0]), float(poses.origin[1])),
         scale=float(poses.scale),
         edges=(np.cumsum(present) - 1)[edges].astype(np.int32),

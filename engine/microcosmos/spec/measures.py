@@ -34,7 +34,7 @@ MEASURES: dict[str, Measure] = {
     "reynolds": Measure("Reynolds number", "", 1e-2, 1e2, "log10"),
     "mean_speed": Measure("Mean speed", "cells/step", 1e-5, 1e-1, "log10"),
     "turning": Measure("Turning", "rad", 1e-3, 1e1, "log10"),
-    "curvature_mean": Measure("Mean curvature", "1/cells", 0.0, 0.25),
+    "curvature_mean": Measure("Mean curvature", "1/cells", 0.0, 0.3),
     "curvature_spread": Measure("Spread of curvature", "1/cells", 0.0, 0.5),
     "symmetry": Measure("Symmetry", "", -1.0, 1.0),
     "power": Measure("Power", "mass · cells²/step³", 1e-7, 1.0, "log10"),

@@ -6,10 +6,12 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from .. import coupling, fields
+from ..groups import Groups
 from .model import State, World
 
 Vectors = Float[Array, "node 2"]
 Scalars = Float[Array, "node"]
+Scalar = Float[Array, ""]
 
 
 def sense(world: World, state: State) -> Float[Array, "node"]:
@@ -57,23 +59,24 @@ def repel(world: World, positions: Vectors) -> tuple[Vectors, Vectors]:
     if world.groups.count == 1:
         return within, jnp.zeros_like(positions)
     moved = coupling.force_free(push, here, positions, world.groups)
-    turned = _turned(world, rigid - moved, moved, here)
+    turned = _turned(rigid - moved, moved, here, world.groups, world.steric.limit)
     return within, fields.capped(moved, world.steric.limit) + turned
 
 
-def _turned(world: World, turned: Vectors, moved: Vectors, here: Scalars) -> Vectors:
+def _turned(
+    turned: Vectors, moved: Vectors, here: Scalars, groups: Groups, limit: Scalar
+) -> Vectors:
     """Limit the rotation of each body by contact, like its translation.
 
     Pushes between the nodes of a body cancel, but their torques do only up to the lattice:
     pairs across it push each other slightly off their line. So the torque is at most that of
     the net push, which is contact alone, at the body's farthest node.
     """
-    groups = world.groups
     square = jnp.sum(turned * turned, 1)
     mean = groups.total(here * square) / groups.total(here)
     tip = jnp.sqrt(groups.largest(here * square) + 1e-24)
     push = jnp.sqrt(groups.largest(here * jnp.sum(moved * moved, 1)) + 1e-24)
-    most = jnp.minimum(world.steric.limit / tip, push * tip / (mean + 1e-24))
+    most = jnp.minimum(limit / tip, push * tip / (mean + 1e-24))
     return turned * groups.per_node(jnp.minimum(1.0, most))[:, None]
 
 
