@@ -64,7 +64,9 @@ def known(
     kept = creature.document(identity(3), None, None)
     with services.sessions.write.begin() as session:
         creatures.import_files(session, kept)
-    renderings.save(services, kept["sha256"], REPLAY, replay(np.array([[[0.0, 0.0], [1.0, 0.0]]])))
+    renderings.save(
+        services, kept["sha256"], REPLAY, replay(np.array([[[0.0, 0.0], [1.0, 0.0]]]))
+    )
     token = tokens.create(services, "somebody", "read").token
     return {
         "run_id": [str(run_id), str(sweep_id)],
