@@ -15,5 +15,5 @@ def test_a_mutant_changes_one_place_and_names_tests(mutant: Mutant):
 def test_there_are_mutants_of_every_kind():
     kinds = {mutant.name.partition("-")[0] for mutant in mutants()}
     assert {"physics", "gradient", "insertion", "claim", "resume", "auth"} <= kinds
-    assert {"sandbox", "page"} <= kinds
+    assert {"sandbox", "page", "feasible"} <= kinds
     assert len(mutants()) >= 25
