@@ -20,7 +20,7 @@ class Actuation(Part):
     """Period of the sine and cosine."""
     ramp: float = field(1.0, ge=0.0, le=100.0, unit="periods")
     """Time in which the actuation grows from zero to its full amplitude."""
-    angle_scale: float = field(0.4, gt=0.0, le=1.5, unit="rad")
+    angle_scale: float = field(0.5, gt=0.0, le=1.5, unit="rad")
     """Amplitude of rest angles: the controller's output (−1 to 1) times this is added."""
     length_scale: float = field(0.1, ge=0.0, le=0.8)
     """Amplitude of rest lengths: factor 1 + this times the controller's output (−1 to 1)."""
