@@ -12,6 +12,7 @@ import numpy as np
 
 from ..optional import require
 from .file import Tree, dump, load
+from .poses import PoseStream, streams
 
 Columns = dict[str, Any]
 
@@ -107,6 +108,14 @@ def ends(axis: dict[str, Any]) -> tuple[float, float]:
 
 Source = bytes | str | os.PathLike
 """An archive file, or its path."""
+
+
+def pose_streams(archive: Source) -> list[PoseStream]:
+    """Return the pose streams of the elites, in the order of their cells.
+
+    Raises `ValueError` for a file of a run without an archive.
+    """
+    return streams(*load(_bytes(archive)))
 
 
 def to_pandas(archive: Source) -> Any:

@@ -8,6 +8,7 @@ from typing import Any
 import microcosmos
 
 from ..archive.atomic import write_whole
+from ..archive.poses import PoseStream, decode
 from .connection import Connection
 from .replay import Picture, Replay
 from .sharing import Share, publish
@@ -16,6 +17,8 @@ ENDINGS = {
     ".json": "",
     ".h5": "/creature.h5",
     ".replay": "/replay",
+    ".poses": "/poses",
+    ".csv": "/poses.csv",
     ".png": "/strip.png",
     ".gif": "/film.gif",
     ".mp4": "/film.mp4",
@@ -68,6 +71,10 @@ class Creature:
     def replay(self, timeout: float = 300.0) -> Replay:
         """Return its recorded motion, which plays in a notebook; wait for the renderer."""
         return Replay(self._connection.rendering(f"{self._path}/replay", timeout))
+
+    def poses(self, timeout: float = 300.0) -> PoseStream:
+        """Return how its body moved over its last two strokes, without the fluid."""
+        return decode(self._connection.rendering(f"{self._path}/poses", timeout))
 
     def preview(self, timeout: float = 300.0) -> Picture:
         """Return six moments of its motion side by side."""

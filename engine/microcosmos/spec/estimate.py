@@ -22,6 +22,10 @@ from .world import World
 PLANES = 9
 WINDOW = 16
 """Cells in the coupling window of a node."""
+POSE = 4 * 64
+"""Bytes of a node in a pose stream."""
+PATH = 8 * 65
+"""Bytes of the path in a pose stream."""
 GRADIENT = 7
 """Time of a gradient relative to the simulation alone."""
 CHUNK = 2**13
@@ -52,7 +56,9 @@ def _(spec: Evolution) -> Estimate:
     search = spec.search
     rows = 3 * spec.genome.max_nodes + 5 * spec.genome.max_connections
     genome = FLOAT * (gene_count(spec.control, shape(spec.body)) or rows)
+    count = len(shape(spec.body).positions)
     archive = 4 * (spec.archive.cells + 2 * search.batch) * (genome + 160)
+    archive += 2 * spec.archive.cells * (POSE * count + PATH)
     vary = 4 * search.batch * spec.genome.max_nodes**2 * FLOAT
     gradients = sum(spec.gradients) * search.generations
     evaluations = search.batch * search.generations + gradients

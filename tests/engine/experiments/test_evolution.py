@@ -9,9 +9,10 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import naming
-from microcosmos.archive import creature, file, variety
-from microcosmos.build import build
+import microcosmos
+from microcosmos import naming, search
+from microcosmos.archive import creature, file, poses, variety
+from microcosmos.build import build, build_task
 from microcosmos.experiments import evolution
 from microcosmos.search import MEASURES, STATUSES, tensorneat
 from microcosmos.spec import parse
@@ -53,6 +54,27 @@ def test_reported_elites_are_what_the_archive_holds(experiment, course):
         document = experiment.creature(states[-1], cell)
         assert naming.canonical(document["identity"]) == elite.identity
         assert creature.parse(document)["provenance"]["parents"] == list(elite.parents)
+
+
+def test_pose_streams_are_what_a_simulation_of_the_elites_gives(experiment, course):
+    """Another program rounds differently, and these strokes are short."""
+    state = course[0][-1]
+    found = microcosmos.pose_streams(experiment.save(state))
+    last = course.reports[-1].elites[-1]
+    assert poses.decode(last.poses).creature == last.creature
+    cells = np.flatnonzero(state.elites.occupied)
+    assert [one.creature for one in found] == [bytes(x).hex() for x in state.creatures[cells]]
+    task = build_task(course.spec.scene, room=experiment.plan.encoding.room)
+    for cell, one in list(zip(cells, found, strict=True))[::5]:
+        genotype = jax.tree.map(lambda x, cell=cell: x[cell], state.elites.genotypes)
+        driven = search.drive(task, genotype)
+        _, seen = search.simulate(driven, lambda state, measures: state.positions)
+        shown = np.asarray(seen)[one.times - 1]
+        np.testing.assert_allclose(one.cells, shown, atol=1e-3)
+        assert one.stop == one.steps == len(seen)
+        centre = np.asarray(seen).mean(1)
+        np.testing.assert_allclose(one.path[-1], centre[-1], atol=1e-3)
+        np.testing.assert_allclose(one.path[0], task.start.positions.mean(0), atol=1e-5)
 
 
 @pytest.mark.parametrize(
