@@ -34,7 +34,10 @@ def test_a_run_is_driven_by_commands_and_read_by_the_client(
         assert (run.name, run.status, run.generation) == ("mine", "finished", 3)
         pulled = output_of(("-m", "microcosmos.cli", "pull", id), tmp_path, environment)[0]
         compare_with_the_file(run, tmp_path / pulled)
-        play(run.archive().best().replay(), browser, tmp_path)
+        best = run.archive().best()
+        play(best.replay(), browser, tmp_path)
+        assert best.poses().creature == best.sha
+        assert best.save(tmp_path / "best.csv").read_text().startswith("step,node,x,y\n0,")
 
 
 def test_the_example_in_the_client_guide_works(shared, product_settings, tmp_path):
