@@ -37,7 +37,7 @@ def test_a_run_is_driven_by_commands_and_read_by_the_client(
         best = run.archive().best()
         play(best.replay(), browser, tmp_path)
         assert best.poses().creature == best.sha
-        assert best.save(tmp_path / "best.csv").read_text().startswith("step,node,x,y\n0,")
+        assert best.save(tmp_path / "best.csv").read_text().startswith("step,node,x,y\n")
 
 
 def test_the_example_in_the_client_guide_works(shared, product_settings, tmp_path):
