@@ -51,7 +51,7 @@ describe("a creature", () => {
     expect(spec.world).toMatchObject({ width: 96, height: 64, viscosity: 0.2, fluid: true });
     expect(spec.world).not.toHaveProperty("coupling");
     expect(spec.coupling).toMatchObject({ theta_feedback: 0, force_factor: 2 });
-    expect(spec.control).toMatchObject({ encoding: "cppn", period: 50, angle_scale: 0.4 });
+    expect(spec.control).toMatchObject({ encoding: "cppn", period: 50, angle_scale: 0.5 });
     expect(spec.genome).toMatchObject({ max_nodes: 30, max_connections: 80, weight_rate: 0.6 });
     expect(spec.task).toMatchObject({ steps: 70 });
     expect(schemaErrors(formOf(experiment("quality-diversity").schema), spec)).toEqual([]);
