@@ -102,7 +102,7 @@ def test_a_plugin_task_evolves_and_its_file_names_the_version(tmp_path):
         assert part["plugin"]["source"] == source
     values = {name: rows[:, names.index(name)] for name in names}
     straight = values["displacement"] * values["straightness"]
-    np.testing.assert_allclose(fitness, straight, rtol=1e-5)
+    np.testing.assert_allclose(fitness, straight, rtol=1e-5, atol=1e-12)
     np.testing.assert_array_equal(values["plugin_task.straight"], fitness)
     np.testing.assert_array_equal(values["plugin_task.sway"], sway)
     creature = json.loads(path.with_suffix(".best.json").read_bytes())

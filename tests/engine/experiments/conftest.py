@@ -142,12 +142,15 @@ def lasting():
 
 @pytest.fixture(scope="session")
 def elite_files():
-    """A function that gives creature files of elites at the end of a run, at most `most`."""
+    """A function that gives creature files of elites at the end of a run, in the order of their
+    cells: all, or the `most` fittest."""
 
     def files(course, most=None):
         state = course.states[-1]
-        cells = np.flatnonzero(state.elites.occupied).tolist()[:most]
-        return [creature.parse(course.experiment.creature(state, cell)) for cell in cells]
+        cells = np.flatnonzero(state.elites.occupied)
+        fitness = np.asarray(state.elites.fitness)[cells]
+        chosen = np.sort(cells[np.argsort(-fitness)[:most]]).tolist()
+        return [creature.parse(course.experiment.creature(state, cell)) for cell in chosen]
 
     return files
 
