@@ -51,13 +51,19 @@ PAPER = QualityDiversity(
 )
 
 PRESETS = {
-    "demo": ("A small demonstration, under a minute on a laptop", DEMO),
+    "demo": (
+        "A small demonstration, two minutes on two cores; the fittest swim 0.6 lengths in "
+        "1,000 steps",
+        DEMO,
+    ),
     "standard": (
-        "24 nodes in 48 × 48 cells: 3,200 swimmers, five minutes on two cores",
+        "24 nodes in 48 × 48 cells: 3,200 swimmers, five minutes on two cores; the fittest swim "
+        "0.4 to 0.5 lengths in 1,000 steps",
         QualityDiversity(),
     ),
     "paper": (
-        "As in the paper: linear timer and efforts, two layers, repulsion; not force-free",
+        "As in the paper: linear timer and efforts, two layers, repulsion; not force-free, and "
+        "infeasible creatures are elites",
         PAPER,
     ),
 }
