@@ -46,11 +46,11 @@ FASTER = 1.3
 SPEED = 0.4
 """Least speed of the fittest of `standard`, in body lengths in 1,000 steps."""
 WAVES = {
-    "amplitude": (0.05, 0.1, 0.15, 0.2, 0.3, 0.4),
-    "number": (0.25, 0.5, 0.75, 1.0, 1.5, 2.0),
-    "period": (100.0, 200.0, 400.0),
+    "amplitude": (0.2, 0.4, 0.6, 0.7, 0.8, 0.9, 1.0),
+    "number": (0.25, 0.4, 0.5, 0.6, 0.7, 0.75, 0.85, 1.0, 1.25, 1.5, 2.0),
+    "period": (200.0, 400.0),
 }
-"""Amplitude in rad a joint, waves along the body, period in steps."""
+"""Amplitude as a share of the controller's largest, waves along the body, period in steps."""
 
 
 def swimming(product: Installation) -> bool:
@@ -190,7 +190,9 @@ def travelling(scene: Scene, task: search.Task, point: jax.Array) -> Drive:
     times, joints = jnp.arange(float(scene.task.steps)), jnp.arange(len(lengths) - 1)
     phase = times[:, None] / period - number * joints[None] / len(joints)
     lengths = jnp.broadcast_to(lengths, (len(times), len(lengths)))
-    rest = Rest(amplitude * jnp.sin(2 * jnp.pi * phase), lengths)
+    amplitude = amplitude * scene.control.angle_scale
+    rise = amplitude * jnp.minimum(1.0, times / period)[:, None]  # As controllers begin.
+    rest = Rest(rise * jnp.sin(2 * jnp.pi * phase), lengths)
     driven = carried_out(Drive(task.world, task.start, rest), task.actuators)
     # The task's strokes are of another period.
     return replace(driven, clock=driven.clock * task.period / period)
