@@ -9,14 +9,14 @@ TINY: dict[str, Any] = {
     "world": {"width": 24, "height": 24, "energy": {"packets": 3, "width": 2.0}},
     "body": {"nodes": 8},
     "control": {"period": 20},
-    "task": {"steps": 40},
+    "task": {"steps": 40, "fitness": "displacement"},
     "search": {"generations": 3, "batch": 8, "block": 8},
 }
 """A search in a world with energy; tests that only need some run share its program."""
 
 CENTROIDS = 40
 VORONOI = {
-    "descriptors": [{"name": "path_length"}, {"name": "bending_effort"}],
+    "descriptors": [{"name": "path_length", "high": 1.0}, {"name": "bending_effort"}],
     "centroids": CENTROIDS,
 }
 

@@ -110,4 +110,5 @@ def appearance(page: Page) -> tuple[bytes, list[str | None]]:
     names = [picture.get_attribute("aria-label") for picture in pictures]
     page.mouse.move(0, 0)
     page.evaluate("document.activeElement?.blur()")
-    return the_map(page).screenshot(), names
+    # The body in the inset swims.
+    return the_map(page).screenshot(mask=[page.locator("[data-inset]")]), names
