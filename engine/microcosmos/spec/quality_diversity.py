@@ -57,8 +57,8 @@ PRESETS = {
         DEMO,
     ),
     "standard": (
-        "24 nodes in 48 × 48 cells: 3,200 swimmers, five minutes on two cores; the fittest swim "
-        "0.4 to 0.5 lengths in 1,000 steps",
+        "24 nodes in 48 × 48 cells: 3,200 swimmers, five minutes on two cores; the fittest "
+        "swim 0.4 to 0.5 lengths in 1,000 steps",
         QualityDiversity(),
     ),
     "paper": (

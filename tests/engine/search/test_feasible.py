@@ -1,5 +1,6 @@
 """The verdict on an evaluation by its recorded measures."""
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -12,7 +13,7 @@ def verdict(status=0, **measures):
     row = np.zeros((1, len(MEASURES)), np.float32)
     for name, value in measures.items():
         row[0, MEASURES.index(name)] = value
-    given = Evaluation(np.zeros(1, np.float32), row, np.full(1, status, np.int32))
+    given = Evaluation(jnp.zeros(1), jnp.asarray(row), jnp.full(1, status, jnp.int32))
     return STATUSES[int(judged(given).status[0])]
 
 
