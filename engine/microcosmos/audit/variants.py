@@ -107,15 +107,8 @@ def with_limits(
 def turned(scene: spec.Scene, body: bodies.Body | None, angle: float) -> search.Task:
     """Return the scene with the body turned about its middle at the start, by rad."""
     task = _with(scene, body)
-    nothing = jnp.zeros((), task.start.positions.dtype)
-    change = search.reevaluation.Disturbance(
-        phase=nothing,
-        turn=nothing + angle,
-        shift=jnp.zeros(2, nothing.dtype),
-        viscosity=nothing + 1,
-        energy=jnp.zeros(2, jnp.int32),
-    )
-    return replace(task, start=search.reevaluation.moved(task.start, change))
+    turn = jnp.asarray(angle, task.start.positions.dtype)
+    return replace(task, start=search.turned(task.start, turn))
 
 
 def at_full_strength(scene: spec.Scene, body: bodies.Body | None = None) -> search.Task:

@@ -17,6 +17,7 @@ from .evaluation import (
     motion_of,
     shift_energy,
     simulate,
+    turned,
 )
 from .gradient_report import GradientReport, report_gradient
 from .gradients import Slopes, slopes
