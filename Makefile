@@ -75,7 +75,7 @@ test-long: install web
 # A worker keeps the tests of a file together: they share what the file has compiled.
 ENGINE = $(BIN)/pytest -q -p no:schemathesis -n auto --maxprocesses 4 --dist worksteal
 BITS = MICROCOSMOS_TEST_OPTIMISED=1 $(ENGINE) tests/engine
-SERVER = $(BIN)/pytest -q -n 3 --ignore=tests/engine --ignore=tests/examples
+SERVER = $(BIN)/pytest -q -n 5 --ignore=tests/engine --ignore=tests/examples
 TIMES := $(VENV)/times
 # A named part of the tests; its time is printed at the end. Status 5 means that no test matched.
 define part

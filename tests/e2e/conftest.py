@@ -22,6 +22,8 @@ from server.settings import Settings
 HERE = Path(__file__).parent
 WINDOW = {"width": 1280, "height": 900}
 ACTION_MS = 120_000
+LONGEST = ("test_walk.py", "test_resume.py")
+"""Others run beside these."""
 
 expect.set_options(timeout=30_000)
 
@@ -44,11 +46,14 @@ class Idle(NamedTuple):
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Run tests without workers first, while the shared runs are computed."""
+    """Run the longest tests first, then those without workers, while the shared runs are
+    computed."""
     items.sort(key=rank)
 
 
 def rank(item: pytest.Item) -> int:
+    if item.path.name in LONGEST:
+        return -1
     if HERE not in item.path.parents:
         return 0
     return 2 if needs(item, "shared") else 1 if needs(item, "idle") else 3

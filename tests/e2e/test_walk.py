@@ -29,16 +29,16 @@ def submit_a_short_run(page: Page, address: str) -> str:
     generations = page.get_by_label("Generations", exact=False)
     generations.fill("-1")
     expect(page.get_by_text("Needs at least 1.")).to_be_visible()
-    generations.fill("30")
-    expect(page.get_by_label("Estimate", exact=True)).to_contain_text("480")
+    generations.fill("12")
+    expect(page.get_by_label("Estimate", exact=True)).to_contain_text("192")
     return start_run(page)
 
 
 def watch_it_live(page: Page) -> None:
     page.evaluate("window.neverReloaded = true")
     expect(elites(page)).not_to_have_text("0 elites", timeout=SLOW)
-    expect(page.get_by_text(re.compile(r"^\d+ / 30$"))).not_to_have_text("0 / 30", timeout=SLOW)
-    expect(page.get_by_text("30 / 30")).to_be_visible(timeout=SLOW)
+    expect(page.get_by_text(re.compile(r"^\d+ / 12$"))).not_to_have_text("0 / 12", timeout=SLOW)
+    expect(page.get_by_text("12 / 12")).to_be_visible(timeout=SLOW)
     expect(page.get_by_role("img", name="QD score over generations")).to_be_visible()
     assert page.evaluate("window.neverReloaded")
 

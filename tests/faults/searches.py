@@ -53,9 +53,6 @@ SLOPE_METHODS = {
 PAIRS = (("NEAT that learns", "NEAT"), ("CMA-MEGA, direct", "iso+line, direct"))
 """With derivatives, and without."""
 
-SENSOR = 3
-"""The input of the CPPN for energy, after position, sine and cosine."""
-
 
 def carry_out(product: Installation, document: dict, title: str) -> dict:
     """Carry out a run, print a line about it and return it from the API.
@@ -288,9 +285,10 @@ def forage(product: Installation) -> bool:
 def blinded(file: dict) -> dict:
     """The same creature with no weight on what it senses."""
     identity = file["identity"]
-    connections = identity["genome"]["connections"]
+    genome = identity["genome"]
+    connections, sensor = genome["connections"], genome["inputs"].index("energy")
     weights = decode(connections["weight"]).copy()
-    weights[[source == SENSOR for source in connections["source"]]] = 0.0
-    genome = {**identity["genome"], "connections": {**connections, "weight": encode(weights)}}
+    weights[[source == sensor for source in connections["source"]]] = 0.0
+    genome = {**genome, "connections": {**connections, "weight": encode(weights)}}
     changed = {**identity, "genome": genome}
     return {**file, "identity": changed, "sha256": name(changed)}

@@ -94,18 +94,18 @@ def identity(number: int = 1) -> dict[str, Any]:
     demo = DEMO.model_dump(mode="json")
     genome = {
         "encoding": "cppn",
-        "inputs": ["position", "sine", "cosine"],
+        "inputs": ["position", "sine", "cosine", "wave_sine", "wave_cosine"],
         "outputs": ["rest_angle", "rest_length"],
         "control": demo["control"],
         "nodes": {
-            "id": [0, 1, 2, 3, 4],
-            "activation": ["identity"] * 5,
-            "bias": encode(np.zeros(5)),
+            "id": list(range(7)),
+            "activation": ["identity"] * 7,
+            "bias": encode(np.zeros(7)),
         },
         "connections": {
             "innovation": [0],
             "source": [1],
-            "target": [3],
+            "target": [5],
             "enabled": [True],
             "weight": encode(np.array([number])),
         },

@@ -21,6 +21,8 @@ COMPARED = np.ix_([0, 5, 31, 95], [0, 17, 30, 47])
 """Columns and rows of the compared values."""
 PERIOD, STEPS = 20, 60
 NAMES = ("position", "sine", "cosine")
+WITH_WAVE = (*NAMES, "wave_sine", "wave_cosine")
+WAVES = 1.5
 OUTPUTS = ("rest_angle", "rest_length")
 RATES = neat.Rates(0.5, 0.5, 0.1, 0.3, toggle=0.2, add_node=0.6, add_connection=0.8)
 PLACES = np.linspace(-1, 1, ROWS)
@@ -34,10 +36,10 @@ def cases() -> list[dict[str, Any]]:
 
 def _grown(count: int) -> list[genomes.CPPN]:
     def grow(key):
-        network = neat.minimal(key, len(NAMES), len(OUTPUTS), 16, 40)
+        network = neat.minimal(key, len(WITH_WAVE), len(OUTPUTS), 16, 40)
         for step in range(10):
             key_now = jax.random.fold_in(key, step)
-            network, _ = neat.mutate(network, RATES, len(NAMES), key=key_now)
+            network, _ = neat.mutate(network, RATES, len(WITH_WAVE), key=key_now)
         return network
 
     whole = jax.vmap(grow)(jax.random.split(jax.random.key(1), count))
@@ -45,10 +47,12 @@ def _grown(count: int) -> list[genomes.CPPN]:
 
 
 def _grid() -> jnp.ndarray:
-    """Inputs (input, point) of one period, times first."""
-    phase = 2 * np.pi * np.arange(COLUMNS) / COLUMNS
-    clock = np.repeat(np.stack([np.sin(phase), np.cos(phase)]), ROWS, 1)
-    return jnp.asarray(np.concatenate([np.tile(PLACES, COLUMNS)[None], clock]), jnp.float32)
+    """Inputs (input, point) of one period, times first; the last two travel."""
+    phase = np.repeat(2 * np.pi * np.arange(COLUMNS) / COLUMNS, ROWS)
+    places = np.tile(PLACES, COLUMNS)
+    lagging = phase - 2 * np.pi * WAVES * (places + 1) / 2
+    rows = [places, np.sin(phase), np.cos(phase), np.sin(lagging), np.cos(lagging)]
+    return jnp.asarray(np.stack(rows), jnp.float32)
 
 
 def _forward(network: genomes.CPPN) -> dict[str, Any]:
@@ -59,7 +63,8 @@ def _forward(network: genomes.CPPN) -> dict[str, Any]:
         innovation=jnp.arange(network.innovation.shape[0]),
     )
     outputs = genomes.evaluate(network, _grid(), len(OUTPUTS))
-    return _case("cppn", genomes.to_genes(network), {}, np.asarray(outputs))
+    control = {"wave_number": WAVES}
+    return _case("cppn", genomes.to_genes(network), control, np.asarray(outputs), WITH_WAVE)
 
 
 def _recurrent() -> dict[str, Any]:
@@ -95,16 +100,20 @@ def _recurrent() -> dict[str, Any]:
 def _layered() -> dict[str, Any]:
     layers = genomes.Layers((3, 5, 4, 2), "sin", 1.7)
     genes = np.random.default_rng(0).uniform(-1, 1, layers.genes).astype(np.float32)
-    outputs = genomes.forward(layers, jnp.asarray(genes), _grid())
+    outputs = genomes.forward(layers, jnp.asarray(genes), _grid()[: len(NAMES)])
     control = {"hidden": [5, 4], "activation": "sin", "scale": 1.7}
     return _case("weights", {"values": encode(genes)}, control, np.asarray(outputs))
 
 
 def _case(
-    encoding: str, genes: dict[str, Any], control: dict[str, Any], outputs: np.ndarray
+    encoding: str,
+    genes: dict[str, Any],
+    control: dict[str, Any],
+    outputs: np.ndarray,
+    inputs: tuple[str, ...] = NAMES,
 ) -> dict[str, Any]:
     clock = {"timer": "sine-cosine", "period": PERIOD, "position": "signed"}
-    common = {"encoding": encoding, "inputs": NAMES, "outputs": OUTPUTS}
+    common = {"encoding": encoding, "inputs": inputs, "outputs": OUTPUTS}
     values = outputs.reshape(len(OUTPUTS), COLUMNS, ROWS)
     return {
         "genome": {**common, "control": {**clock, **control}, **genes},

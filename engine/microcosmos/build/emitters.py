@@ -29,9 +29,11 @@ def _build(
         case specs.PopulationEmitter():
             return _population(emitter, slots, chosen, encoding)
         case specs.LineEmitter():
-            return emitters.IsoLine(slots, newcomer, emitter.iso, emitter.line)
+            return emitters.IsoLine(
+                slots, newcomer, emitter.iso, emitter.line, select=emitter.select
+            )
         case specs.GaussianEmitter():
-            return emitters.IsoLine(slots, newcomer, emitter.step)
+            return emitters.IsoLine(slots, newcomer, emitter.step, select=emitter.select)
         case specs.CmaMaeEmitter():
             return emitters.CmaMae(
                 slots=slots,
@@ -64,7 +66,9 @@ def _neat(
     encoding: Encoding,
 ) -> emitters.Neat:
     rates, inputs = build_rates(chosen), len(chosen.control.inputs)
-    return emitters.Neat(slots, encoding.newcomer, rates, inputs, emitter.crossover)
+    return emitters.Neat(
+        slots, encoding.newcomer, rates, inputs, emitter.crossover, emitter.select
+    )
 
 
 def _population(

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .. import bodies, genomes, spec
+from ..spec.control import NetworkInputs
 from .plugins import build_act
 
 TIMERS = {"sine-cosine": genomes.sine_cosine, "linear": genomes.linear}
@@ -26,6 +27,7 @@ def build_controls(control: spec.Controller, body: bodies.Body, steps: int) -> g
     """Build a controller's inputs at all nodes and times, and the meaning of its outputs."""
     rise = np.maximum(control.ramp * control.period, 1)
     unit = getattr(control, "position", "signed") == "unit"
+    waves = control.waves if isinstance(control, NetworkInputs) else None
     return genomes.Controls(
         position=body.arc if unit else 2 * body.arc - 1,
         timer=TIMERS[control.timer](steps, control.period),
@@ -37,6 +39,7 @@ def build_controls(control: spec.Controller, body: bodies.Body, steps: int) -> g
         angle_scale=control.angle_scale,
         length_scale=control.length_scale,
         senses=getattr(control, "sense_energy", False),
+        wave=None if waves is None else 2 * np.pi * waves * body.arc,
     )
 
 

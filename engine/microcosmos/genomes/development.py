@@ -38,11 +38,14 @@ class Controls:
     angle_scale: float
     length_scale: float
     senses: bool = False
+    wave: np.ndarray | None = None
+    """Phase lag in rad (node,) of a travelling sine and cosine; None: there are none."""
 
     @property
     def inputs(self) -> int:
         """Number of inputs of a network."""
-        return 1 + len(self.timer) + self.senses
+        clocks = 1 if self.wave is None else 2
+        return 1 + clocks * len(self.timer) + self.senses
 
 
 def sine_cosine(steps: int, period: float) -> np.ndarray:
@@ -69,9 +72,7 @@ def function_of(network: CPPN) -> Function:
 def rest_shapes(read: Function, controls: Controls, dtype: Any) -> Rest:
     """Return the rest shapes at all times, in one batch."""
     steps, nodes = len(controls.ramp), len(controls.position)
-    position = np.tile(controls.position, steps)[None]
-    clock = jnp.repeat(jnp.asarray(controls.timer, dtype), nodes, 1)
-    outputs = read(jnp.concatenate([jnp.asarray(position, dtype), clock]))
+    outputs = read(network_inputs(controls, jnp.asarray(controls.timer, dtype), None))
     return shapes_of_outputs(outputs.reshape(OUTPUTS, steps, nodes), controls.ramp, controls)
 
 
@@ -83,18 +84,30 @@ def rest_shape(
     sensed: Float[Array, "node"] | None,
 ) -> Rest:
     """Return the rest shape at one time."""
-    outputs = read(network_inputs(controls, timer, sensed))
+    outputs = read(network_inputs(controls, timer[:, None], sensed))
     return shape_of_outputs(outputs, ramp, controls)
 
 
 def network_inputs(
-    controls: Controls, timer: Float[Array, "input"], sensed: Float[Array, "node"] | None
+    controls: Controls, timer: Float[Array, "input time"], sensed: Float[Array, "node"] | None
 ) -> Points:
-    """Return the inputs of a network at all nodes at one time."""
-    nodes = len(controls.position)
-    clock = jnp.broadcast_to(timer[:, None], (len(timer), nodes))
-    position = jnp.asarray(controls.position, timer.dtype)[None]
-    return jnp.concatenate([position, clock, *([] if sensed is None else [sensed[None]])])
+    """Return the inputs of a network at all nodes and times, the node varying fastest.
+
+    `sensed` is of one time.
+    """
+    times, nodes = timer.shape[1], len(controls.position)
+    position = jnp.tile(jnp.asarray(controls.position, timer.dtype), times)[None]
+    rows = [position, jnp.repeat(timer, nodes, 1)]
+    if controls.wave is not None:
+        rows.append(travelling(timer, controls.wave).reshape(2, times * nodes))
+    return jnp.concatenate([*rows, *([] if sensed is None else [sensed[None]])])
+
+
+def travelling(timer: Float[Array, "2 time"], lag: np.ndarray) -> Float[Array, "2 time node"]:
+    """Return sine and cosine of the phase less the lag of each node, in rad."""
+    s, c = (jnp.asarray(f(lag), timer.dtype)[None] for f in (np.sin, np.cos))
+    sine, cosine = timer[:, :, None]
+    return jnp.stack([sine * c - cosine * s, cosine * c + sine * s])
 
 
 def shape_of_outputs(outputs: Points, ramp: Float[Array, ""], controls: Controls) -> Rest:

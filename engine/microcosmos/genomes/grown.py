@@ -53,7 +53,8 @@ class Grown:
         """Return the body that a network grows."""
         dtype = start.positions.dtype
         zero = jnp.zeros(len(self.controls.position), dtype) if self.controls.senses else None
-        inputs = network_inputs(self.controls, jnp.zeros(len(self.controls.timer), dtype), zero)
+        timer = jnp.zeros((len(self.controls.timer), 1), dtype)
+        inputs = network_inputs(self.controls, timer, zero)
         outputs = evaluate(genotype, inputs, self.outputs)[OUTPUTS:]
         traits = {
             name: within(jnp.tanh(self._trait(name, values)), bounds)

@@ -42,7 +42,7 @@ def drive_recurrent(network: CPPN, controls: Controls, world: World, start: Stat
     if not controls.senses:
 
         def step(values, timer):
-            values = advance(network, values, network_inputs(controls, timer, None))
+            values = advance(network, values, network_inputs(controls, timer[:, None], None))
             return values, values[rows]
 
         outputs = jnp.moveaxis(jax.lax.scan(step, nothing, timer)[1], 0, 1)
@@ -51,9 +51,8 @@ def drive_recurrent(network: CPPN, controls: Controls, world: World, start: Stat
     def remember(
         world: World, state: State, given: tuple[Array, Array]
     ) -> Float[Array, "row node"]:
-        return advance(
-            network, state.memory, network_inputs(controls, given[0], sense(world, state))
-        )
+        inputs = network_inputs(controls, given[0][:, None], sense(world, state))
+        return advance(network, state.memory, inputs)
 
     def control(world: World, state: State, given: tuple[Array, Array]):
         return shape_of_outputs(state.memory[rows], given[1], controls)

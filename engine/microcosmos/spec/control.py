@@ -5,7 +5,7 @@ from typing import Literal, Self
 from pydantic import model_validator
 
 from .base import Part, field, sourced
-from .sources import CPPN, NEAT, OURS, PAPER
+from .sources import CPPN, NEAT, OURS, PAPER, PHASE_LAG
 
 INPUTS = {"sine-cosine": ("position", "sine", "cosine"), "linear": ("position", "time")}
 OUTPUTS = ("rest_angle", "rest_length")
@@ -43,12 +43,22 @@ class NetworkInputs(Actuation):
 
     position: Literal["signed", "unit"] = field("signed", source=f"unit: {PAPER}")
     """Position along the filament: −1 to 1 (signed) or 0 to 1 (unit)."""
+    wave_number: float | None = field(1.0, ge=-10.0, le=10.0, unit="waves", source=PHASE_LAG)
+    """Waves along the body of a second sine and cosine, which travel from its first node to its
+    last; empty, or with a linear timer: none."""
     sense_energy: bool = field(False, source=PAPER)
     """Add the energy at the node as an input (closed loop)."""
 
     @property
+    def waves(self) -> float | None:
+        """Return the wave number of the travelling inputs, if there are any."""
+        return None if self.timer == "linear" else self.wave_number
+
+    @property
     def inputs(self) -> tuple[str, ...]:
-        return INPUTS[self.timer] + (("energy",) if self.sense_energy else ())
+        travelling = () if self.waves is None else ("wave_sine", "wave_cosine")
+        sensed = ("energy",) if self.sense_energy else ()
+        return INPUTS[self.timer] + travelling + sensed
 
 
 class Control(NetworkInputs):

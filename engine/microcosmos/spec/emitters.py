@@ -6,7 +6,7 @@ from pydantic import Field
 
 from .. import plugins
 from .base import NETWORK_OPERATORS, VECTOR_OPERATORS, Part, field, sourced
-from .sources import CMA_MAE, CMA_ME, CMA_MEGA, LINE, NEAT, OMG_MEGA
+from .sources import CMA_MAE, CMA_ME, CMA_MEGA, LINE, NEAT, OMG_MEGA, TOURNAMENT
 
 Rate = Annotated[float, Field(ge=0.0, le=1.0)]
 
@@ -18,13 +18,21 @@ class WeightedEmitter(Part):
     """Weight of this emitter when the batch is divided among all emitters."""
 
 
+class SelectingEmitter(WeightedEmitter):
+    """An emitter that draws its parents from the archive."""
+
+    select: Literal["uniform", "mixed", "tournament"] = field("mixed", source=TOURNAMENT)
+    """Selection of parents: every elite with equal probability (uniform), the fittest of three
+    such draws (tournament), or half of the parents each way (mixed)."""
+
+
 class RandomEmitter(WeightedEmitter):
     """New random genomes: a baseline that learns nothing."""
 
     operator: Literal["random"] = "random"
 
 
-class NeatEmitter(WeightedEmitter):
+class NeatEmitter(SelectingEmitter):
     """Elites varied by NEAT's mutations, some crossed with another elite first."""
 
     model_config = sourced(f"{NEAT}, sections 3.1 and 3.2")
@@ -34,7 +42,7 @@ class NeatEmitter(WeightedEmitter):
     """Probability of crossover with a second parent."""
 
 
-class LineEmitter(WeightedEmitter):
+class LineEmitter(SelectingEmitter):
     """An elite plus an isotropic step and a step along the line to another elite."""
 
     model_config = sourced(LINE)
@@ -46,7 +54,7 @@ class LineEmitter(WeightedEmitter):
     """Standard deviation of the step along the line, relative to the line's length."""
 
 
-class GaussianEmitter(WeightedEmitter):
+class GaussianEmitter(SelectingEmitter):
     """An elite plus an isotropic step."""
 
     operator: Literal["gaussian"] = "gaussian"
@@ -106,7 +114,7 @@ class PopulationEmitter(WeightedEmitter):
     """Probability of crossover with a second parent."""
 
 
-class LamarckianEmitter(WeightedEmitter):
+class LamarckianEmitter(SelectingEmitter):
     """NEAT's variation; offspring then learn by gradients and pass on what they learned."""
 
     model_config = sourced(OMG_MEGA)

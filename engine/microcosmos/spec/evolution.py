@@ -36,6 +36,7 @@ LITERAL: dict[str, Any] = {
     "control": Control(
         timer="linear",
         position="unit",
+        wave_number=None,
         period=100,
         angle_scale=0.5,
         length_scale=0.3,

@@ -22,7 +22,7 @@ IDENTITY = {
         "encoding": "cppn",
         "inputs": ["position", "sine", "cosine"],
         "outputs": ["rest_angle", "rest_length"],
-        "control": {},
+        "control": {"wave_number": None},
         "nodes": {
             "id": [0, 1, 2, 3, 4, 9],
             "activation": ["identity"] * 3 + ["sin", "tanh", "gaussian"],
@@ -194,14 +194,14 @@ def test_vectors_of_another_length_or_beyond_one_are_refused(control):
 
 
 def test_only_recurrent_networks_have_cycles():
-    file = document(spec.Control(recurrent=True), NETWORK)
+    file = document(spec.Control(wave_number=None, recurrent=True), NETWORK)
     assert creature.parse(file) == file
     with pytest.raises(creature.CreatureError, match="free of cycles"):
-        creature.parse(document(spec.Control(), NETWORK))
+        creature.parse(document(spec.Control(wave_number=None), NETWORK))
 
 
 def test_a_network_that_grows_has_outputs_for_what_is_free():
-    control = spec.Grown(stretch=None, shear=None, bend=None)
+    control = spec.Grown(wave_number=None, stretch=None, shear=None, bend=None)
     activation = ["identity"] * 3 + ["sin"] * 5
     nodes = {"id": list(range(8)), "activation": activation, "bias": encode(np.zeros(8))}
     links = NETWORK["connections"] | {"source": [0, 1, 2, 1], "target": [3, 4, 7, 5]}

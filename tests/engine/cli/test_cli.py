@@ -42,6 +42,7 @@ def finished(process, code=0) -> str:
     return text
 
 
+@pytest.mark.long
 def test_a_stopped_and_extended_run_ends_with_the_bytes_of_a_longer_one(run, invoke, tmp_path):
     (tmp_path / "spec.json").write_text(json.dumps(SPEC))
     finished(run("evolve", "spec.json", "--generations", "13", "--out", "whole.h5"))

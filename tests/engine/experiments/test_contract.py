@@ -70,7 +70,11 @@ def test_a_new_build_of_the_same_spec_gives_the_same_bytes(name, course_of, fini
 
 @pytest.mark.parametrize(
     ("name", "generations"),
-    [("quality-diversity", 2), ("neuroevolution", 3), ("neuroevolution", 4)],
+    [
+        ("quality-diversity", 2),
+        ("neuroevolution", 3),
+        pytest.param("neuroevolution", 4, marks=pytest.mark.long),
+    ],
 )
 def test_an_extended_run_ends_like_a_longer_one(name, generations, course_of, finish, lasting):
     """Neuroevolution evaluates its elites again after 3 generations and at the end."""

@@ -19,6 +19,7 @@ from microcosmos.spec import parse
 from microcosmos.spec.evolution import UNLIMITED
 
 
+@pytest.mark.long
 def test_another_seed_gives_another_archive(small, course, experiment, finish):
     other = build(small().model_copy(update={"seed": 4}))
     assert finish(other, other.init()) != experiment.save(course[0][-1])

@@ -40,6 +40,7 @@ def test_a_creature_is_read_as_json_or_hdf5(best, tmp_path):
     assert creatures(tmp_path / "best.json") == creatures(tmp_path / "best.h5") == [best]
 
 
+@pytest.mark.long
 def test_the_command_begins_from_a_file_and_goes_on_from_its_own(small, evolve, best, tmp_path):
     (tmp_path / "best.json").write_text(json.dumps(best))
     out, whole = tmp_path / "out.h5", tmp_path / "whole.h5"

@@ -102,26 +102,26 @@ def test_new_genes_get_numbers_that_no_ancestor_has(small, files):
     chosen = small(search={"initial": names_of(files)})
     after, _ = counters(genes_of(chosen, files))
     plan = with_initial(build_plan(chosen), chosen, files)
-    assert int(plan.counters.innovation) == after > 6
+    assert int(plan.counters.innovation) == after > 10
 
 
 def test_numbers_of_one_run_stay_and_those_of_another_do_not_mix(files):
     genomes = [file["identity"]["genome"] for file in files]
-    assert renumbered(genomes, 3, 2) == genomes
-    grown = next(one for one in genomes if len(one["connections"]["innovation"]) > 6)
+    assert renumbered(genomes, 5, 2) == genomes
+    grown = next(one for one in genomes if len(one["connections"]["innovation"]) > 10)
     foreign = json.loads(json.dumps(grown))
     genes = foreign["connections"]
     genes["innovation"] = [*genes["innovation"][:-1], 90]
     stranger = json.loads(json.dumps(foreign))
     ends = stranger["connections"]
-    ends["source"][-1], ends["target"][-1] = 1, 4
-    assert (genes["source"][-1], genes["target"][-1]) != (1, 4)
-    kept, moved = renumbered([foreign, stranger], 3, 2)
+    ends["source"][-1], ends["target"][-1] = 1, 6
+    assert (genes["source"][-1], genes["target"][-1]) != (1, 6)
+    kept, moved = renumbered([foreign, stranger], 5, 2)
     assert kept == foreign
     numbers = moved["connections"]["innovation"]
     assert numbers == sorted(numbers)
     assert numbers[-1] > 90
-    assert numbers[:6] == list(range(6)), "newcomers' genes mean the same to all"
+    assert numbers[:10] == list(range(10)), "newcomers' genes mean the same to all"
     weights = (decode(one["weight"]) for one in (moved["connections"], ends))
     np.testing.assert_allclose(*weights, rtol=1e-6)
 
@@ -129,7 +129,7 @@ def test_numbers_of_one_run_stay_and_those_of_another_do_not_mix(files):
 @pytest.mark.parametrize(
     ("changes", "field"),
     [
-        ({"genome": {"max_nodes": 8, "max_connections": 8}}, "genome.max_"),
+        ({"genome": {"max_nodes": 10, "max_connections": 10}}, "genome.max_"),
         ({"control": {"timer": "linear"}}, "control: inputs"),
         ({"control": {"encoding": "direct"}, "search": GAUSSIAN}, "control.encoding"),
     ],
@@ -164,6 +164,7 @@ def test_vectors_need_the_same_body_and_terms(small):
         fitting(longer, file)
 
 
+@pytest.mark.long
 def test_strategies_do_not_learn_from_what_is_not_theirs(small, finish, forked_from):
     """Vectors: the first slots are creatures of before, whoever would have filled them."""
     direct = {"encoding": "direct", "terms": 2, "period": 30}

@@ -110,7 +110,7 @@ def controls(**changes):
 
 @pytest.fixture(scope="module")
 def network():
-    return neat.minimal(jax.random.key(2), 3, 2, 8, 8)
+    return neat.minimal(jax.random.key(2), 5, 2, 8, 10)
 
 
 def test_actuation_grows_from_the_rest_shape_over_the_ramp_and_repeats(network):
@@ -125,7 +125,7 @@ def test_actuation_grows_from_the_rest_shape_over_the_ramp_and_repeats(network):
 
 
 def test_angles_and_lengths_stay_within_their_scales():
-    networks = [neat.minimal(jax.random.key(k), 3, 2, 8, 8) for k in range(20)]
+    networks = [neat.minimal(jax.random.key(k), 5, 2, 8, 10) for k in range(20)]
     for network in networks:
         rest = genomes.develop(network, controls(angle_scale=0.7, length_scale=0.2))
         assert np.abs(rest.angle).max() <= 0.7
@@ -138,6 +138,26 @@ def test_a_linear_timer_and_positions_run_from_zero_or_minus_one_to_one():
     np.testing.assert_allclose(found.timer, np.arange(STEPS)[None] / STEPS)
     position = controls().position
     assert (position[0], position[-1]) == (-1, 1)
+
+
+def test_a_second_sine_and_cosine_travel_along_the_body():
+    found = controls(ramp=0, wave_number=1.5, angle_scale=0.5)
+    assert found.inputs == 5
+    # A network that hands on its fourth input commands a travelling wave.
+    network = neat.minimal(jax.random.key(0), 5, 2, 8, 10, palette=(0,))
+    chosen = (network.source == 3) & (network.target == 5)
+    network = replace(
+        network,
+        bias=jnp.zeros_like(network.bias),
+        weight=jnp.where(chosen, 0.1, 0.0),
+    )
+    rest = genomes.develop(network, found)
+    at = BODY.arc[found.joint_nodes]
+    phase = 2 * np.pi * (np.arange(STEPS)[:, None] / 40 - 1.5 * at[None])
+    expected = 0.5 * np.tanh(0.1 * np.sin(phase)) + BODY.rest_angle
+    np.testing.assert_allclose(rest.angle, expected, atol=1e-6)
+    assert controls(wave_number=None).inputs == 3
+    assert controls(timer="linear").inputs == 2
 
 
 WEB = Path(__file__).parents[3] / "web"

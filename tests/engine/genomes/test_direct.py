@@ -203,6 +203,6 @@ def test_size_and_genes_are_those_of_the_layers():
     task = build_task(spec.Scene(control=control))
     genotype = task.encoding.newcomer(key=jax.random.key(0))
     hidden, connections = task.encoding.size(genotype)
-    assert (hidden, connections) == (9, 3 * 5 + 5 * 4 + 4 * 2)
-    assert genotype.values.shape == (3 * 5 + 5 + 5 * 4 + 4 + 4 * 2 + 2,)
+    assert (hidden, connections) == (9, 5 * 5 + 5 * 4 + 4 * 2)
+    assert genotype.values.shape == (5 * 5 + 5 + 5 * 4 + 4 + 4 * 2 + 2,)
     assert spec.gene_count(control, spec.shape(spec.Chain())) == len(genotype.values)

@@ -14,7 +14,7 @@ NODES = 10
 @pytest.fixture
 def task(float64):
     """The task of a chain that grows from 4 to 10 nodes."""
-    control = spec.Grown(min_nodes=4, shear=None)
+    control = spec.Grown(wave_number=None, min_nodes=4, shear=None)
     scene = spec.Scene(
         world=spec.World(width=32, height=32),
         body=spec.Chain(nodes=NODES),

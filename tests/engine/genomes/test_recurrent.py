@@ -57,7 +57,13 @@ def task(float64):
     def make(**control):
         energy = {"energy": {"width": 3}} if control.get("sense_energy") else {}
         parts = {"world": {"width": 16, "height": 16} | energy, "body": {"nodes": 5}}
-        parts["control"] = {"recurrent": True, "period": 9, "ramp": 0, **control}
+        parts["control"] = {
+            "recurrent": True,
+            "wave_number": None,
+            "period": 9,
+            "ramp": 0,
+            **control,
+        }
         scene = spec.Scene.model_validate(parts | {"task": {"steps": 20}})
         return build_task(scene, float64, room=(12, 16))
 
@@ -138,7 +144,13 @@ def foragers(float64):
         packets = fields.packets(SIZE, fields.Packets(3, 3.0, 1.0, seed))
         energy = fields.Energy(jnp.asarray(packets), jnp.asarray(0.05), jnp.asarray(0.1))
         box, start = scenes.immersed(body, 0.1, float64, size=SIZE, energy=energy, **options)
-        control = Control(period=30, angle_scale=0.2, length_scale=0.1, sense_energy=senses)
+        control = Control(
+            wave_number=None,
+            period=30,
+            angle_scale=0.2,
+            length_scale=0.1,
+            sense_energy=senses,
+        )
         controls = build_controls(control, body, STEPS)
         encoding = genomes.CPPNControl(controls, (8, 16))
         return search.Task(box, start, encoding, search.Goal(1.0, 0.1))
@@ -178,8 +190,8 @@ def test_energy_changes_the_motion_only_if_the_network_uses_it(foragers, network
 def test_a_response_is_what_a_batch_develops(network, float64):
     body = bodies.chain(9, 1.0)
     controls = build_controls(Control(period=30, ramp=0.2), body, STEPS)
-    developed = genomes.develop(network(3), controls)
-    sensing, cppn = replace(controls, senses=True), network(4, 0.0)
+    developed = genomes.develop(network(5), controls)
+    sensing, cppn = replace(controls, senses=True), network(6, 0.0)
     read = genomes.function_of(cppn)
     respond = jax.jit(lambda *given: genomes.rest_shape(read, sensing, *given))
     for t in (0, 7, 59):

@@ -94,10 +94,24 @@ def test_the_requested_share_of_children_has_two_parents(archive, crossover):
     assert int(counters.innovation) > 6
 
 
+@pytest.mark.parametrize(
+    ("select", "won"), [("uniform", 0.0), ("mixed", 0.5), ("tournament", 1.0)]
+)
+def test_parents_are_drawn_by_the_chosen_selection(archive, select, won):
+    elites = archive(Vector(jnp.zeros((3, GENES))), [4, 0, 2])  # In the order of fitness.
+    emitter = emitters.IsoLine(SLOTS, vector, iso=0.1, select=select)
+    parents = np.asarray(emitted(emitter, elites)[0].parents[:, 0])
+    shares = np.array([np.mean(parents == cell) for cell in (4, 0, 2)])
+    # The fittest of three draws.
+    expected = (1 - won) / 3 + won * np.diff(np.array([0.0, 1 / 3, 2 / 3, 1.0]) ** 3)
+    np.testing.assert_allclose(shares, expected, atol=0.03)
+
+
 def test_all_children_of_an_empty_archive_are_newcomers(archive):
     nobody = archive(Vector(jnp.zeros((1, GENES))), [0])
     nobody = replace(nobody, occupied=jnp.zeros(5, bool))
-    children, _ = emitted(emitters.IsoLine(64, lambda *, key: vector(key), 0.1, 0.2), nobody)
+    mixed = emitters.IsoLine(64, lambda *, key: vector(key), 0.1, 0.2, "mixed")
+    children, _ = emitted(mixed, nobody)
     assert (np.asarray(children.parents) == search.NO_PARENT).all()
     assert (np.asarray(children.operator) == search.OPERATORS.index("random")).all()
     assert len(np.unique(children.genotypes.values, axis=0)) == 64

@@ -14,6 +14,7 @@ from microcosmos.search import reevaluation
 from microcosmos.search.reevaluation import Disturbance
 from microcosmos.spec import Chain, Control, Energy, Scene, Task, World
 
+CONTROL = {"period": 20, "wave_number": None, "sense_energy": True, "angle_scale": 0.3}
 STILL = {"phase": 0.0, "turn": 0.0, "shift": (0.0, 0.0), "viscosity": 1.0, "energy": (0, 0)}
 
 
@@ -22,7 +23,7 @@ def task():
     scene = Scene(
         world=World(width=24, height=24, energy=Energy(packets=2)),
         body=Chain(nodes=8),
-        control=Control(period=20, ramp=0.0, sense_energy=True, angle_scale=0.3),
+        control=Control(**CONTROL, ramp=0.0),
         task=Task(steps=40),
     )
     return build_task(scene, room=(12, 16))
@@ -212,7 +213,7 @@ def foraging():
         {
             "world": PLACE,
             "body": {"nodes": 8},
-            "control": {"period": 20, "sense_energy": True, "angle_scale": 0.3},
+            "control": CONTROL,
             "task": {"steps": 20, "fitness": "displacement+energy", "energy_weight": 0.5},
         }
     )

@@ -73,7 +73,7 @@ def free(low, high):
         (direct(terms=256) | LARGE, "at most 65536 genes"),
         (
             {"control": GROWN, "genome": {"max_nodes": 10}},
-            "`genome.max_nodes` must be at least 11",
+            "`genome.max_nodes` must be at least 13",
         ),
     ],
     ids=str,

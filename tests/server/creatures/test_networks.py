@@ -45,13 +45,13 @@ def test_each_form_is_cached_for_ever_under_a_file_name(api, known, form):
 def test_the_forms_hold_the_network(api, known):
     sha = known()
     placed = api.get(f"creatures/{sha}/network.json").json()
-    assert placed["nodes"]["3"]["x"] == placed["width"] == 1
+    assert placed["nodes"]["5"]["x"] == placed["width"] == 1
     picture = ElementTree.fromstring(api.get(f"creatures/{sha}/network.svg").text)
     assert picture.tag == "{http://www.w3.org/2000/svg}svg"
-    assert re.search(r"1 -> 3", api.get(f"creatures/{sha}/network.dot").text)
+    assert re.search(r"1 -> 5", api.get(f"creatures/{sha}/network.dot").text)
     space = {}
     exec(api.get(f"creatures/{sha}/network.py").text, space)
-    given = np.array([[0.3], [0.25], [0.7]])
+    given = np.array([[0.3], [0.25], [0.7], [0.1], [0.2]])
     np.testing.assert_allclose(space["network"](given), [[0.5], [0.0]])
     data = api.get(f"creatures/{sha}/network.npz").content
     with np.load(io.BytesIO(data)) as genome:
@@ -63,8 +63,8 @@ def cycle(identity):
     genome["control"]["recurrent"] = True
     genome["connections"] |= {
         "innovation": [0, 1],
-        "source": [1, 3],
-        "target": [3, 3],
+        "source": [1, 5],
+        "target": [5, 5],
         "enabled": [True, True],
         "weight": "AAAAPwAAAD8=",  # 0.5 twice.
     }
@@ -75,9 +75,9 @@ def test_a_network_with_a_cycle_is_updated_as_often_as_there_are_steps(api, know
     space = {}
     exec(api.get(f"creatures/{sha}/network.py").text, space)
     # v ← x / 2 + v / 2 comes to x.
-    np.testing.assert_allclose(space["network"](np.ones((3, 1)))[0], 1.0)
+    np.testing.assert_allclose(space["network"](np.ones((5, 1)))[0], 1.0)
     assert api.get(f"creatures/{sha}/network.svg").status_code == 200
-    assert "3" in api.get(f"creatures/{sha}/network.json").json()["nodes"]
+    assert "5" in api.get(f"creatures/{sha}/network.json").json()["nodes"]
 
 
 def test_the_code_of_a_network_with_very_many_steps_is_written_at_once(api, known):

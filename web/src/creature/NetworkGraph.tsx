@@ -12,7 +12,7 @@ const REACH = 4 * RADIUS;
 const ROW = 58;
 /** Distances of columns; those of a deep network are close. */
 const [MIN_PITCH, MAX_PITCH] = [84, 130];
-const MARGIN = { x: 92, y: 50 };
+const MARGIN = { x: 112, y: 50 };
 /** Bounds of the scale; a network that is too large scrolls. */
 const [MAX_SCALE, MIN_SCALE] = [1.2, 0.5];
 

@@ -26,7 +26,7 @@ describe("the values of a network", () => {
 
   it("depend on the sensed energy", () => {
     const { genome, steps } = cases[0]!;
-    const sensing = { ...genome.control, sense_energy: true } as unknown as Spec;
+    const sensing = { ...genome.control, wave_number: null, sense_energy: true } as unknown as Spec;
     const genes = {
       encoding: "cppn",
       control: sensing,

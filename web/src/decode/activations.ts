@@ -23,6 +23,7 @@ export const inputsOf = (control: Spec) => ({
   timer: String(control.timer ?? "sine-cosine"),
   period: Number(control.period),
   position: String(control.position ?? "signed"),
+  waves: control.timer === "linear" ? null : ((control.wave_number ?? null) as number | null),
   senses: control.sense_energy === true,
   recurrent: control.recurrent === true,
 });
@@ -47,31 +48,28 @@ export function phaseOf(
 
 function feedForwardValues(network: Network, inputs: Inputs, steps: number, energy: number): Activations {
   const to = inputs.timer === "linear" ? steps : inputs.period;
-  const places = positionsAlongBody(inputs);
-  const points = COLUMNS * ROWS;
-  const position = Float64Array.from({ length: points }, (_, i) => places[i % ROWS]!);
-  const clock = Array.from({ length: COLUMNS }, (_, i) => clockAt(inputs, (to * i) / COLUMNS, steps));
-  const timers = clock[0]!.map((_, k) =>
-    Float64Array.from({ length: points }, (_, i) => clock[Math.floor(i / ROWS)]![k]!),
+  const columns = Array.from({ length: COLUMNS }, (_, i) =>
+    inputsAt(inputs, (to * i) / COLUMNS, steps, energy),
   );
-  const sensed = inputs.senses ? [new Float64Array(points).fill(energy)] : [];
-  return { values: evaluate(network, [position, ...timers, ...sensed]), from: 0, to };
+  const rows = columns[0]!.map((_, k) => {
+    const row = new Float64Array(COLUMNS * ROWS);
+    columns.forEach((column, i) => row.set(column[k]!, i * ROWS));
+    return row;
+  });
+  return { values: evaluate(network, rows), from: 0, to };
 }
 
 /** The last period, when the memory has settled. */
 function recurrentValues(network: Network, inputs: Inputs, steps: number, energy: number): Activations {
   const to = Math.min(steps, MAX_STEPS);
   const from = inputs.timer === "linear" ? 0 : Math.max(0, to - Math.round(inputs.period));
-  const places = positionsAlongBody(inputs);
-  const sensed = inputs.senses ? [new Float64Array(ROWS).fill(energy)] : [];
   const values: Values = new Map(network.neurons.map(({ id }) => [id, new Float64Array(COLUMNS * ROWS)]));
   const stepOf = (column: number) => from + Math.floor(((to - from) * column) / COLUMNS);
   const incoming = incomingLinks(network);
   let now: Values = new Map();
   let column = 0;
   for (let step = 0; step < to; step++) {
-    const clock = clockAt(inputs, step, steps).map((value) => new Float64Array(ROWS).fill(value));
-    now = advance(network, incoming, now, [places, ...clock, ...sensed]);
+    now = advance(network, incoming, now, inputsAt(inputs, step, steps, energy));
     for (; column < COLUMNS && stepOf(column) === step; column++) {
       for (const [id, row] of now) values.get(id)!.set(row, column * ROWS);
     }
@@ -79,15 +77,23 @@ function recurrentValues(network: Network, inputs: Inputs, steps: number, energy
   return { values, from, to };
 }
 
-function positionsAlongBody({ position }: Inputs): Float64Array {
-  return Float64Array.from({ length: ROWS }, (_, i) => {
-    const share = i / (ROWS - 1);
-    return position === "unit" ? share : 2 * share - 1;
-  });
-}
-
-function clockAt({ timer, period }: Inputs, step: number, steps: number): number[] {
-  if (timer === "linear") return [step / steps];
+/** The inputs of a network along the body at one time. */
+function inputsAt(inputs: Inputs, step: number, steps: number, energy: number): Float64Array[] {
+  const { timer, period, position, waves, senses } = inputs;
+  const along = (value: (share: number) => number) =>
+    Float64Array.from({ length: ROWS }, (_, i) => value(i / (ROWS - 1)));
   const phase = (2 * Math.PI * step) / period;
-  return [Math.sin(phase), Math.cos(phase)];
+  const clock =
+    timer === "linear"
+      ? [along(() => step / steps)]
+      : [along(() => Math.sin(phase)), along(() => Math.cos(phase))];
+  const lag = (share: number) => phase - 2 * Math.PI * waves! * share;
+  return [
+    along((share) => (position === "unit" ? share : 2 * share - 1)),
+    ...clock,
+    ...(waves === null
+      ? []
+      : [along((share) => Math.sin(lag(share))), along((share) => Math.cos(lag(share)))]),
+    ...(senses ? [along(() => energy)] : []),
+  ];
 }

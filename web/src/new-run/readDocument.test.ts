@@ -61,7 +61,9 @@ describe("a creature", () => {
     const { spec } = readDocument(creature({ encoding: "direct", control: {} }) as unknown as Json);
     const full = completeSpec(spec, EXPERIMENTS) as { search: { emitters: Spec[] }; control: Spec };
     expect(full.control.encoding).toBe("direct");
-    expect(full.search.emitters).toEqual([{ operator: "iso+line", share: 1, iso: 0.02, line: 0.2 }]);
+    expect(full.search.emitters).toEqual([
+      { operator: "iso+line", select: "mixed", share: 1, iso: 0.02, line: 0.2 },
+    ]);
   });
 
   it("with a gait by hand, or with a fold, gives an experiment of its kind", () => {

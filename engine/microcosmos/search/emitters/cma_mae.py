@@ -16,8 +16,9 @@ from ...genomes import Vector
 from ...neat import Counters
 from ..insertion import Elites
 from . import matrix_adaptation as es
-from .elites import Newcomer, draw, parentless
+from .elites import Newcomer, parentless
 from .emitter import Children, Keys, Outcome
+from .selection import draw
 
 
 class CmaMaeState(eqx.Module):

@@ -17,8 +17,9 @@ from ...neat import Counters
 from ..gradients import Slopes, unit
 from ..insertion import Elites
 from . import matrix_adaptation as es
-from .elites import Newcomer, draw, newcomers, or_newcomers, parentless
+from .elites import Newcomer, newcomers, or_newcomers, parentless
 from .emitter import Children, Keys, Outcome
+from .selection import draw
 
 
 class CmaMegaState(eqx.Module):

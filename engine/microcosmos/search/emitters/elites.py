@@ -6,7 +6,7 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Int, PRNGKeyArray
+from jaxtyping import Array, Int
 
 from ...genomes import Genotype
 from ...neat import Counters
@@ -15,13 +15,6 @@ from .emitter import NO_PARENT, OPERATORS, Children, Keys, Stateless
 
 Newcomer = Callable[..., Any]
 """`newcomer(key=...)` makes a random genotype."""
-
-
-def draw(archive: Elites, *, key: PRNGKeyArray) -> Int[Array, ""]:
-    """Draw an occupied cell, each equally likely; 0 where there is none."""
-    total = jnp.sum(archive.occupied)
-    rank = jax.random.randint(key, (), 0, jnp.maximum(1, total))
-    return jnp.argmax(jnp.cumsum(archive.occupied) > rank)
 
 
 def newcomers(newcomer: Newcomer, keys: Keys) -> Children:

@@ -9,13 +9,14 @@ from jaxtyping import Array, Int, PRNGKeyArray
 from ... import neat
 from ...genomes import CPPN
 from ..insertion import Elites
-from .elites import Newcomer, children, draw, newcomers, or_newcomers
+from .elites import Newcomer, children, newcomers, or_newcomers
 from .emitter import NO_PARENT, OPERATORS, Children, Keys, Stateless
+from .selection import Select, draw
 
 
 @dataclass(frozen=True)
 class Neat(Stateless):
-    """Mutated elites, each equally likely, some of them crossed with another one first."""
+    """Mutated elites, some of them crossed with another one first."""
 
     slots: int
     newcomer: Newcomer
@@ -23,13 +24,14 @@ class Neat(Stateless):
     inputs: int
     crossover: float = 0.0
     """Probability that a child has two parents."""
+    select: Select = "uniform"
 
     def emit(
         self, state: None, archive: Elites, counters: neat.Counters, *, keys: Keys
     ) -> tuple[Children, None, neat.Counters]:
         def child(key):
             select_key, mutate_key = jax.random.split(key)
-            cell = draw(archive, key=select_key)
+            cell = draw(archive, self.select, key=select_key)
             parent, other = _network(archive, cell), jnp.asarray(NO_PARENT)
             if self.crossover:
                 parent, other = self._crossed(archive, cell, key=key)
@@ -48,7 +50,7 @@ class Neat(Stateless):
 
     def _crossed(self, archive: Elites, cell: Int[Array, ""], *, key: PRNGKeyArray):
         whether, which, cross_key = jax.random.split(jax.random.fold_in(key, 1), 3)
-        other = draw(archive, key=which)
+        other = draw(archive, self.select, key=which)
         happens = jax.random.bernoulli(whether, self.crossover) & (other != cell)
         fitter = archive.fitness[cell] >= archive.fitness[other]
         pair = jnp.where(fitter, cell, other), jnp.where(fitter, other, cell)

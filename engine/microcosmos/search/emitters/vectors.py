@@ -9,22 +9,23 @@ from jaxtyping import Array, Float, Int, PRNGKeyArray
 from ...genomes import Vector
 from ...neat import Counters
 from ..insertion import Elites
-from .elites import Newcomer, children, draw, newcomers, or_newcomers
+from .elites import Newcomer, children, newcomers, or_newcomers
 from .emitter import Children, Keys, Stateless
+from .selection import Select, draw
 
 
 @dataclass(frozen=True)
 class IsoLine(Stateless):
     """x + σ₁ N(0, I) + σ₂ (y − x) N(0, 1): Vassiliades and Mouret, GECCO 2018, eq. 3.
 
-    Parents are elites, each equally likely. Genes stay within −1 and 1. Without a line it is
-    a Gaussian mutation.
+    Parents are elites. Genes stay within −1 and 1. Without a line it is a Gaussian mutation.
     """
 
     slots: int
     newcomer: Newcomer
     iso: float
     line: float = 0.0
+    select: Select = "uniform"
 
     def emit(
         self, state: None, archive: Elites, counters: Counters, *, keys: Keys
@@ -40,7 +41,7 @@ class IsoLine(Stateless):
         one_key, other_key, iso_key, line_key = jax.random.split(key, 4)
         genes = archive.genotypes
         assert isinstance(genes, Vector)
-        one, other = draw(archive, key=one_key), draw(archive, key=other_key)
+        one, other = (draw(archive, self.select, key=key) for key in (one_key, other_key))
         x, y = genes.values[one], genes.values[other]
         step = self.iso * jax.random.normal(iso_key, x.shape, x.dtype)
         along = self.line * jax.random.normal(line_key, (), x.dtype)

@@ -54,8 +54,8 @@ def plain():
 
 @pytest.fixture(scope="session")
 def grown():
-    """1,200 creatures' genes, each the work of up to 40 random mutations."""
-    return [grow(np.random.default_rng([3, number])) for number in range(1200)]
+    """400 creatures' genes, each the work of up to 40 random mutations."""
+    return [grow(np.random.default_rng([3, number])) for number in range(400)]
 
 
 def grow(random: np.random.Generator) -> dict:

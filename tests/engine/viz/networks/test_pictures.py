@@ -157,9 +157,12 @@ def test_graphviz_gets_every_node_and_connection(small):
 
 @pytest.fixture
 def file(tmp_path, grown):
-    genome = {"encoding": "cppn", "inputs": INPUTS, "outputs": OUTPUTS, "control": {}} | grown[
-        7
-    ]
+    genome = {
+        "encoding": "cppn",
+        "inputs": INPUTS,
+        "outputs": OUTPUTS,
+        "control": {"wave_number": None},
+    } | grown[7]
     parts = {"world": {"coupling": {}}, "body": {}, "task": {}}
     whole = {"format": "microcosmos-creature/1", "genome": genome, **parts}
     identity = creature.Identity.model_validate(whole).model_dump(mode="json")
