@@ -81,7 +81,7 @@ def see_species_and_the_best_network(page: Page, run: WrittenRun) -> None:
     expect(reading).to_contain_text("species 0, 10 members, of 2 species")
     best = page.get_by_role("region", name="Best network so far")
     expect(best).to_contain_text(f"fitness {GENERATIONS}")
-    expect(best.get_by_role("img", name=re.compile("^Network: 5 nodes"))).to_be_visible()
+    expect(best.get_by_role("img", name=re.compile("^Network: 7 nodes"))).to_be_visible()
 
 
 def see_why_evaluations_infeasible(page: Page) -> None:
