@@ -5,6 +5,8 @@ VENV := .venv
 BIN := $(VENV)/bin
 LOCK := $(shell nvidia-smi -L >/dev/null 2>&1 && echo requirements-cuda.lock || echo requirements.lock)
 INSTALLED := $(VENV)/installed-$(LOCK)
+KERNEL := $(VENV)/kernel
+KERNEL_SOURCES := $(shell find engine/kernels -name __pycache__ -prune -o -type f -print)
 # Node is installed from the registry if the machine has none.
 NPM = PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix web
 WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist -prune -o -type f -print) docs/glossary.md
@@ -18,7 +20,7 @@ unexport PYTHONDONTWRITEBYTECODE
 run: install web
 	@$(BIN)/python -m server.local
 
-install: $(INSTALLED)
+install: $(INSTALLED) $(KERNEL)
 
 $(INSTALLED): $(LOCK) requirements-node.lock pyproject.toml
 	@$(PYTHON) -c 'import sys; v = sys.version_info[:2]; sys.exit(0 if (3, 11) <= v < (3, 13) else f"Microcosmos needs Python 3.11 or 3.12, got {v[0]}.{v[1]}: make PYTHON=python3.12")'
@@ -27,6 +29,11 @@ $(INSTALLED): $(LOCK) requirements-node.lock pyproject.toml
 	@$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r $(LOCK)
 	@command -v npm >/dev/null || $(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements-node.lock
 	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-build-isolation --no-deps -e .
+	@touch $@
+
+$(KERNEL): $(KERNEL_SOURCES) requirements-zig.lock $(INSTALLED)
+	@echo "Building the native kernel ..."
+	@$(BIN)/python engine/kernels/install.py
 	@touch $@
 
 web: web/dist/index.html
@@ -93,6 +100,7 @@ peers: install
 
 bench: peers web
 	$(BIN)/python engine/benchmarks/physics.py
+	$(BIN)/python engine/benchmarks/kernel.py
 	$(BIN)/python engine/benchmarks/gradients.py
 	$(BIN)/python engine/benchmarks/cma_mega.py
 	$(BIN)/python engine/benchmarks/archive.py
@@ -151,3 +159,4 @@ lock:
 	$(COMPILE) --group pyproject.toml:docs -c requirements.lock -o requirements-docs.lock
 	$(COMPILE) --group pyproject.toml:peers -c requirements.lock -o requirements-peers.lock
 	$(COMPILE) --group pyproject.toml:node -o requirements-node.lock
+	$(COMPILE) --group pyproject.toml:zig -o requirements-zig.lock

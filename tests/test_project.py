@@ -1,6 +1,7 @@
 """Files that describe the project agree with each other."""
 
 import json
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -16,7 +17,8 @@ def test_every_file_has_the_version_of_the_library():
     lock = json.loads((ROOT / "web/package-lock.json").read_text())
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
     document = json.loads((ROOT / "web/openapi.json").read_text())
-    versions = [package, lock, lock["packages"][""], citation, document["info"]]
+    kernel = tomllib.loads((ROOT / "engine/kernels/pyproject.toml").read_text())["project"]
+    versions = [kernel, package, lock, lock["packages"][""], citation, document["info"]]
     assert {one["version"] for one in versions} == {VERSION}
     assert f"## {VERSION}" in (ROOT / "CHANGELOG.md").read_text()
 

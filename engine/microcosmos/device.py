@@ -6,6 +6,9 @@ Results repeat bit for bit on one kind of device; another kind may round differe
 import os
 import platform
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import jax
@@ -17,6 +20,9 @@ _STARTED = (
     "JAX has started before `microcosmos.prepare()` and keeps its {} devices: call that first, "
     "so that every core works."
 )
+KERNELS = ("auto", "native", "jax")
+"""What may simulate worlds: the native kernel where it can, it alone, or JAX alone."""
+KERNEL_VARIABLE = "MICROCOSMOS_KERNEL"
 GPU_FLAGS = "--xla_gpu_deterministic_ops=true --xla_gpu_autotune_level=0"
 
 
@@ -48,11 +54,45 @@ def _cores() -> int:
     return os.cpu_count() or 1
 
 
+def kernel() -> str:
+    """Return the choice of MICROCOSMOS_KERNEL; raise `ValueError` unless it is in `KERNELS`."""
+    chosen = os.environ.get(KERNEL_VARIABLE, KERNELS[0])
+    if chosen not in KERNELS:
+        allowed = ", ".join(KERNELS)
+        raise ValueError(f"`{KERNEL_VARIABLE}` must be one of {allowed}, got {chosen!r}")
+    return chosen
+
+
+@contextmanager
+def using(chosen: str) -> Iterator[None]:
+    """Choose another kernel for programs that are traced within."""
+    before = os.environ.get(KERNEL_VARIABLE)
+    os.environ[KERNEL_VARIABLE] = chosen
+    try:
+        yield
+    finally:
+        os.environ.pop(KERNEL_VARIABLE)
+        if before is not None:
+            os.environ[KERNEL_VARIABLE] = before
+
+
+def kernel_version() -> str | None:
+    """Return the native kernel's version; None without it, on a GPU, or if JAX is chosen."""
+    if kernel() == "jax" or jax.default_backend() != "cpu":
+        return None
+    try:
+        return version("microcosmos-kernels")
+    except PackageNotFoundError:
+        return None
+
+
 def device_kind() -> str:
     """Return platform, model and software, on which the bits of a result depend."""
     device = jax.local_devices()[0]
     model = _processor() if device.platform == "cpu" else device.device_kind
     software = f"microcosmos {VERSION}, jax {jax.__version__}, jaxlib {jaxlib_version}"
+    if kernels := kernel_version():
+        software += f", microcosmos-kernels {kernels}"
     flags = " ".join(sorted(os.environ.get("XLA_FLAGS", "").split()))
     parts = [device.platform, model, software, flags]
     return ", ".join(part for part in parts if part)

@@ -14,5 +14,12 @@ from .delta import (
     spread,
     windows,
 )
-from .forcing import Forced, force_free, multi_direct_forcing, torque_free, unprojected
+from .forcing import (
+    Forced,
+    force_free,
+    multi_direct_forcing,
+    step_lengths,
+    torque_free,
+    unprojected,
+)
 from .layers import at_nodes, at_points, points

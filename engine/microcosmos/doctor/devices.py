@@ -31,6 +31,7 @@ def devices(cache: Path, patience: float = PATIENCE) -> Iterator[Finding]:
         yield problem("devices", f"JAX fails: {error}", f"make install; {USE_CPU}")
         return
     yield from _devices(found)
+    yield _kernel(found["kernel"], found["devices"])
     program = found["cache"]
     if program["stored"] and program["loaded"]:
         yield ok("compile cache", "a stored program is loaded again")
@@ -73,6 +74,20 @@ def _devices(found: dict[str, Any]) -> Iterator[Finding]:
         )
     counted = ", ".join(f"{platforms.count(p)} × {p}" for p in dict.fromkeys(platforms))
     yield ok("devices", f"{counted}: {found['kind']}")
+
+
+def _kernel(kernel: dict[str, Any], devices: list[dict[str, Any]]) -> Finding:
+    if kernel["version"]:
+        return ok("native kernel", f"version {kernel['version']} simulates what it covers")
+    if kernel["chosen"] == "jax":
+        return ok("native kernel", "MICROCOSMOS_KERNEL leaves it out: JAX simulates")
+    if any(one["platform"] != "cpu" for one in devices):
+        return ok("native kernel", "JAX simulates on the GPU")
+    return warning(
+        "native kernel",
+        "it is not installed: JAX simulates, several times slower",
+        "make install, on a machine with a C++ compiler or the package registry",
+    )
 
 
 def _folder(cache: Path) -> Iterator[Finding]:

@@ -10,14 +10,18 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from ..device import device_kind, prepare
+from ..device import device_kind, kernel, kernel_version, prepare
 
 HIT = "/jax/compilation_cache/cache_hits"
 
 
 def main(cache: Path) -> None:
     prepare()
-    found = {"kind": device_kind(), "devices": [_device(one) for one in jax.local_devices()]}
+    found = {
+        "kind": device_kind(),
+        "kernel": {"chosen": kernel(), "version": kernel_version()},
+        "devices": [_device(one) for one in jax.local_devices()],
+    }
     print(json.dumps(found | {"cache": _cache(cache)}))
 
 

@@ -74,7 +74,8 @@ def _closed_loop(driven: Drive, actuators: Actuators) -> Drive:
         command = bounded(driven.control(world, state, given), actuators, world)
         paced = command
         if actuators.max_speed is not None:
-            fast = fastest(memory.paced, command, actuators.layout, world.present)
+            shapes = (rest_positions(one, actuators.layout) for one in (memory.paced, command))
+            fast = fastest(*shapes, actuators.layout, world.present)
             share = jnp.minimum(1.0, actuators.max_speed / fast)
             paced = _between(memory.paced, command, share)
         rest = _between(memory.rest, paced, 1 / (1 + actuators.lag))
@@ -112,11 +113,13 @@ def bounded(rest: Rest, actuators: Actuators, world: World) -> Rest:
 
 
 def fastest(
-    before: Rest, after: Rest, layout: Layout, present: Bool[Array, "node"] | None
+    before: Float[Array, "node 2"],
+    after: Float[Array, "node 2"],
+    layout: Layout,
+    present: Bool[Array, "node"] | None,
 ) -> Float[Array, ""]:
-    """Return the largest displacement of a node between rest shapes, less rigid motion."""
-    start = rest_positions(before, layout)
-    moved = fitted(rest_positions(after, layout), start, layout.pieces, present) - start
+    """Return the largest displacement of a node between two shapes, less rigid motion."""
+    moved = fitted(after, before, layout.pieces, present) - before
     squares = jnp.sum(moved * moved, 1)
     if present is not None:
         squares = jnp.where(present, squares, 0.0)
@@ -127,11 +130,8 @@ def speeds(
     rest: Rest, layout: Layout, present: Bool[Array, "node"] | None
 ) -> Float[Array, "time"]:
     """Return the speed of the fastest node from each rest shape to the next."""
-    before, after = (
-        Rest(rest.angle[:-1], rest.length[:-1]),
-        Rest(rest.angle[1:], rest.length[1:]),
-    )
-    return jax.vmap(lambda a, b: fastest(a, b, layout, present))(before, after)
+    shapes = rest_positions(rest, layout)
+    return jax.vmap(lambda a, b: fastest(a, b, layout, present))(shapes[:-1], shapes[1:])
 
 
 def clock(speeds: Float[Array, "time"], max_speed: float) -> Float[Array, "time"]:

@@ -92,7 +92,9 @@ def report_gradient(
     size = np.abs(own) / max(np.abs(own).sum(), 1e-30)
     lengths = np.linalg.norm(others, axis=1) * _length(own)
     options = compiler_options()
-    end, observed = jax.jit(lambda: simulate(driven), compiler_options=options)()
+    end, observed = jax.jit(
+        lambda: simulate(driven, differentiable=True), compiler_options=options
+    )()
     return GradientReport(
         of=of,
         by=by,

@@ -102,7 +102,7 @@ def measures(
     """
 
     def measure(task: Task, driven: Drive) -> dict[str, Any]:
-        end, observed = simulate(driven, segment=segment)
+        end, observed = simulate(driven, segment=segment, differentiable=True)
         found = motion_of(task, driven, end, observed)
         return {**found, "fitness": fitness_of(task, found)}
 

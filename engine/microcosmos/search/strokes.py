@@ -7,9 +7,10 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..filaments import Rest
-from ..world import Limits, centre, rollout
-from .evaluation import Evaluation, Task
-from .measures import MOTION, motion, observe
+from ..genomes import Drive
+from ..world import Limits, centre
+from .evaluation import Evaluation, Task, simulate
+from .measures import MOTION, motion
 
 STROKE_MEASURES = (
     *MOTION,
@@ -34,7 +35,7 @@ class Conditions(eqx.Module):
 def swim(task: Task, rest: Rest, conditions: Conditions, period: int) -> Evaluation:
     """Carry out a stroke under its conditions and measure its last cycle."""
     world = replace(task.world, viscosity=conditions.viscosity, limits=conditions.limits)
-    end, observed = rollout(world, task.start, rest, observe)
+    end, observed = simulate(Drive(world, task.start, rest))
     values = motion(world, task.start, end, observed, task.length)
     before = (
         observed.centre[-1 - period]

@@ -1,5 +1,6 @@
 """One world: a periodic box of viscous fluid with bodies in it, in lattice units."""
 
+from . import native
 from .model import Form, Limits, Measures, State, World, at_rest, flow
 from .nodes import repel, sense
 from .present import centre, edges_there, grown_rods, joints_there, mean

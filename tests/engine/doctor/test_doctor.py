@@ -58,7 +58,12 @@ LOST = ("warning", "is not loaded again")
 )
 def test_a_device_is_reported_with_its_faults(tmp_path, monkeypatch, device, loaded, expected):
     whole = {"platform": "gpu", "model": "a model", "id": 0} | device
-    answer = {"kind": "gpu", "devices": [whole], "cache": {"stored": True, "loaded": loaded}}
+    answer = {
+        "kind": "gpu",
+        "kernel": {"chosen": "auto", "version": None},
+        "devices": [whole],
+        "cache": {"stored": True, "loaded": loaded},
+    }
     monkeypatch.setattr(devices, "probed", lambda *_: answer)
     found = list(devices.devices(tmp_path))
     for level, text in expected:
@@ -199,3 +204,25 @@ def test_the_command_says_what_to_do_and_ends_with_1(tmp_path):
     assert [one.subject for one in found if one.level == "problem"] == ["server"]
     assert "make run" in found[-1].advice
     assert "database, disk and Redis are not checked" in found[-1].found
+
+
+@pytest.mark.parametrize(
+    ("kernel", "level", "text"),
+    [
+        ({"chosen": "auto", "version": "0.1.0"}, "ok", "version 0.1.0 simulates"),
+        ({"chosen": "jax", "version": None}, "ok", "leaves it out"),
+        ({"chosen": "auto", "version": None}, "warning", "several times slower"),
+    ],
+)
+def test_the_native_kernel_is_reported(tmp_path, monkeypatch, kernel, level, text):
+    device = {"platform": "cpu", "model": "cpu", "id": 0, "correct": True, "memory_bytes": None}
+    answer = {
+        "kind": "cpu",
+        "kernel": kernel,
+        "devices": [device],
+        "cache": {"stored": True, "loaded": True},
+    }
+    monkeypatch.setattr(devices, "probed", lambda *_: answer)
+    found = next(one for one in devices.devices(tmp_path) if one.subject == "native kernel")
+    assert found.level == level
+    assert text in found.found

@@ -1,0 +1,59 @@
+"""Build the native kernel and install it beside this Python; `make install` runs it.
+
+Uses the system's C++ compiler, or else Zig's from the package registry, which is removed
+afterwards. Without both nothing is installed: JAX then simulates, several times slower.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+HERE = Path(__file__).parent
+ZIG = HERE.parents[1] / "requirements-zig.lock"
+PIP = [sys.executable, "-m", "pip", "install", "-q", "--disable-pip-version-check"]
+
+
+def main() -> None:
+    with tempfile.TemporaryDirectory(prefix="microcosmos-") as place:
+        compiler = system_compiler() or zig(Path(place))
+        if compiler and build(compiler):
+            return
+    reason = f"{compiler} could not build it" if compiler else "there is no C++ compiler"
+    print(f"SKIPPED: the native kernel, {reason}; JAX simulates, several times slower")
+
+
+def system_compiler() -> str | None:
+    names = (os.environ.get("CXX"), "c++", "g++", "clang++")
+    return next((found for name in names if name and (found := shutil.which(name))), None)
+
+
+def zig(place: Path) -> str | None:
+    """Install Zig's compiler into a folder and return the command that runs it."""
+    print("Fetching a C++ compiler for the native kernel ...")
+    fetched = subprocess.run([*PIP, "--require-hashes", "--target", place, "-r", ZIG])
+    if fetched.returncode:
+        return None
+    command = place / "c++"
+    # Zig adds checks of undefined behaviour that need a library of its own.
+    command.write_text(
+        f"#!/bin/sh\nPYTHONPATH={place} exec {sys.executable} -m ziglang c++ -fno-sanitize=all "
+        '"$@"\n'
+    )
+    command.chmod(0o755)
+    return os.fspath(command)
+
+
+def build(compiler: str) -> bool:
+    """Build and install with the tools of this environment; return whether that worked."""
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    environment = {**os.environ, "PATH": path, "CXX": compiler}
+    # Without isolation: the lock file has the tools and the interface of XLA.
+    command = [*PIP, "--no-build-isolation", "--no-deps", "--force-reinstall", os.fspath(HERE)]
+    return subprocess.run(command, env=environment).returncode == 0
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,201 @@
+// Bodies as slots: nodes and edges in an order in which neighbours fill vectors.
+//
+// Each connected piece of a body has a range of slots, a multiple of BLOCK: its even nodes, then
+// its odd ones, each half filled up. So along a filament the nodes that the even edges join, or
+// the odd ones, stand in two vectors. Other graphs work too: where slots do not follow each
+// other they are gathered.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <tuple>
+#include <vector>
+
+#include "memory.h"
+#include "rollout.h"
+#include "vectors.h"
+
+namespace microcosmos::ISA {
+
+struct Range {
+  int from, to;
+};
+
+// Pairs of slots (the ends of edges, or the edges of joints) in blocks of 16.
+struct Pairs {
+  std::vector<int32_t> first, second;  // Slots; what fills up a block follows the last pair.
+  std::vector<int32_t> item;           // Edge or joint of each place; -1: none.
+  std::vector<int32_t> own;            // For edges: their slots.
+  std::vector<uint8_t> adjacent;       // Of each block: all lists of slots are consecutive.
+
+  int places() const { return int(first.size()); }
+
+  void add(int one, int other, int number, int slot) {
+    first.push_back(one), second.push_back(other), item.push_back(number), own.push_back(slot);
+  }
+
+  // Fill up the last block. Arrays have room for a block beyond their last slot.
+  void fill() {
+    while (first.size() % BLOCK) add(first.back() + 1, second.back() + 1, -1, own.back() + 1);
+    adjacent.resize(first.size() / BLOCK);
+    for (int block = 0; block < int(adjacent.size()); block++) adjacent[block] = consecutive(block);
+  }
+
+ private:
+  // A vector that is stored also covers the places that fill up its block. `second` is stored
+  // before `first`, which therefore must not cover a slot of `second`.
+  bool consecutive(int block) const {
+    const int32_t *a = &first[block * BLOCK], *b = &second[block * BLOCK], *c = &own[block * BLOCK];
+    for (int i = 0; i < BLOCK; i++) {
+      if (a[i] != a[0] + i || b[i] != b[0] + i || c[i] != c[0] + i) return false;
+      if (item[block * BLOCK + i] >= 0 && b[i] >= a[0] && b[i] < a[0] + BLOCK) return false;
+    }
+    return true;
+  }
+};
+
+// The values at the slots of one vector of pairs.
+INLINE Vec gather(const float* values, const int32_t* slots, bool adjacent) {
+  if (adjacent) return load(values + slots[0]);
+  float found[LANES];
+  for (int i = 0; i < LANES; i++) found[i] = values[slots[i]];
+  return load(found);
+}
+
+INLINE void scatter(float* values, const int32_t* slots, const int32_t* item, bool adjacent,
+                    Vec v) {
+  if (adjacent) return store(values + slots[0], v);
+  for (int i = 0; i < LANES; i++)
+    if (item[i] >= 0) values[slots[i]] = v[i];
+}
+
+// A connected piece; `chain`: a single filament whose edges and joints stand in order.
+struct Piece {
+  Range nodes, edges;  // Slots.
+  std::vector<int32_t> node_of, edge_of, joint_of;
+  bool chain;
+};
+
+struct Bodies {
+  std::vector<Piece> pieces;
+  std::vector<Range> bodies;  // Slots of nodes.
+  std::vector<int32_t> node_slot, edge_slot;
+  int node_slots = 0, edge_slots = 0;
+  Pairs edges;   // In the order of their slots.
+  Pairs joints;  // In their order.
+  // Of sweeps: constraints by tile (bodies that fit a near cache), then colour.
+  struct Tile {
+    std::vector<Pairs> edge_colours, joint_colours;
+  };
+  std::vector<Tile> tiles;
+
+  explicit Bodies(const Rollout& r);
+
+ private:
+  void place_nodes(const Rollout& r);
+  void place_edges(const Rollout& r);
+  void colour(const Rollout& r);
+};
+
+inline int halves(int count) { return (((count + 1) / 2 + BLOCK - 1) / BLOCK) * BLOCK; }
+
+inline Bodies::Bodies(const Rollout& r) {
+  place_nodes(r);
+  place_edges(r);
+  colour(r);
+}
+
+inline void Bodies::place_nodes(const Rollout& r) {
+  std::vector<int> order(r.nodes);
+  std::iota(order.begin(), order.end(), 0);
+  auto key = [&](int n) { return std::make_tuple(r.member[n], r.piece[n], n); };
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
+  node_slot.resize(r.nodes);
+  bodies.assign(r.bodies, {0, 0});
+  for (int i = 0; i < r.nodes;) {
+    const int body = r.member[order[i]], piece = r.piece[order[i]];
+    Piece found;
+    for (; i < r.nodes && r.member[order[i]] == body && r.piece[order[i]] == piece; i++)
+      found.node_of.push_back(order[i]);
+    const int count = int(found.node_of.size()), half = halves(count);
+    for (int k = 0; k < count; k++)
+      node_slot[found.node_of[k]] = node_slots + (k & 1) * half + k / 2;
+    found.nodes = {node_slots, node_slots + 2 * half};
+    if (bodies[body].to == 0) bodies[body].from = node_slots;
+    node_slots = bodies[body].to = found.nodes.to;
+    pieces.push_back(found);
+  }
+}
+
+inline void Bodies::place_edges(const Rollout& r) {
+  std::vector<int> piece_of_slot(node_slots);
+  for (int p = 0; p < int(pieces.size()); p++)
+    std::fill(piece_of_slot.begin() + pieces[p].nodes.from,
+              piece_of_slot.begin() + pieces[p].nodes.to, p);
+  for (int e = 0; e < r.edges; e++)
+    pieces[piece_of_slot[node_slot[r.ends[2 * e]]]].edge_of.push_back(e);
+  edge_slot.resize(r.edges);
+  for (Piece& piece : pieces) {
+    const int count = int(piece.edge_of.size()), half = halves(count);
+    for (int k = 0; k < count; k++)
+      edge_slot[piece.edge_of[k]] = edge_slots + (k & 1) * half + k / 2;
+    piece.edges = {edge_slots, edge_slots + 2 * half};
+    edge_slots += 2 * half;
+  }
+  for (int j = 0; j < r.joints; j++)
+    pieces[piece_of_slot[node_slot[r.ends[2 * r.pairs[2 * j]]]]].joint_of.push_back(j);
+  for (Piece& piece : pieces) {
+    const auto &nodes = piece.node_of, &edges_of = piece.edge_of, &joints_of = piece.joint_of;
+    piece.chain = edges_of.size() + 1 == nodes.size() && joints_of.size() + 1 == edges_of.size();
+    for (size_t k = 0; piece.chain && k < edges_of.size(); k++)
+      piece.chain =
+          r.ends[2 * edges_of[k]] == nodes[k] && r.ends[2 * edges_of[k] + 1] == nodes[k + 1];
+    for (size_t k = 0; piece.chain && k < joints_of.size(); k++)
+      piece.chain = r.pairs[2 * joints_of[k]] == edges_of[k] &&
+                    r.pairs[2 * joints_of[k] + 1] == edges_of[k + 1];
+  }
+  std::vector<int> edge_at(edge_slots, -1);
+  for (int e = 0; e < r.edges; e++) edge_at[edge_slot[e]] = e;
+  int one = 0, other = 0;
+  for (int slot = 0; slot < edge_slots; slot++) {
+    const int e = edge_at[slot];
+    one = e < 0 ? one + 1 : node_slot[r.ends[2 * e]];
+    other = e < 0 ? other + 1 : node_slot[r.ends[2 * e + 1]];
+    edges.add(one, other, e, slot);
+  }
+  for (int j = 0; j < r.joints; j++)
+    joints.add(edge_slot[r.pairs[2 * j]], edge_slot[r.pairs[2 * j + 1]], j, j);
+  edges.fill(), joints.fill();
+}
+
+inline void Bodies::colour(const Rollout& r) {
+  if (r.matched) return;
+  constexpr int TILE = 512;          // Slots.
+  using Found = std::array<int, 5>;  // Colour, slots of the pair, number, own slot.
+  auto coloured = [](std::vector<Pairs>& colours, std::vector<Found>& found) {
+    std::sort(found.begin(), found.end());
+    for (auto [colour, one, other, item, slot] : found) {
+      if (colour >= int(colours.size())) colours.resize(colour + 1);
+      colours[colour].add(one, other, item, slot);
+    }
+    for (Pairs& pairs : colours) pairs.fill();
+  };
+  for (size_t p = 0; p < pieces.size();) {
+    Tile tile;
+    std::vector<Found> edges_found, joints_found;
+    const int start = pieces[p].nodes.from;
+    do {
+      for (int e : pieces[p].edge_of)
+        edges_found.push_back({r.edge_colour[e], node_slot[r.ends[2 * e]],
+                               node_slot[r.ends[2 * e + 1]], e, edge_slot[e]});
+      for (int j : pieces[p].joint_of)
+        joints_found.push_back(
+            {r.joint_colour[j], edge_slot[r.pairs[2 * j]], edge_slot[r.pairs[2 * j + 1]], j, j});
+    } while (++p < pieces.size() && pieces[p].nodes.to - start <= TILE);
+    coloured(tile.edge_colours, edges_found);
+    coloured(tile.joint_colours, joints_found);
+    tiles.push_back(std::move(tile));
+  }
+}
+
+}  // namespace microcosmos::ISA

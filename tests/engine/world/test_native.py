@@ -1,0 +1,128 @@
+"""The native kernel against JAX: the same steps, to rounding; the same bits on every CPU."""
+
+from dataclasses import replace
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from kernel_scenes import OBSERVED, SCENES, in_jax, run
+
+from microcosmos import device, filaments, world
+
+kernels = pytest.importorskip(
+    "microcosmos_kernels", reason="microcosmos-kernels is not installed: no compiler?"
+)
+native = world.native
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_kernel_takes_the_steps_of_jax(name):
+    agree(SCENES[name]())
+
+
+def agree(scene):
+    """Compare the kernel with JAX after 1, 10 and 100 steps."""
+    end, observed = run(in_jax, scene)
+    found, seen = run(native.rollout, scene)
+    for one in OBSERVED:
+        expected = np.asarray(getattr(observed, one))
+        # Positions are near 30, of which a float holds 2e-6; motions are their differences.
+        tolerance = 1e-5 + 1e-3 * np.abs(expected).max(initial=0)
+        for steps in (1, 10, 100):
+            np.testing.assert_allclose(
+                getattr(seen, one)[:steps], expected[:steps], rtol=0, atol=tolerance
+            )
+    # A node at the very limit may count or not.
+    np.testing.assert_allclose(seen.held, observed.held, atol=1.5 / len(end.positions))
+    np.testing.assert_allclose(found.positions, end.positions, atol=2e-4)
+    np.testing.assert_allclose(found.angles, end.angles, atol=2e-5)
+    np.testing.assert_allclose(found.populations, end.populations, atol=3e-5)
+
+
+@pytest.mark.parametrize(
+    "name", ["shape matching", "sweeps", "a star", "three bodies", "two layers"]
+)
+def test_every_instruction_set_gives_the_same_bits(name):
+    sets = kernels.instruction_sets()
+    found = [
+        run(lambda *given, one=one: native.rollout(*given, one), SCENES[name]()) for one in sets
+    ]
+    for other in found[1:]:
+        jax.tree.map(np.testing.assert_array_equal, other, found[0])
+
+
+def test_a_rollout_goes_on_where_another_ended():
+    box, start, rest = SCENES["shape matching"]()
+    whole, _ = run(native.rollout, (box, start, rest))
+    half, _ = run(native.rollout, (box, start, rest), 50)
+    later = jax.tree.map(lambda x: x[50:], rest)
+    jax.tree.map(
+        np.testing.assert_array_equal, run(native.rollout, (box, half, later))[0], whole
+    )
+
+
+def test_a_batch_gives_the_bits_of_each_world():
+    box, start, rest = SCENES["shape matching"]()
+    sizes = jnp.asarray([0.5, 1.0, 1.5], jnp.float32)
+    viscosities = jnp.asarray([0.05, 0.5], jnp.float32)
+
+    def roll(viscosity, size):
+        one = filaments.Rest(size * rest.angle, rest.length)
+        return native.rollout(replace(box, viscosity=viscosity), start, one)[0]
+
+    batch = jax.vmap(jax.vmap(roll, (None, 0)), (0, None))(viscosities, sizes)
+    for i, viscosity in enumerate(viscosities):
+        for j, size in enumerate(sizes):
+            one = jax.tree.map(lambda x, at=(i, j): x[at], batch)
+            jax.tree.map(np.testing.assert_array_equal, one, roll(viscosity, size))
+
+
+def test_what_is_not_finite_stays_inside_the_world():
+    box, start, rest = SCENES["sweeps"]()
+    for bad in (np.nan, np.inf, 1e30):
+        positions = start.positions.at[3].set(bad)
+        end, observed = run(native.rollout, (box, replace(start, positions=positions), rest))
+        assert not np.isfinite(observed.centre).all()
+        assert not np.isfinite(end.positions).all()
+
+
+def test_a_derivative_never_passes_through_the_kernel():
+    box, start, rest = SCENES["shape matching"]()
+
+    def far(angle):
+        return native.rollout(box, start, filaments.Rest(angle, rest.length))[1].centre[-1, 0]
+
+    with pytest.raises(ValueError, match=r"[Dd]ifferentiat"):
+        jax.grad(far)(rest.angle)
+
+
+def test_wrong_shapes_are_refused():
+    box, start, rest = SCENES["shape matching"]()
+    short = eqx.tree_at(lambda one: one.rods.shear, box, box.rods.shear[:5])
+    with pytest.raises(Exception, match=r"array 26 must have the shape \(19, \), got \(5, \)"):
+        jax.block_until_ready(native.rollout(short, start, rest))
+    edges = box.rods.edges.at[0, 0].set(99)
+    broken = replace(box, rods=replace(box.rods, edges=edges))
+    with pytest.raises(Exception, match="refers to nodes or edges that it lacks"):
+        jax.block_until_ready(native.rollout(broken, start, rest))
+
+
+def test_what_the_kernel_lacks_is_left_to_jax(monkeypatch, float64):
+    box, start, _ = SCENES["shape matching"]()
+    assert native.chosen(box, start)
+    without = replace(box, form=replace(box.form, fluid=False))
+    assert not native.chosen(without, start)
+    exact = replace(start, positions=start.positions.astype(float64))
+    assert not native.chosen(box, exact)
+    monkeypatch.setenv("MICROCOSMOS_KERNEL", "jax")
+    assert not native.chosen(box, start)
+    assert "kernels" not in device.device_kind()
+    monkeypatch.setenv("MICROCOSMOS_KERNEL", "native")
+    assert f"microcosmos-kernels {kernels.__version__}" in device.device_kind()
+    with pytest.raises(ValueError, match="does not cover a world without fluid"):
+        native.chosen(without, start)
+    monkeypatch.setenv("MICROCOSMOS_KERNEL", "fast")
+    with pytest.raises(ValueError, match="one of auto, native, jax, got 'fast'"):
+        native.chosen(box, start)

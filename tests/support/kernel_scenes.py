@@ -1,0 +1,152 @@
+"""Worlds in which the native kernel is compared with JAX."""
+
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from microcosmos import bodies, coupling, filaments, fluid, groups, world
+from microcosmos.build import build_rods
+from microcosmos.build.scene import build_layout
+
+STIFF = {"stretch": 1.0, "shear": 1.0, "bend": 1.0}
+OBSERVED = (
+    "centre",
+    "positions",
+    "speed",
+    "node_speed",
+    "heading",
+    "curvature",
+    "power",
+    "force",
+)
+
+
+def scene(body, size=(48, 48), *, matched=False, limits=(0.1, 0.1), nu_c=None, **form):
+    """A body that bends in a travelling wave: world, start, rest shapes of 100 steps."""
+    member = groups.Groups(jnp.asarray(body.member, jnp.int32), body.count)
+    box = world.World(
+        viscosity=jnp.float32(0.05),
+        rods=build_rods(body),
+        groups=member,
+        size=size,
+        form=world.Form(**form),
+        limits=world.Limits(*(None if one is None else jnp.float32(one) for one in limits)),
+        layout=build_layout(body) if matched else None,
+        nu_c=None if nu_c is None else jnp.float32(nu_c),
+    )
+    middle = body.positions - body.positions.mean(0) + np.array(size) / 2
+    start = world.at_rest(box, jnp.asarray(middle, jnp.float32))
+    time = np.arange(100)[:, None] / 100
+    joint, edge = (np.arange(n)[None] / (n + 1) for n in (len(body.joints), len(body.edges)))
+    angle = body.rest_angle[None] + 0.1 * time * np.sin(2 * np.pi * (joint - time))
+    length = body.rest_length[None] * (1 + 0.1 * time * np.sin(2 * np.pi * (edge - time)))
+    return box, start, filaments.Rest(jnp.float32(angle), jnp.float32(length))
+
+
+def chain(nodes=20, spacing=1.0, **stiffness):
+    return bodies.chain(nodes, spacing, **{**STIFF, **stiffness})
+
+
+def shoal():
+    """Three filaments, each turned another way."""
+    places = (((12.3, 14.2), 0.3), ((35.1, 12.9), 2.1), ((24.0, 34.4), 4.0))
+    return bodies.combined([bodies.placed(chain(11), *place) for place in places])
+
+
+def grown(body, nodes, **options):
+    """A chain of which only the first nodes have grown."""
+    box, start, rest = scene(body, **options)
+    present = jnp.arange(len(body.positions)) < nodes
+    rods = world.grown_rods(box.rods, present)
+    return replace(box, present=present, rods=rods), start, rest
+
+
+SCENES = {
+    "shape matching": lambda: scene(chain(), matched=True),
+    "sweeps": lambda: scene(chain()),
+    "an odd number of nodes, rows that fill no vector": lambda: scene(
+        chain(21, 0.8), (45, 51), matched=True
+    ),
+    "two nodes": lambda: scene(chain(2), matched=True),
+    "two nodes, swept": lambda: scene(chain(2)),
+    "a soft body": lambda: scene(chain(stretch=0.7, shear=0.4, bend=0.6)),
+    "a star, matched": lambda: scene(bodies.star(4, 6, 1.0, **STIFF), matched=True),
+    "a star": lambda: scene(bodies.star(4, 6, 1.0, **STIFF)),
+    "a ring": lambda: scene(bodies.ring(20, 1.0, **STIFF), matched=True),
+    "three bodies, matched": lambda: scene(shoal(), matched=True),
+    "three bodies": lambda: scene(shoal()),
+    "no limits": lambda: scene(chain(), matched=True, limits=(None, None)),
+    "limits that act": lambda: scene(chain(), matched=True, limits=(0.01, 0.003)),
+    "two layers": lambda: scene(chain(), matched=True, layers=2),
+    "Roma's delta": lambda: scene(chain(), matched=True, kernel=coupling.ROMA),
+    "the hat": lambda: scene(chain(), matched=True, kernel=coupling.HAT),
+    "the paper's literal form": lambda: scene(
+        chain(bend=0.5),
+        projection=coupling.unprojected,
+        theta_feedback=0.0,
+        force_factor=1.0,
+        forcing_iterations=1,
+        magic=fluid.fixed_magic,
+    ),
+    "no net force": lambda: scene(
+        chain(), projection=coupling.force_free, theta_feedback=0.5, forcing_iterations=5
+    ),
+    "weak actuators": lambda: scene(chain(), nu_c=0.05),
+    "a body that has grown": lambda: grown(chain(), 13),
+    "a stiff body that has grown": lambda: grown(chain(), 13, matched=True),
+}
+
+
+def any_scene(rng):
+    """A world of random size, form and bodies."""
+    stiffness = dict.fromkeys(STIFF, 1.0)
+    if rng.random() < 0.4:
+        stiffness = {name: rng.uniform(0.3, 1.0) for name in STIFF}
+    spacing = rng.uniform(0.7, 1.6)
+    makers = (
+        lambda: bodies.chain(int(rng.integers(3, 24)), spacing, **stiffness),
+        lambda: bodies.ring(int(rng.integers(6, 24)), spacing, **stiffness),
+        lambda: bodies.star(
+            int(rng.integers(3, 6)), int(rng.integers(2, 7)), spacing, **stiffness
+        ),
+        lambda: bodies.tree(2, 2, 4, max(1.0, spacing), 0.9, **stiffness),
+    )
+    body = makers[rng.integers(len(makers))]()
+    if rng.random() < 0.3:
+        body = bodies.combined(
+            [bodies.placed(body, (x, 20.0), rng.uniform(0, 6)) for x in (20.0, 65.0)]
+        )
+    feedback = rng.choice([1.0, 1.0, 0.5, 0.0])
+    projections = [coupling.unprojected, coupling.force_free]
+    if feedback > 0:
+        projections.append(coupling.torque_free)
+    weak = rng.random() < 0.2
+    matched = set(stiffness.values()) == {1.0} and feedback == 1 and not weak
+    deltas = [coupling.PESKIN, coupling.PESKIN, coupling.ROMA, coupling.HAT]
+    return scene(
+        body,
+        (int(rng.integers(64, 100)), int(rng.integers(64, 100))),
+        matched=matched and rng.random() < 0.8,
+        limits=(0.1, 0.1) if rng.random() < 0.8 else (0.02, 0.01),
+        nu_c=0.05 if weak else None,
+        projection=projections[rng.integers(len(projections))],
+        theta_feedback=float(feedback),
+        force_factor=float(rng.choice([1.0, 2.0])),
+        forcing_iterations=int(rng.integers(1, 6)),
+        constraint_iterations=int(rng.integers(1, 12)),
+        layers=int(rng.choice([1, 1, 2])),
+        kernel=deltas[rng.integers(len(deltas))],
+        magic=fluid.capped_magic if rng.random() < 0.8 else fluid.fixed_magic,
+    )
+
+
+def run(rollout, scene, steps=100):
+    """Carry out the first steps of a scene; return the end and the measures."""
+    box, start, rest = scene
+    return jax.jit(rollout)(box, start, jax.tree.map(lambda x: x[:steps], rest))
+
+
+def in_jax(box, start, rest):
+    return world.rollout(box, start, rest, lambda state, measures: measures)
