@@ -74,8 +74,9 @@ def _closed_loop(driven: Drive, actuators: Actuators) -> Drive:
         command = bounded(driven.control(world, state, given), actuators, world)
         paced = command
         if actuators.max_speed is not None:
-            shapes = (rest_positions(one, actuators.layout) for one in (memory.paced, command))
-            fast = fastest(*shapes, actuators.layout, world.present)
+            before = rest_positions(memory.paced, actuators.layout)
+            after = rest_positions(command, actuators.layout)
+            fast = fastest(before, after, actuators.layout, world.present)
             share = jnp.minimum(1.0, actuators.max_speed / fast)
             paced = _between(memory.paced, command, share)
         rest = _between(memory.rest, paced, 1 / (1 + actuators.lag))
