@@ -19,7 +19,8 @@ import rich
 from databases import Missing, service_settings
 from drive import Installation, interrupt, kill_job, pause_and_resume, running, stop_worker
 from left_open import leave_open
-from searches import HOURS, METHODS, SEEDS, carry_out, compare, compare_slopes, forage, spec
+from searches import HOURS, METHODS, SEEDS, carry_out, compare, forage, spec
+from slopes import compare_slopes
 from swimming import swimming
 from uploads import all_cases, send, watched
 

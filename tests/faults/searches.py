@@ -29,10 +29,13 @@ METHODS = {
     },
 }
 """Differences between the searches; everything else is the default of the spec."""
+BUDGETS = (3_200, 12_800)
+"""Evaluations after which searches are compared."""
 BARS = {
-    ("MAP-Elites, NEAT", "qd_score"): 1.3,
-    ("MAP-Elites, NEAT", "best"): 1.2,
-    ("NEAT", "best"): 1.0,
+    (3_200, "MAP-Elites, NEAT", "qd_score"): 1.3,
+    (12_800, "MAP-Elites, NEAT", "qd_score"): 1.3,
+    (12_800, "MAP-Elites, NEAT", "best"): 1.1,
+    (12_800, "NEAT", "best"): 1.1,
 }
 """Least ratios of medians to those of random search."""
 FIGURES = {
@@ -42,16 +45,6 @@ FIGURES = {
 }
 PURE = 0.9
 """Least share of a gait's power in one harmonic for a sinusoidal gait."""
-
-SLOPE_METHODS = {
-    "NEAT": ("cppn", {"operator": "neat"}, 200),
-    "NEAT that learns": ("cppn", {"operator": "lamarckian", "lessons": 1, "step": 0.5}, 50),
-    "iso+line, direct": ("direct", {"operator": "iso+line"}, 200),
-    "CMA-MEGA, direct": ("direct", {"operator": "cma-mega"}, 120),
-}
-"""Encoding, emitter and generations, so that all take about as long."""
-PAIRS = (("NEAT that learns", "NEAT"), ("CMA-MEGA, direct", "iso+line, direct"))
-"""With derivatives, and without."""
 
 
 def carry_out(product: Installation, document: dict, title: str) -> dict:
@@ -78,25 +71,34 @@ def written(spec: dict[str, Any]) -> dict[str, Any]:
 
 
 def spec(seed: int, method: str) -> dict:
-    """24 nodes, 48 × 48 cells, 2,000 steps, 20 × 20 cells, 50 generations of 64."""
+    """24 nodes, 48 × 48 cells, 2,000 steps, 20 × 20 cells, generations of 64."""
     chosen = METHODS[method]
-    search = {**chosen.get("search", {}), "generations": 50, "batch": 64}
+    search = {**chosen.get("search", {}), "generations": BUDGETS[-1] // 64, "batch": 64}
     return written({**chosen, "seed": seed, "search": search})
 
 
 def compare(product: Installation, runs: dict[str, list[dict]]) -> bool:
     """Print and draw medians and ranges; tell whether medians reach their bars."""
-    found = {n: [[run[f] for run in some] for f in FIGURES] for n, some in runs.items()}
-    rich.print(table("median (range)", FIGURES.values(), found))
+    found = {
+        budget: {
+            method: [figures_at(product, run, budget) for run in some]
+            for method, some in runs.items()
+        }
+        for budget in BUDGETS
+    }
+    for budget, methods in found.items():
+        lists = {n: [[run[f] for run in some] for f in FIGURES] for n, some in methods.items()}
+        rich.print(table(f"{budget:,} evaluations: median (range)", FIGURES.values(), lists))
     good = True
-    for (method, figure), bar in BARS.items():
-        own, other = ([run[figure] for run in runs[n]] for n in (method, "random"))
+    for (budget, method, figure), bar in BARS.items():
+        own, other = ([run[figure] for run in found[budget][n]] for n in (method, "random"))
         ratio = statistics.median(own) / statistics.median(other)
         good &= ratio > bar
         rich.print(
-            f"{method}, {figure}: {ratio:.2f} × random search (bar {bar}), {rank(own, other)}"
+            f"{method}, {figure} after {budget:,} evaluations: {ratio:.2f} × random search "
+            f"(bar {bar}), {rank(own, other)}"
         )
-    draw(runs)
+    draw(found)
     for method, some in runs.items():
         purities = [purity(file) for run in some for file in fittest(product, run["id"], 10)]
         rich.print(
@@ -105,6 +107,13 @@ def compare(product: Installation, runs: dict[str, list[dict]]) -> bool:
             "one harmonic)"
         )
     return good
+
+
+def figures_at(product: Installation, run: dict, evaluations: int) -> dict[str, float]:
+    """The figures of a run after so many evaluations."""
+    found = product.get(f"runs/{run['id']}/generations")
+    at = np.searchsorted(found["evaluations"], evaluations, side="right") - 1
+    return {figure: found[figure][at] for figure in FIGURES}
 
 
 def rank(own: list[float], other: list[float]) -> str:
@@ -128,20 +137,26 @@ def summary(values: list[float]) -> str:
     return f"{middle:.{digits}f} ({low:.{digits}f}–{high:.{digits}f})"
 
 
-def draw(runs: dict[str, list[dict]]) -> None:
-    """A panel for each figure, a point for each seed, a bar at the median."""
-    figure = Figure(figsize=(10, 3.2), layout="constrained")
+def draw(found: dict[int, dict[str, list[dict]]]) -> None:
+    """A panel for each figure, a point for each seed, a bar at the median: after the smaller
+    budget pale, after the larger one strong."""
+    figure = Figure(figsize=(10, 3.4), layout="constrained")
     for axes, (key, title) in zip(figure.subplots(1, 3), FIGURES.items(), strict=True):
-        for column, found in enumerate(runs.values()):
-            values = [run[key] for run in found]
-            axes.plot([column] * len(values), values, "o", alpha=0.5, color=f"C{column}")
-            middle = statistics.median(values)
-            axes.plot([column - 0.3, column + 0.3], [middle] * 2, color=f"C{column}", lw=2)
-        labels = [method.replace(", ", ",\n") for method in runs]
-        axes.set_xticks(range(len(runs)), labels, fontsize=7)
+        for shade, methods in zip((0.3, 0.8), found.values(), strict=True):
+            for column, some in enumerate(methods.values()):
+                values, place = [run[key] for run in some], column + 0.4 * shade - 0.22
+                color = f"C{column}"
+                axes.plot([place] * len(values), values, "o", alpha=shade, color=color)
+                middle = statistics.median(values)
+                ends = [place - 0.12, place + 0.12]
+                axes.plot(ends, [middle] * 2, color=color, lw=2)
+        labels = [method.replace(", ", ",\n") for method in methods]
+        axes.set_xticks(range(len(labels)), labels, fontsize=7)
         axes.set_title(title, fontsize=10)
         axes.set_ylim(bottom=0)
         axes.spines[["top", "right"]].set_visible(False)
+    budgets = " and ".join(f"{budget:,}" for budget in found)
+    figure.suptitle(f"After {budgets} evaluations, left to right", fontsize=9)
     figure.savefig(PICTURES / "searches.png", dpi=150)
 
 
@@ -173,73 +188,6 @@ def purity(file: dict) -> float:
     angle = np.stack([np.interp(at, phase, one) for one in angle.T], 1)
     power = (np.abs(np.fft.rfft(angle, axis=0)) ** 2).sum(1)[1:]
     return float(power.max() / power.sum()) if power.sum() > 0 else 0.0
-
-
-def slope_spec(seed: int, method: str) -> dict:
-    """16 nodes, 32 × 32 cells, 800 steps, 20 × 20 cells."""
-    encoding, emitter, generations = SLOPE_METHODS[method]
-    control = {"encoding": encoding, "period": 120, "angle_scale": 0.6}
-    search = {"generations": generations, "batch": 32, "emitters": [emitter]}
-    size = {"world": {"width": 32, "height": 32}, "body": {"nodes": 16}, "task": {"steps": 800}}
-    return written({**size, "seed": seed, "control": control, "search": search})
-
-
-def compare_slopes(product: Installation) -> bool:
-    """Compare searches with derivatives and without, by evaluations and by device-seconds.
-
-    Either may win.
-    """
-    curves = {
-        method: [
-            curve(product, carry_out(product, slope_spec(s, method), f"{method}, seed {s}"))
-            for s in SEEDS
-        ]
-        for method in SLOPE_METHODS
-    }
-    most = [min(one[axis][-1] for runs in curves.values() for one in runs) for axis in (0, 1)]
-    found = {
-        method: [[score_at(one, axis, most[axis]) for one in runs] for axis in (0, 1)]
-        for method, runs in curves.items()
-    }
-    columns = ("equal evaluations", "equal device-seconds")
-    rich.print(table("median QD score (range)", columns, found))
-    rich.print(f"at {most[0]:.0f} evaluations, and at {most[1]:.1f} device-seconds")
-    for pair in PAIRS:
-        for column, own, other in zip(columns, found[pair[0]], found[pair[1]], strict=True):
-            ratio = statistics.median(own) / statistics.median(other)
-            rich.print(f"{pair[0]}: {ratio:.2f} × {pair[1]} at {column}, {rank(own, other)}")
-    draw_slopes(curves)
-    return True
-
-
-def curve(product: Installation, run: dict) -> np.ndarray:
-    """Evaluations, device-seconds without compilation, and QD score, (3, generation)."""
-    found = product.get(f"runs/{run['id']}/generations")
-    seconds = np.array(found["summary"]["device_seconds"], float)
-    seconds[0] = 0.0  # The first generation compiles the programs.
-    return np.array([found["evaluations"], np.cumsum(seconds), found["qd_score"]])
-
-
-def score_at(one: np.ndarray, axis: int, most: float) -> float:
-    """The QD score of the last generation that ended by then."""
-    return float(one[2, np.searchsorted(one[axis], most, side="right") - 1])
-
-
-def draw_slopes(curves: dict[str, list[np.ndarray]]) -> None:
-    """QD score against evaluations and against device-seconds, a line for each seed."""
-    figure = Figure(figsize=(10, 3.6), layout="constrained")
-    panels = figure.subplots(1, 2, sharey=True)
-    for axis, label in enumerate(("evaluations", "device-seconds")):
-        for number, (method, runs) in enumerate(curves.items()):
-            for seed, one in enumerate(runs):
-                once = method if seed == 0 else f"_{method}"
-                style = {"color": f"C{number}", "lw": 1, "alpha": 0.8, "label": once}
-                panels[axis].plot(one[axis], one[2], **style)
-        panels[axis].set(xlabel=label, ylim=(0, None))
-        panels[axis].spines[["top", "right"]].set_visible(False)
-    panels[0].set_ylabel("QD score")
-    panels[0].legend(fontsize=8, frameon=False)
-    figure.savefig(PICTURES / "slopes.png", dpi=150)
 
 
 def forage_spec(seed: int, fitness: str) -> dict:
