@@ -18,7 +18,7 @@
 namespace microcosmos::ISA {
 
 struct Range {
-  int from, to;
+  int from = 0, to = 0;
 };
 
 // Pairs of slots (the ends of edges, or the edges of joints) in blocks of 16.
@@ -73,7 +73,7 @@ INLINE void scatter(float* values, const int32_t* slots, const int32_t* item, bo
 struct Piece {
   Range nodes, edges;  // Slots.
   std::vector<int32_t> node_of, edge_of, joint_of;
-  bool chain;
+  bool chain = false;
 };
 
 struct Bodies {

@@ -40,6 +40,7 @@ class Matching {
     direction_ = Floats(b.edge_slots + BLOCK), along_x_ = Floats(b.edge_slots + BLOCK);
     along_y_ = Floats(b.edge_slots + BLOCK);
     goal_x_ = Floats(b.node_slots + BLOCK), goal_y_ = Floats(b.node_slots + BLOCK);
+    if (!r.matched) return;  // There is no layout to read.
     size_t room = 0;
     for (const Piece& p : b.pieces)
       if (!p.chain) {

@@ -1,0 +1,59 @@
+"""The native kernel under sanitisers: nothing outside arrays is read or written."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import jax
+import pytest
+
+pytest.importorskip(
+    "microcosmos_kernels", reason="microcosmos-kernels is not installed: no compiler?"
+)
+ROOT = Path(__file__).parents[3]
+KERNELS = ROOT / "engine" / "kernels"
+FLAGS = (
+    "-std=c++17 -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined "
+    "-ffp-contract=off -Wno-psabi -fPIC -shared"
+)
+RUN = """
+import jax, numpy as np
+from dataclasses import replace
+from kernel_scenes import SCENES, any_scene, run
+from microcosmos import world
+
+for make in SCENES.values():
+    jax.block_until_ready(run(world.native.rollout, make(), 10))
+for seed in range(40):
+    rng = np.random.default_rng(seed)
+    box, start, rest = any_scene(rng)
+    if seed % 2:
+        bad = rng.choice([np.nan, np.inf, -np.inf, 1e30, -1e9, 1e7])
+        start = replace(start, positions=start.positions.at[1].set(bad))
+    few = jax.tree.map(lambda x: x[:5], rest)
+    jax.block_until_ready(world.native.rollout(box, start, few))
+print("nothing found")
+"""
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not shutil.which("g++"), reason="there is no g++")
+def test_any_world_stays_within_its_arrays(tmp_path):
+    package = tmp_path / "microcosmos_kernels"
+    package.mkdir()
+    shutil.copy(KERNELS / "microcosmos_kernels" / "__init__.py", package)
+    include = ["-isystem", jax.ffi.include_dir(), str(KERNELS / "src" / "ffi.cpp")]
+    subprocess.run(["g++", *FLAGS.split(), *include, "-o", package / "basic.so"], check=True)
+    libraries = [
+        subprocess.check_output(["g++", f"-print-file-name={name}"], text=True).strip()
+        for name in ("libasan.so", "libubsan.so")
+    ]
+    environment = os.environ | {
+        "LD_PRELOAD": " ".join(libraries),
+        "ASAN_OPTIONS": "detect_leaks=0",  # Python and XLA leak.
+        "PYTHONPATH": os.pathsep.join(map(str, (tmp_path, ROOT / "tests" / "support"))),
+    }
+    done = subprocess.run([sys.executable, "-c", RUN], env=environment, capture_output=True)
+    assert done.stdout.decode().strip() == "nothing found", done.stderr.decode()[-3000:]
