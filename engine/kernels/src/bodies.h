@@ -88,6 +88,7 @@ struct Bodies {
     std::vector<Pairs> edge_colours, joint_colours;
   };
   std::vector<Tile> tiles;
+  std::vector<int32_t> filaments;  // Pieces that are swept in registers instead.
 
   explicit Bodies(const Rollout& r);
 
@@ -95,6 +96,7 @@ struct Bodies {
   void place_nodes(const Rollout& r);
   void place_edges(const Rollout& r);
   void colour(const Rollout& r);
+  bool is_filament(const Rollout& r, const Piece& piece) const;
 };
 
 inline int halves(int count) { return (((count + 1) / 2 + BLOCK - 1) / BLOCK) * BLOCK; }
@@ -168,6 +170,16 @@ inline void Bodies::place_edges(const Rollout& r) {
   edges.fill(), joints.fill();
 }
 
+// Whether a piece is a filament short enough for registers, whose colours take turns.
+inline bool Bodies::is_filament(const Rollout& r, const Piece& piece) const {
+  bool found = piece.chain && piece.nodes.to - piece.nodes.from <= 8 * BLOCK;
+  for (size_t k = 0; k < piece.edge_of.size(); k++)
+    found = found && r.edge_colour[piece.edge_of[k]] == int(k & 1);
+  for (size_t k = 0; k < piece.joint_of.size(); k++)
+    found = found && r.joint_colour[piece.joint_of[k]] == int(k & 1);
+  return found;
+}
+
 inline void Bodies::colour(const Rollout& r) {
   if (r.matched) return;
   constexpr int TILE = 512;          // Slots.
@@ -185,6 +197,10 @@ inline void Bodies::colour(const Rollout& r) {
     std::vector<Found> edges_found, joints_found;
     const int start = pieces[p].nodes.from;
     do {
+      if (is_filament(r, pieces[p])) {
+        filaments.push_back(int(p));
+        continue;
+      }
       for (int e : pieces[p].edge_of)
         edges_found.push_back({r.edge_colour[e], node_slot[r.ends[2 * e]],
                                node_slot[r.ends[2 * e + 1]], e, edge_slot[e]});
@@ -194,7 +210,7 @@ inline void Bodies::colour(const Rollout& r) {
     } while (++p < pieces.size() && pieces[p].nodes.to - start <= TILE);
     coloured(tile.edge_colours, edges_found);
     coloured(tile.joint_colours, joints_found);
-    tiles.push_back(std::move(tile));
+    if (!tile.edge_colours.empty()) tiles.push_back(std::move(tile));
   }
 }
 

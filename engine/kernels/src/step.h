@@ -3,7 +3,8 @@
 #include <chrono>
 
 #include "forcing.h"
-#include "shapes.h"
+#include "matching.h"
+#include "sweeps.h"
 
 namespace microcosmos::ISA {
 

@@ -1,37 +1,8 @@
-// Constraints: shape matching of stiff bodies, coloured Gauss-Seidel sweeps of soft ones.
-//
-// Shape matching: Mueller et al., ACM Trans. Graph. 24, 471 (2005). Sweeps: Mueller et al.,
-// J. Vis. Commun. Image R. 18, 109 (2007); Umetani, Schmidt and Stam, SCA 2014.
+// Shape matching of stiff bodies: Mueller et al., ACM Trans. Graph. 24, 471 (2005).
 #pragma once
-#include "bodies.h"
+#include "nodes.h"
 
 namespace microcosmos::ISA {
-
-// The nodes and edges of all bodies, by slots.
-struct Nodes {
-  Floats x, y;          // Positions at the start of the step.
-  Floats new_x, new_y;  // Where constraints move them.
-  Floats here;          // 1 for nodes that have grown.
-  Floats angle;         // Of edges.
-
-  explicit Nodes(const Bodies& b) {
-    for (Floats* one : {&x, &y, &new_x, &new_y, &here}) *one = Floats(b.node_slots + 2 * BLOCK);
-    angle = Floats(b.edge_slots + 2 * BLOCK);
-  }
-};
-
-// Move edge angles to those of the geometry, on the nearest branch, by the share `feedback`.
-inline void follow_geometry(const Bodies& b, Nodes& n, float feedback) {
-  each(0, b.edge_slots, [&](int i, int) __attribute__((always_inline)) {
-    const bool adjacent = b.edges.adjacent[i / BLOCK];
-    const int32_t *one = &b.edges.first[i], *other = &b.edges.second[i];
-    const Vec vx = gather(n.new_x, other, adjacent) - gather(n.new_x, one, adjacent);
-    const Vec vy = gather(n.new_y, other, adjacent) - gather(n.new_y, one, adjacent);
-    const Vec angle = load(n.angle + i);
-    const Vec followed = angle + wrapped(arctangent(vy, vx) - angle);
-    store(n.angle + i, feedback == 1 ? followed : angle + feedback * (followed - angle));
-  });
-}
 
 // Rest shapes of stiff bodies, fitted to where the fluid carried their nodes.
 class Matching {
@@ -170,101 +141,6 @@ class Matching {
   const Rollout& r_;
   Floats direction_, along_x_, along_y_, goal_x_, goal_y_, factors_;
   std::vector<size_t> starts_;
-};
-
-class Sweeps {
- public:
-  Sweeps(const Bodies& b, const Rollout& r) : b_(b), r_(r) {
-    for (const auto& tile : b.tiles) {
-      size_t room = 0;
-      for (const auto& colours : {&tile.edge_colours, &tile.joint_colours})
-        for (const Pairs& pairs : *colours) room += 3 * pairs.places();
-      values_.push_back(Floats(room));
-      float* at = values_.back();
-      for (const Pairs& pairs : tile.joint_colours) {
-        fill(pairs, r.bend, 0.5f, at + pairs.places());
-        at += 2 * pairs.places();
-      }
-      for (const Pairs& pairs : tile.edge_colours) {
-        fill(pairs, r.stretch, 0.5f, at + pairs.places());
-        fill(pairs, r.shear, 1, at + 2 * pairs.places());
-        at += 3 * pairs.places();
-      }
-    }
-  }
-
-  // Sweep bending, then stretching and shearing, `sweeps` times.
-  void apply(Nodes& n, const float* rest_angle, const float* rest_length) {
-    for (size_t t = 0; t < b_.tiles.size(); t++) {
-      const Bodies::Tile& tile = b_.tiles[t];
-      float* at = values_[t];
-      for (const Pairs& pairs : tile.joint_colours) {
-        fill(pairs, rest_angle, 1, at);
-        at += 2 * pairs.places();
-      }
-      for (const Pairs& pairs : tile.edge_colours) {
-        fill(pairs, rest_length, 1, at);
-        at += 3 * pairs.places();
-      }
-      for (int sweep = 0; sweep < r_.sweeps; sweep++) {
-        at = values_[t];
-        for (const Pairs& pairs : tile.joint_colours) {
-          bend(pairs, at, n);
-          at += 2 * pairs.places();
-        }
-        for (const Pairs& pairs : tile.edge_colours) {
-          stretch(pairs, at, n);
-          at += 3 * pairs.places();
-        }
-      }
-    }
-  }
-
- private:
-  void fill(const Pairs& pairs, const float* values, float factor, float* out) {
-    for (int i = 0; i < pairs.places(); i++)
-      if (pairs.item[i] >= 0) out[i] = factor * values[pairs.item[i]];
-  }
-
-  void bend(const Pairs& pairs, const float* values, Nodes& n) {
-    const float *rest = values, *share = values + pairs.places();
-    each(0, pairs.places(), [&](int i, int) __attribute__((always_inline)) {
-      const bool adjacent = pairs.adjacent[i / BLOCK];
-      const int32_t *one = &pairs.first[i], *other = &pairs.second[i], *item = &pairs.item[i];
-      const Vec a = gather(n.angle, one, adjacent), b = gather(n.angle, other, adjacent);
-      const Vec turn = load(share + i) * wrapped((b - a) - load(rest + i));
-      scatter(n.angle, other, item, adjacent, b - turn);
-      scatter(n.angle, one, item, adjacent, a + turn);
-    });
-  }
-
-  // Correct lengths along the tangent, and shear to the director.
-  void stretch(const Pairs& pairs, const float* values, Nodes& n) {
-    const int places = pairs.places();
-    const float *rest = values, *share = values + places, *shear = share + places;
-    each(0, places, [&](int i, int) __attribute__((always_inline)) {
-      const bool adjacent = pairs.adjacent[i / BLOCK];
-      const int32_t *one = &pairs.first[i], *other = &pairs.second[i], *item = &pairs.item[i];
-      const Vec x1 = gather(n.new_x, one, adjacent), y1 = gather(n.new_y, one, adjacent);
-      const Vec x2 = gather(n.new_x, other, adjacent), y2 = gather(n.new_y, other, adjacent);
-      Vec s, c;
-      sine_cosine(gather(n.angle, &pairs.own[i], adjacent), s, c);
-      const Vec vx = x2 - x1, vy = y2 - y1, length = load(rest + i);
-      const Vec ratio = length / root(vx * vx + vy * vy + 1e-12f);
-      const Vec ax = vx - vx * ratio, ay = vy - vy * ratio;
-      const Vec gx = vx - c * length, gy = vy - s * length;
-      const Vec k = load(share + i), q = load(shear + i);
-      const Vec dx = k * (ax + q * (gx - ax)), dy = k * (ay + q * (gy - ay));
-      scatter(n.new_x, other, item, adjacent, x2 - dx),
-          scatter(n.new_y, other, item, adjacent, y2 - dy);
-      scatter(n.new_x, one, item, adjacent, x1 + dx),
-          scatter(n.new_y, one, item, adjacent, y1 + dy);
-    });
-  }
-
-  const Bodies& b_;
-  const Rollout& r_;
-  std::vector<Floats> values_;  // Of each tile: rest values and stiffnesses, colour by colour.
 };
 
 }  // namespace microcosmos::ISA
