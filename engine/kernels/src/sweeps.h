@@ -93,7 +93,7 @@ class Sweeps {
   __attribute__((noinline)) void filament(const Piece& piece, Nodes& n) {
     const int even = piece.nodes.from, odd = even + N * LANES;
     const int even_edge = piece.edges.from, odd_edge = (even_edge + piece.edges.to) / 2;
-    const int edges = odd_edge - even_edge;  // Of one half; one block less than nodes may be there.
+    const int edges = odd_edge - even_edge;  // Slots of one half; nodes may have one block more.
     Vec xe[N], ye[N], xo[N], yo[N], te[N], to[N], dx[N], dy[N];
     for (int i = 0; i < N; i++) {
       const int at = i * LANES;
@@ -102,7 +102,7 @@ class Sweeps {
       te[i] = at < edges ? load(n.angle + even_edge + at) : Vec{};
       to[i] = at < edges ? load(n.angle + odd_edge + at) : Vec{};
     }
-    // Each vector with its last neighbour, and with its next one.
+    // The neighbours at the next place, and at the one before.
     auto next = [](const Vec* a, int i) __attribute__((always_inline)) {
       return right(a[i], a[i + 1 < N ? i + 1 : i]);
     };
