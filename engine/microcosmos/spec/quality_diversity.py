@@ -52,12 +52,12 @@ PAPER = QualityDiversity(
 
 PRESETS = {
     "demo": (
-        "A small demonstration, two minutes on two cores; the fittest swim 0.7 lengths in "
+        "A small demonstration, under a minute on two cores; the fittest swim 0.7 lengths in "
         "1,000 steps",
         DEMO,
     ),
     "standard": (
-        "24 nodes in 48 × 48 cells: 3,200 swimmers, five minutes on two cores; the fittest "
+        "24 nodes in 48 × 48 cells: 3,200 swimmers, a minute on two cores; the fittest "
         "swim 0.6 lengths in 1,000 steps",
         QualityDiversity(),
     ),
