@@ -16,7 +16,7 @@ WORKDIR /app
 COPY ${LOCK} ./
 RUN pip install --no-cache-dir --disable-pip-version-check --require-hashes -r ${LOCK}
 COPY --from=kernel /wheels /wheels
-RUN pip install --no-cache-dir --disable-pip-version-check --no-deps /wheels/*.whl
+RUN pip install --no-cache-dir --disable-pip-version-check --no-index --no-deps /wheels/*.whl
 COPY engine/microcosmos engine/microcosmos
 COPY server server
 COPY worker worker

@@ -3,6 +3,8 @@
 Prints tables and asserts nothing. Every program runs on one core; those of a table take turns.
 """
 
+import importlib
+import os
 import statistics
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -95,7 +97,7 @@ def in_jax(box: world.World, start: world.State, rest: filaments.Rest) -> Any:
 
 def rollouts(scenes: dict[str, Scene]) -> None:
     """Print the time of a step by JAX and by the kernel with each instruction set."""
-    kernels: Any = __import__("microcosmos_kernels")
+    kernels: Any = importlib.import_module("microcosmos_kernels")
     sets, rows = kernels.instruction_sets(), []
     for name, one in scenes.items():
         programs = {"JAX": program(one, in_jax)}
@@ -146,9 +148,9 @@ def evaluations() -> None:
 
 def evaluation(kernel: str, task: search.Task, genotypes: Any) -> Callable[[], Any]:
     """Compile the evaluation of a block by one kernel."""
-    with device.using(kernel):
-        compiled = search.block_program(lambda genotype: search.evaluate(task, genotype))
-        jax.block_until_ready(compiled(genotypes))
+    os.environ[device.KERNEL_VARIABLE] = kernel  # Read when a program is traced.
+    compiled = search.block_program(lambda genotype: search.evaluate(task, genotype))
+    jax.block_until_ready(compiled(genotypes))
     return lambda: compiled(genotypes)
 
 

@@ -6,8 +6,6 @@ Results repeat bit for bit on one kind of device; another kind may round differe
 import os
 import platform
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -61,19 +59,6 @@ def kernel() -> str:
         allowed = ", ".join(KERNELS)
         raise ValueError(f"`{KERNEL_VARIABLE}` must be one of {allowed}, got {chosen!r}")
     return chosen
-
-
-@contextmanager
-def using(chosen: str) -> Iterator[None]:
-    """Choose another kernel for programs that are traced within."""
-    before = os.environ.get(KERNEL_VARIABLE)
-    os.environ[KERNEL_VARIABLE] = chosen
-    try:
-        yield
-    finally:
-        os.environ.pop(KERNEL_VARIABLE)
-        if before is not None:
-            os.environ[KERNEL_VARIABLE] = before
 
 
 def kernel_version() -> str | None:

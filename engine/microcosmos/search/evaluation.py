@@ -191,8 +191,8 @@ def simulate(
     The native kernel simulates what it can, unless the result has to be `differentiable`.
     """
     open_loop = driven.control is follow and driven.remember is keep_memory
-    plain = open_loop and observer is observe and segment is None and not differentiable
-    if plain and native.chosen(driven.world, driven.start):
+    plain = observer is observe and segment is None and not differentiable
+    if plain and native.chosen(driven.world, driven.start, open_loop):
         return native.rollout(driven.world, driven.start, driven.inputs)
     go_on = partial(rollout, control=driven.control, remember=driven.remember, segment=segment)
     return go_on(driven.world, driven.start, driven.inputs, observer)

@@ -46,13 +46,13 @@ PROJECTIONS = (coupling.unprojected, coupling.force_free, coupling.torque_free)
 DELTAS = (coupling.PESKIN, coupling.ROMA, coupling.HAT)
 
 
-def chosen(world: World, state: State) -> bool:
+def chosen(world: World, state: State, open_loop: bool = True) -> bool:
     """Return whether the kernel simulates a world, see `device.kernel`.
 
     Raises `ValueError` where it has to and cannot.
     """
     installed = device.kernel_version() is not None
-    reason = uncovered(world, state)
+    reason = uncovered(world, state) if open_loop else "controllers in closed loop"
     if device.kernel() == "native" and (reason or not installed):
         lacking = (
             f"does not cover {reason}" if reason else "is not installed, or no CPU is used"

@@ -123,6 +123,8 @@ def test_what_the_kernel_lacks_is_left_to_jax(monkeypatch, float64):
     assert f"microcosmos-kernels {kernels.__version__}" in device.device_kind()
     with pytest.raises(ValueError, match="does not cover a world without fluid"):
         native.chosen(without, start)
+    with pytest.raises(ValueError, match="does not cover controllers in closed loop"):
+        native.chosen(box, start, open_loop=False)
     monkeypatch.setenv("MICROCOSMOS_KERNEL", "fast")
     with pytest.raises(ValueError, match="one of auto, native, jax, got 'fast'"):
         native.chosen(box, start)
