@@ -12,8 +12,8 @@ from playwright.sync_api import Locator, Page, expect
 from microcosmos.archive import creature
 
 KINDS = {
-    "Quality-diversity": "16 nodes",
-    "Neuroevolution": "16 nodes",
+    "Quality-diversity": "20 nodes",
+    "Neuroevolution": "20 nodes",
     "Folding": "160 nodes",
     "Gaits": "32 nodes",
     "Scaling": "1,000 nodes",

@@ -6,7 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from microcosmos import bodies, coupling, filaments, fluid, groups, world
+from microcosmos import bodies, coupling, fields, filaments, fluid, groups, world
 from microcosmos.build import build_rods
 from microcosmos.build.scene import build_layout
 
@@ -45,6 +45,28 @@ def scene(body, size=(48, 48), *, matched=False, limits=(0.1, 0.1), nu_c=None, *
     return box, start, filaments.Rest(jnp.float32(angle), jnp.float32(length))
 
 
+def repelling(body, size=(48, 48), strength=4.0, **options):
+    """A scene whose nodes repel each other."""
+    box, start, rest = scene(body, size, **options)
+    limit, strength = jnp.float32(0.1), jnp.float32(strength)
+    return replace(box, steric=fields.Steric(strength, limit, fields.binomial)), start, rest
+
+
+def moved(given, way):
+    """A scene whose bodies start elsewhere."""
+    box, start, rest = given
+    return box, world.at_rest(box, start.positions + jnp.asarray(way, jnp.float32)[None]), rest
+
+
+def fed(body, size=(48, 48), *, rate=None, diffusion=None, **options):
+    """A scene with packets of energy."""
+    box, start, rest = scene(body, size, **options)
+    packets = jnp.float32(fields.packets(size, fields.Packets(5, 3.0, 1.0, 0)))
+    rate, diffusion = (None if x is None else jnp.float32(x) for x in (rate, diffusion))
+    box = replace(box, energy=fields.Energy(packets, diffusion, rate))
+    return box, world.at_rest(box, start.positions), rest
+
+
 def chain(nodes=20, spacing=1.0, **stiffness):
     return bodies.chain(nodes, spacing, **{**STIFF, **stiffness})
 
@@ -52,6 +74,12 @@ def chain(nodes=20, spacing=1.0, **stiffness):
 def shoal():
     """Three filaments, each turned another way."""
     places = (((12.3, 14.2), 0.3), ((35.1, 12.9), 2.1), ((24.0, 34.4), 4.0))
+    return bodies.combined([bodies.placed(chain(11), *place) for place in places])
+
+
+def heap():
+    """Two filaments that cross."""
+    places = (((24.0, 24.0), 0.3), ((26.0, 25.0), 1.8))
     return bodies.combined([bodies.placed(chain(11), *place) for place in places])
 
 
@@ -80,10 +108,11 @@ SCENES = {
     "no limits": lambda: scene(chain(), matched=True, limits=(None, None)),
     "limits that act": lambda: scene(chain(), matched=True, limits=(0.01, 0.003)),
     "two layers": lambda: scene(chain(), matched=True, layers=2),
-    "Roma's delta": lambda: scene(chain(), matched=True, kernel=coupling.ROMA),
+    "Peskin's delta": lambda: scene(chain(), matched=True, kernel=coupling.PESKIN),
     "the hat": lambda: scene(chain(), matched=True, kernel=coupling.HAT),
     "the paper's literal form": lambda: scene(
         chain(bend=0.5),
+        kernel=coupling.PESKIN,
         projection=coupling.unprojected,
         theta_feedback=0.0,
         force_factor=1.0,
@@ -94,6 +123,19 @@ SCENES = {
         chain(), projection=coupling.force_free, theta_feedback=0.5, forcing_iterations=5
     ),
     "weak actuators": lambda: scene(chain(), nu_c=0.05),
+    "no fluid": lambda: scene(chain(), matched=True, fluid=False),
+    "repulsion": lambda: repelling(chain(), matched=True),
+    "repulsion across the edges of a small world": lambda: moved(
+        repelling(chain(24, 0.8), (24, 37)), (10.0, 17.0)
+    ),
+    "bodies that touch": lambda: repelling(heap(), matched=True),
+    "bodies that touch without fluid": lambda: repelling(heap(), fluid=False),
+    "energy": lambda: fed(chain(), matched=True),
+    "energy that is taken and spreads": lambda: fed(
+        chain(), (45, 51), matched=True, rate=0.1, diffusion=0.05
+    ),
+    "energy for two layers": lambda: fed(chain(), matched=True, rate=0.1, layers=2),
+    "energy without fluid": lambda: fed(chain(), rate=0.1, diffusion=0.05, fluid=False),
     "a body that has grown": lambda: grown(chain(), 13),
     "a stiff body that has grown": lambda: grown(chain(), 13, matched=True),
 }

@@ -1,235 +1,177 @@
 // The rollout as a target of XLA's foreign function interface: one world, or a batch of them in
-// turn.
-//
-// Operands and results have the order of `microcosmos.kernel`. Batch axes come first; an operand
-// whose batch axis has length 1 is the same for all worlds.
-#include "xla/ffi/api/ffi.h"
-
-#include <string>
-#include <vector>
-
+// turn. Operands and results have the order of `world.native`.
+#include "arrays.h"
 #include "step.h"
 
 namespace ffi = xla::ffi;
+using microcosmos::Arrays;
 using microcosmos::Rollout;
 
 namespace {
 
-enum Operand {
-  PLANES = 0,
-  POSITIONS = 9,
-  ANGLES,
-  REST_ANGLE,
-  REST_LENGTH,
-  PARAMETERS,
-  ENDS,
-  PAIRS,
-  MEMBER,
-  PIECE,
-  PRESENT,
-  LAYOUT_ANGLE,
-  LAYOUT_REST_ANGLE,
-  TURNED,
-  PLACED,
-  EDGE_COLOUR,
-  JOINT_COLOUR,
-  STRETCH,
-  SHEAR,
-  BEND,
-  OPERANDS
-};
-enum Result {
-  END_POSITIONS = 9,
-  END_ANGLES,
-  CENTRE,
-  PATH,
-  SPEED,
-  NODE_SPEED,
-  HELD,
-  HEADING,
-  CURVATURE,
-  POWER,
-  FORCE,
-  SECONDS,
-  RESULTS
-};
-
-using Shape = std::vector<int64_t>;
-
-std::string text(const Shape& shape) {
-  std::string found = "(";
-  for (int64_t one : shape) found += std::to_string(one) + ", ";
-  return found + ")";
-}
-
-// The array of one operand or result, and its place in each world of the batch.
-struct Array {
-  void* data;
-  Shape dimensions;
-  int64_t size = 1;  // Items of one world.
-
-  Array(const ffi::AnyBuffer& buffer)
-      : data(buffer.untyped_data()),
-        dimensions(buffer.dimensions().begin(), buffer.dimensions().end()) {}
-
-  // The part of one world; all items have four bytes.
-  void* at(int64_t world, const Shape& batch) const {
-    int64_t index = 0, scale = 1;
-    for (size_t axis = batch.size(); axis-- > 0;) {
-      const int64_t place = world % batch[axis];
-      world /= batch[axis];
-      index += dimensions[axis] == 1 ? 0 : place * scale;
-      scale *= dimensions[axis];
-    }
-    return static_cast<char*>(data) + 4 * size * index;
-  }
-};
-
-// The shapes of a rollout, checked.
-class Call {
+// The numbers of a call, by name; an error if one is missing.
+class Numbers {
  public:
   std::string error;
-  Shape batch;
-  std::vector<Array> operands, results;
 
-  Call(ffi::RemainingArgs args, ffi::RemainingRets rets, Rollout& r) {
-    if (args.size() != OPERANDS || rets.size() != RESULTS) {
-      error = "a rollout has " + std::to_string(OPERANDS) + " operands and " +
-              std::to_string(RESULTS) + " results";
-      return;
-    }
-    for (size_t i = 0; i < args.size(); i++) {
-      const auto one = args.get<ffi::AnyBuffer>(i);
-      const bool whole = (i >= ENDS && i <= PRESENT) || i == EDGE_COLOUR || i == JOINT_COLOUR;
-      check(one->element_type() == (whole ? ffi::DataType::S32 : ffi::DataType::F32), "type", i);
-      operands.push_back(Array(*one));
-    }
-    for (size_t i = 0; i < rets.size(); i++)
-      results.push_back(Array(**rets.get<ffi::AnyBuffer>(i)));
-    const Shape& planes = results[PLANES].dimensions;
-    if (planes.size() < 2) fail("the planes must have two axes");
-    if (!error.empty()) return;
-    batch = Shape(planes.begin(), planes.end() - 2);
-    const int32_t H = r.height = int32_t(planes[batch.size()]),
-                  W = r.width = int32_t(planes[batch.size() + 1]);
-    const size_t k = batch.size();
-    for (size_t i = PLANES; i < OPERANDS; i++)
-      if (operands[i].dimensions.size() <= k) fail("too few axes", i);
-    if (!error.empty()) return;
-    const int32_t N = r.nodes = int32_t(operands[POSITIONS].dimensions[k]);
-    const int32_t E = r.edges = int32_t(operands[ANGLES].dimensions[k]);
-    const int32_t T = r.steps = int32_t(operands[REST_ANGLE].dimensions[k]);
-    const int32_t J = r.joints = int32_t(operands[BEND].dimensions[k]);
-    const Shape given[] = {{N, 2}, {E},    {T, J}, {T, E}, {4 + r.iterations},
-                           {E, 2}, {J, 2}, {N},    {N},    {N},
-                           {E},    {J},    {E, J}, {N, E}, {E},
-                           {J},    {E},    {E},    {J}};
-    const Shape wanted[] = {{N, 2},
-                            {E},
-                            {T, 2},
-                            {T, N, 2},
-                            {T},
-                            {T},
-                            {T},
-                            {T},
-                            {T, J},
-                            {T},
-                            {T, r.bodies, 2},
-                            {microcosmos::PART_COUNT}};
-    for (int i = 0; i < 9; i++) shaped(operands[i], {H, W}, i), shaped(results[i], {H, W}, i);
-    for (int i = POSITIONS; i < OPERANDS; i++) {
-      const bool layout = i >= LAYOUT_ANGLE && i <= PLACED,
-                 colours = i == EDGE_COLOUR || i == JOINT_COLOUR;
-      if ((layout && !r.matched) || (colours && r.matched)) continue;  // Not read.
-      shaped(operands[i], given[i - POSITIONS], i);
-    }
-    for (int i = END_POSITIONS; i < RESULTS; i++) shaped(results[i], wanted[i - END_POSITIONS], i);
-    if (H < 4 || W < 4) fail("a world has at least 4 cells along each axis");
-    if (r.iterations < 1 || r.layers < 1 || r.layers > 2) fail("iterations or layers");
-  }
+  explicit Numbers(const ffi::Dictionary& given) : given_(given) {}
 
-  // The arrays of one world.
-  void point(Rollout& r, int64_t world) const {
-    auto in = [&](int i) { return static_cast<const float*>(operands[i].at(world, batch)); };
-    auto whole = [&](int i) { return static_cast<const int32_t*>(operands[i].at(world, batch)); };
-    auto out = [&](int i) { return static_cast<float*>(results[i].at(world, batch)); };
-    for (int i = 0; i < 9; i++) r.populations[i] = in(i), r.end_populations[i] = out(i);
-    r.positions = in(POSITIONS), r.angles = in(ANGLES), r.rest_angle = in(REST_ANGLE),
-    r.rest_length = in(REST_LENGTH);
-    r.parameters = in(PARAMETERS), r.ends = whole(ENDS), r.pairs = whole(PAIRS),
-    r.member = whole(MEMBER);
-    r.piece = whole(PIECE), r.present = whole(PRESENT), r.layout_angle = in(LAYOUT_ANGLE);
-    r.layout_rest_angle = in(LAYOUT_REST_ANGLE), r.turned = in(TURNED), r.placed = in(PLACED);
-    r.edge_colour = whole(EDGE_COLOUR), r.joint_colour = whole(JOINT_COLOUR);
-    r.stretch = in(STRETCH), r.shear = in(SHEAR), r.bend = in(BEND);
-    r.end_positions = out(END_POSITIONS), r.end_angles = out(END_ANGLES), r.centre = out(CENTRE),
-    r.path = out(PATH);
-    r.speed = out(SPEED), r.node_speed = out(NODE_SPEED), r.held = out(HELD),
-    r.heading = out(HEADING);
-    r.curvature = out(CURVATURE), r.power = out(POWER), r.force = out(FORCE),
-    r.seconds = out(SECONDS);
-    std::memset(r.seconds, 0, sizeof(float) * microcosmos::PART_COUNT);
+  int32_t operator()(const char* name) {
+    const auto found = given_.get<int32_t>(name);
+    if (found.has_value()) return *found;
+    error = std::string("there is no number ") + name;
+    return 0;
   }
 
  private:
-  void fail(const std::string& reason) {
-    if (error.empty()) error = reason;
-  }
-  void fail(const std::string& reason, size_t operand) {
-    fail(reason + " of operand " + std::to_string(operand));
-  }
-  void check(bool holds, const char* what, size_t operand) {
-    if (!holds) fail(std::string("wrong ") + what, operand);
-  }
-  void shaped(Array& array, const Shape& base, int number) {
-    const Shape& found = array.dimensions;
-    bool fits = found.size() == batch.size() + base.size();
-    for (size_t i = 0; fits && i < batch.size(); i++) fits = found[i] == batch[i] || found[i] == 1;
-    for (size_t i = 0; fits && i < base.size(); i++) fits = found[batch.size() + i] == base[i];
-    if (!fits)
-      fail("array " + std::to_string(number) + " must have the shape " + text(base) + ", got " +
-           text(found));
-    array.size = 1;
-    for (int64_t one : base) array.size *= one;
-  }
+  const ffi::Dictionary& given_;
 };
 
-// Whether the graph refers to nothing that is not there.
+// The sizes of a body and its controller; what is wrong with them, if anything is.
+std::string read_body(Rollout& r, Numbers number) {
+  r.steps = number("steps"), r.bodies = number("bodies");
+  r.nodes = number("nodes"), r.edges = number("edges"), r.joints = number("joints");
+  r.matched = number("matched"), r.laid_out = number("laid_out");
+  r.commands = microcosmos::Commands(number("commands"));
+  r.recurrent = number("recurrent"), r.senses = number("senses"), r.waves = number("waves");
+  r.actuated = number("actuated"), r.rows = number("rows"), r.links = number("links");
+  r.inputs = number("inputs"), r.timers = number("timers"), r.terms = number("terms");
+  if (!number.error.empty()) return number.error;
+  for (int32_t one : {r.steps, r.edges, r.joints, r.rows, r.links, r.timers, r.terms})
+    if (one < 0) return "a count is negative";
+  if (r.nodes < 1 || r.bodies < 1) return "a world has at least one node";
+  if ((r.actuated || r.matched) && !r.laid_out) return "there is no layout";
+  if (r.timers > 2 || (r.waves && r.timers != 2)) return "a timer has one or two numbers";
+  const int inputs = 1 + r.timers * (r.waves ? 2 : 1) + r.senses;
+  if (r.commands == microcosmos::NETWORK && (r.inputs != inputs || r.rows < inputs + 2))
+    return "a network has an input for each that it is given, and two outputs";
+  return "";
+}
+
+// The sizes and the form of a world; what is wrong with them, if anything is.
+std::string read_world(Rollout& r, Numbers number) {
+  r.height = number("height"), r.width = number("width");
+  r.iterations = number("iterations");
+  r.sweeps = number("sweeps"), r.layers = number("layers");
+  r.projection = microcosmos::Projection(number("projection"));
+  r.delta = microcosmos::Delta(number("delta"));
+  r.fixed_magic = number("magic");
+  r.fluid = number("fluid"), r.repelled = number("repelled"), r.energetic = number("energetic"),
+  r.timed = number("timed");
+  if (!number.error.empty()) return number.error;
+  if (r.height < 4 || r.width < 4) return "a world has at least 4 cells along each axis";
+  if (r.iterations < 1 || r.layers < 1 || r.layers > 2 || r.sweeps < 0)
+    return "iterations, sweeps or layers";
+  if (r.delta < 0 || r.delta > microcosmos::HAT) return "there is no such delta";
+  return "";
+}
+
+int64_t when(bool holds, int64_t count) { return holds ? count : 0; }
+
+// Name the arrays of a body at its start. What is absent has no items.
+void name_body(Arrays& a, Rollout& r) {
+  const int64_t N = r.nodes, E = r.edges, J = r.joints, laid = r.laid_out;
+  a.in("positions", &r.positions, {N, 2}), a.in("angles", &r.angles, {E});
+  a.in("edges", &r.ends, {E, 2}), a.in("joints", &r.pairs, {J, 2});
+  a.in("member", &r.member, {N}), a.in("piece", &r.piece, {N}), a.in("present", &r.present, {N});
+  a.in("layout angles", &r.layout_angle, {laid * E});
+  a.in("layout rest angles", &r.layout_rest_angle, {laid * J});
+  a.in("turned", &r.turned, {laid * E, J}), a.in("placed", &r.placed, {laid * N, E});
+}
+
+// Name the arrays of a controller.
+void name_controller(Arrays& a, Rollout& r) {
+  const int64_t N = r.nodes, E = r.edges, J = r.joints, T = r.steps;
+  const int64_t R = r.rows, L = r.links, K = r.terms;
+  const bool network = r.commands == microcosmos::NETWORK,
+             series = r.commands == microcosmos::SERIES;
+  const bool controlled = network || series;
+  a.in("bounds of the controller", &r.control, {microcosmos::BOUND_COUNT});
+  a.in("activations", &r.activation, {R}), a.in("biases", &r.bias, {R});
+  a.in("sources", &r.source, {L}), a.in("targets", &r.target, {L}), a.in("weights", &r.weight, {L});
+  a.in("timer", &r.timer, {when(network, T), r.timers}),
+      a.in("ramp", &r.ramp, {when(controlled, T)});
+  a.in("positions along the body", &r.position, {when(network, N)});
+  a.in("lags", &r.lag, {when(network && r.waves, N)});
+  a.in("nodes of joints", &r.joint_node, {when(network, J)});
+  a.in("rest angles of the body", &r.body_angle, {when(controlled, J)});
+  a.in("rest lengths of the body", &r.body_length, {when(controlled, E)});
+  a.in("basis", &r.basis, {when(series, T), K}), a.in("genes", &r.genes, {K, when(series, J + E)});
+}
+
+// Name the arrays of a rollout.
+void name_rollout(Arrays& a, Rollout& r) {
+  const int64_t H = r.height, W = r.width, N = r.nodes, E = r.edges, J = r.joints, T = r.steps;
+  const bool closed = r.commands != microcosmos::GIVEN, energetic = r.energetic;
+  const int64_t swept = !r.matched, given = when(!closed, T), B = r.bodies;
+  for (int i = 0; i < 9; i++) a.in("a plane", &r.populations[i], {H, W});
+  name_body(a, r);
+  a.in("colours of edges", &r.edge_colour, {swept * E});
+  a.in("colours of joints", &r.joint_colour, {swept * J});
+  a.in("stretch", &r.stretch, {E}), a.in("shear", &r.shear, {E}), a.in("bend", &r.bend, {J});
+  a.in("parameters", &r.parameters, {microcosmos::STEP_LENGTHS + r.iterations});
+  a.in("energy", &r.energy, {when(energetic, H), W});
+  a.in("collected", &r.collected, {when(energetic, N)});
+  a.in("rest angles", &r.given_angle, {given, J});
+  a.in("rest lengths", &r.given_length, {given, E});
+  name_controller(a, r);
+  for (int i = 0; i < 9; i++) a.out("a plane", &r.end_populations[i], {H, W});
+  a.out("positions", &r.end_positions, {N, 2}), a.out("angles", &r.end_angles, {E});
+  a.out("energy", &r.end_energy, {when(energetic, H), W});
+  a.out("collected", &r.end_collected, {when(energetic, N)});
+  a.out("rest angles", &r.rest_angle, {when(closed, T), J});
+  a.out("rest lengths", &r.rest_length, {when(closed, T), E});
+  a.out("centre", &r.centre, {T, 2}), a.out("path", &r.path, {T, N, 2});
+  a.out("speed", &r.speed, {T}), a.out("node speed", &r.node_speed, {T});
+  a.out("held", &r.held, {T}), a.out("heading", &r.heading, {T});
+  a.out("curvature", &r.curvature, {T, J}), a.out("power", &r.power, {T});
+  a.out("force", &r.force, {T, B, 2}), a.out("seconds", &r.seconds, {microcosmos::PART_COUNT});
+  a.end();
+}
+
+// Name the arrays of a development.
+void name_development(Arrays& a, Rollout& r) {
+  name_body(a, r);
+  name_controller(a, r);
+  a.out("rest angles", &r.rest_angle, {r.steps, r.joints});
+  a.out("rest lengths", &r.rest_length, {r.steps, r.edges});
+  a.out("clock", &r.clock, {r.steps});
+  a.end();
+}
+
+bool within(const int32_t* values, int64_t count, int32_t least, int64_t limit) {
+  for (int64_t i = 0; i < count; i++)
+    if (values[i] < least || values[i] >= limit) return false;
+  return true;
+}
+
+// Whether graphs refer to nothing that is not there.
 bool sound(const Rollout& r) {
-  auto within = [](const int32_t* values, int64_t count, int32_t limit) {
-    for (int64_t i = 0; i < count; i++)
-      if (values[i] < 0 || values[i] >= limit) return false;
-    return true;
-  };
-  const bool colours = r.matched || (within(r.edge_colour, r.edges, r.edges) &&
-                                     within(r.joint_colour, r.joints, r.joints));
-  return colours && within(r.ends, 2 * r.edges, r.nodes) &&
-         within(r.pairs, 2 * r.joints, r.edges) && within(r.member, r.nodes, r.bodies) &&
-         within(r.piece, r.nodes, r.nodes) && within(r.present, r.nodes, 2);
+  const bool colours = r.matched || (within(r.edge_colour, r.edges, 0, r.edges) &&
+                                     within(r.joint_colour, r.joints, 0, r.joints));
+  const bool network =
+      r.commands != microcosmos::NETWORK ||
+      (within(r.activation, r.rows, -1, 9) && within(r.activation, r.inputs, -1, 0) &&
+       within(r.source, r.links, -1, r.rows) && within(r.target, r.links, 0, r.rows) &&
+       within(r.joint_node, r.joints, 0, r.nodes));
+  return colours && network && within(r.ends, 2 * r.edges, 0, r.nodes) &&
+         within(r.pairs, 2 * r.joints, 0, r.edges) && within(r.member, r.nodes, 0, r.bodies) &&
+         within(r.piece, r.nodes, 0, r.nodes) && within(r.present, r.nodes, 0, 2);
 }
 
 ffi::Error invalid(const std::string& reason) {
   return ffi::Error::InvalidArgument("microcosmos-kernels: " + reason);
 }
 
-ffi::Error rollout(ffi::RemainingArgs args, ffi::RemainingRets rets, int32_t iterations,
-                   int32_t sweeps, int32_t layers, int32_t projection, int32_t delta,
-                   int32_t matched, int32_t timed, int32_t bodies, float force_factor,
-                   float theta_feedback) {
-  Rollout r = {};
-  r.iterations = iterations, r.sweeps = sweeps, r.layers = layers, r.bodies = bodies;
-  r.projection = microcosmos::Projection(projection), r.delta = microcosmos::Delta(delta),
-  r.matched = matched, r.timed = timed;
-  r.force_factor = force_factor, r.theta_feedback = theta_feedback;
-  Call call(args, rets, r);
-  if (!call.error.empty()) return ffi::Error::InvalidArgument("microcosmos-kernels: " + call.error);
-  int64_t worlds = 1;
-  for (int64_t one : call.batch) worlds *= one;
-  for (int64_t world = 0; world < worlds; world++) {
-    call.point(r, world);
-    if (!sound(r)) return invalid("the body refers to nodes or edges that it lacks");
+// Do the work for each world of a batch in turn.
+template <class Work>
+ffi::Error each_world(Arrays& arrays, Rollout& r, Work work) {
+  if (!arrays.error.empty()) return invalid(arrays.error);
+  for (int64_t world = 0; world < arrays.worlds(); world++) {
+    arrays.point(world);
+    if (!sound(r)) return invalid("the body or the network refers to what it lacks");
     try {
-      microcosmos::ISA::World(r).run();
+      work();
     } catch (const std::bad_alloc&) {
       return ffi::Error(ffi::ErrorCode::kResourceExhausted,
                         "microcosmos-kernels: no memory for a world");
@@ -238,24 +180,40 @@ ffi::Error rollout(ffi::RemainingArgs args, ffi::RemainingRets rets, int32_t ite
   return ffi::Error::Success();
 }
 
+ffi::Error rollout(ffi::RemainingArgs args, ffi::RemainingRets rets, ffi::Dictionary numbers) {
+  Rollout r = {};
+  std::string wrong = read_body(r, Numbers(numbers));
+  if (wrong.empty()) wrong = read_world(r, Numbers(numbers));
+  if (!wrong.empty()) return invalid(wrong);
+  Arrays arrays(args, rets);
+  if (arrays.begin()) name_rollout(arrays, r);
+  return each_world(arrays, r, [&] {
+    std::fill(r.seconds, r.seconds + microcosmos::PART_COUNT, 0.0f);
+    microcosmos::ISA::World(r).run();
+  });
+}
+
+ffi::Error develop(ffi::RemainingArgs args, ffi::RemainingRets rets, ffi::Dictionary numbers) {
+  Rollout r = {};
+  const std::string wrong = read_body(r, Numbers(numbers));
+  if (!wrong.empty()) return invalid(wrong);
+  if (r.commands == microcosmos::GIVEN || r.senses) return invalid("there is nothing to develop");
+  r.matched = true;  // Nothing is swept.
+  Arrays arrays(args, rets);
+  if (arrays.begin()) name_development(arrays, r);
+  return each_world(arrays, r, [&] { microcosmos::ISA::develop(r); });
+}
+
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) XLA_FFI_Error* microcosmos_rollout(
-    XLA_FFI_CallFrame*);
-XLA_FFI_DEFINE_HANDLER_SYMBOL(microcosmos_rollout, rollout,
-                              ffi::Ffi::Bind()
-                                  .RemainingArgs()
-                                  .RemainingRets()
-                                  .Attr<int32_t>("iterations")
-                                  .Attr<int32_t>("sweeps")
-                                  .Attr<int32_t>("layers")
-                                  .Attr<int32_t>("projection")
-                                  .Attr<int32_t>("delta")
-                                  .Attr<int32_t>("matched")
-                                  .Attr<int32_t>("timed")
-                                  .Attr<int32_t>("bodies")
-                                  .Attr<float>("force_factor")
-                                  .Attr<float>("theta_feedback"));
+#define MICROCOSMOS_TARGET(function)                                                       \
+  extern "C" __attribute__((visibility("default"))) XLA_FFI_Error* microcosmos_##function( \
+      XLA_FFI_CallFrame*);                                                                 \
+  XLA_FFI_DEFINE_HANDLER_SYMBOL(microcosmos_##function, function,                          \
+                                ffi::Ffi::Bind().RemainingArgs().RemainingRets().Attrs())
+
+MICROCOSMOS_TARGET(rollout);
+MICROCOSMOS_TARGET(develop);
 
 // The best instruction set of this processor: 0 basic, 1 avx2, 2 avx512.
 extern "C" __attribute__((visibility("default"))) int microcosmos_instruction_set() {

@@ -38,7 +38,12 @@ struct Lattice {
 struct Rates {
   float keep, same, other, even, even45, forced3, forced9, odd1, odd2, push1, push2;
   static constexpr float REST = 4.0f / 9, STRAIGHT = 1.0f / 9, DIAGONAL = 1.0f / 36;
-  Rates(float even, float odd) : even(even) {
+  Rates(float viscosity, bool fixed_magic) {
+    const float even_time = 3 * viscosity + 0.5f, excess = even_time - 0.5f;
+    const float capped = 0.5f * excess < 0.1875f ? 0.5f * excess : 0.1875f;
+    const float odd_time = (fixed_magic ? 0.1875f : capped) / excess + 0.5f;
+    const float odd = 1 / odd_time;
+    even = 1 / even_time;
     const float half_even = 1 - 0.5f * even, half_odd = 1 - 0.5f * odd;
     keep = 1 - even, same = keep * 0.5f, other = (1 - odd) * 0.5f;
     even45 = 4.5f * even, forced3 = half_even * 3, forced9 = 9 * half_even;

@@ -22,7 +22,8 @@ struct Forcing {
   }
 
   void find(const Bodies& b, Points& p, Lattice& l, const Rollout& r) {
-    const float limit = r.parameters[3], *lengths = r.parameters + 4;
+    const float limit = r.parameters[FORCE_LIMIT], *lengths = r.parameters + STEP_LENGTHS;
+    cover(p, l);
     relaxation(p, l, beta);
     std::vector<Frame>& frames = frames_;
     frames.resize(b.bodies.size());
@@ -46,7 +47,7 @@ struct Forcing {
       });
       float scale = limit / root(largest.total() + 1e-24f);
       held[body] = scale < 1;
-      scale = r.force_factor * (scale < 1 ? scale : 1);
+      scale = r.parameters[FORCE_FACTOR] * (scale < 1 ? scale : 1);
       each_point(b, b.bodies[body], r, [&](int i, int) __attribute__((always_inline)) {
         store(x + i, scale * load(x + i)), store(y + i, scale * load(y + i));
       });

@@ -1,6 +1,7 @@
 // The nodes and edges of all bodies in a step.
 #pragma once
 #include "bodies.h"
+#include "functions.h"
 
 namespace microcosmos::ISA {
 
@@ -11,9 +12,10 @@ struct Nodes {
   Floats here;          // 1 for nodes that have grown.
   Floats angle;         // Of edges.
 
-  explicit Nodes(const Bodies& b) {
+  Nodes(const Bodies& b, const Rollout& r) {
     for (Floats* one : {&x, &y, &new_x, &new_y, &here}) *one = Floats(b.node_slots + 2 * BLOCK);
     angle = Floats(b.edge_slots + 2 * BLOCK);
+    for (int n = 0; n < r.nodes; n++) here[b.node_slot[n]] = float(r.present[n]);
   }
 };
 

@@ -46,14 +46,14 @@ struct Points {
   // loads need not wait for stores.
   std::vector<int32_t> order;
 
-  Points(const Bodies& bodies, const Rollout& r) : slots(r.layers * bodies.node_slots) {
+  Points(const Bodies& bodies, const Rollout& r, int layers) : slots(layers * bodies.node_slots) {
     const size_t room = slots + BLOCK;
     for (Floats* one : {&x, &y, &x_share, &y_share}) *one = Floats(room);
     x_first = Array<int32_t>(room), y_first = Array<int32_t>(room);
     weights = Floats(8 * room), rows = Array<int32_t>(4 * room);
     for (const Piece& piece : bodies.pieces)
       for (size_t turn = 0; turn < 4; turn++)
-        for (int layer = 0; layer < r.layers; layer++)
+        for (int layer = 0; layer < layers; layer++)
           for (size_t k = (turn & 1) * 2 + turn / 2; k < piece.node_of.size(); k += 4)
             if (r.present[piece.node_of[k]])
               order.push_back(layer * bodies.node_slots + bodies.node_slot[piece.node_of[k]]);
@@ -171,8 +171,8 @@ inline __attribute__((noinline)) void spread(const Points& p, Lattice& l, const 
   }
 }
 
-// The reciprocal of J S 1 / density at each point: the step of the forcing that always converges.
-inline __attribute__((noinline)) void relaxation(const Points& p, Lattice& l, float* beta) {
+// Spread 1 at every point: how many points cover each cell.
+inline __attribute__((noinline)) void cover(const Points& p, Lattice& l) {
   each_touched(l, [&](int o) __attribute__((always_inline)) { store(l.coverage + o, Vec{}); });
   for (int n = 0; n < l.beyond_rows; n++)
     std::memset(l.coverage + l.wide * l.beyond[n] + l.width, 0, 16);
@@ -189,6 +189,10 @@ inline __attribute__((noinline)) void relaxation(const Points& p, Lattice& l, fl
     float *c = l.coverage + l.wide * l.beyond[n], *beyond = c + l.width;
     for (int i = 0; i < 3; i++) beyond[i] = c[i] = c[i] + beyond[i];
   }
+}
+
+// The reciprocal of J S 1 / density at each point: the step of the forcing that always converges.
+inline __attribute__((noinline)) void relaxation(const Points& p, const Lattice& l, float* beta) {
   for (int slot : p.order) {
     const float* w = p.weights + 8 * size_t(slot);
     const int32_t* row = p.rows + 4 * size_t(slot);

@@ -6,9 +6,12 @@ namespace microcosmos {
 
 enum Projection { NOTHING, FORCE, FORCE_AND_TORQUE };
 enum Delta { PESKIN, ROMA, HAT };
+// Where rest shapes come from: they are given, or a controller commands them.
+enum Commands { GIVEN, NETWORK, SERIES };
 
 // Parts of a step whose time can be taken.
 enum Part {
+  CONTROL,
   WINDOWS,
   MOMENTS,
   INTERPOLATION,
@@ -20,30 +23,51 @@ enum Part {
   PART_COUNT
 };
 
+// Places of `parameters`; the step lengths of the forcing follow.
+// An NU_C, ENERGY_RATE or DIFFUSION of 0 is none.
+enum Parameter {
+  VISCOSITY,
+  NU_C,
+  ENERGY_RATE,
+  DIFFUSION,
+  DISPLACEMENT_LIMIT,
+  FORCE_LIMIT,
+  FORCE_FACTOR,
+  THETA_FEEDBACK,
+  REPULSION,
+  REPULSION_LIMIT,
+  STEP_LENGTHS
+};
+// Places of `control`; a bound of 0 is none.
+enum Bound { ANGLE_SCALE, LENGTH_SCALE, PHASE, MAX_SPEED, LAG_SHARE, MAX_BEND, BOUND_COUNT };
+
 struct Rollout {
   // The world, (height, width) cells; nodes, edges and joints of all bodies.
   int32_t height, width, steps, nodes, edges, joints, bodies;
   int32_t iterations, sweeps, layers;
   Projection projection;
   Delta delta;
-  bool matched;  // Shape matching; otherwise sweeps.
-  bool timed;    // Take the time of each part.
-  float force_factor, theta_feedback;
+  bool fixed_magic;  // Lambda = 3/16 at every viscosity; otherwise capped.
+  bool fluid;        // Without a fluid, only constraints move bodies.
+  bool repelled;     // Nodes repel each other.
+  bool energetic;    // There is energy.
+  bool matched;      // Shape matching; otherwise sweeps.
+  bool laid_out;     // There is a layout.
+  bool timed;        // Take the time of each part.
 
-  // Relaxation rates (even, odd), limits of displacement and force, step lengths of the forcing.
   const float* parameters;
   const float* populations[9];  // (height, width) each
   const float* positions;       // (node, 2)
   const float* angles;          // (edge)
-  const float* rest_angle;      // (step, joint)
-  const float* rest_length;     // (step, edge)
+  const float* energy;          // (height, width)
+  const float* collected;       // (node)
 
   const int32_t* ends;     // (edge, 2) nodes
   const int32_t* pairs;    // (joint, 2) edges
   const int32_t* member;   // (node) body
   const int32_t* piece;    // (node) connected piece, from 0
   const int32_t* present;  // (node) 1, or 0 for nodes that have not grown
-  // Layout of the unchanged body, for shape matching.
+  // Layout of the unchanged body, for shape matching and actuators.
   const float* layout_angle;       // (edge)
   const float* layout_rest_angle;  // (joint)
   const float* turned;             // (edge, joint)
@@ -52,9 +76,34 @@ struct Rollout {
   const int32_t *edge_colour, *joint_colour;
   const float *stretch, *shear, *bend;
 
+  // The controller, see `world.controller`.
+  Commands commands;
+  bool recurrent, senses, waves, actuated;
+  int32_t rows, links, inputs, timers, terms;
+  const float* given_angle;        // (step, joint)
+  const float* given_length;       // (step, edge)
+  const float* control;            // (BOUND_COUNT)
+  const int32_t* activation;       // (row) -1: an input, or no node
+  const float* bias;               // (row)
+  const int32_t *source, *target;  // (link) rows; -1: no link
+  const float* weight;             // (link)
+  const float* timer;              // (step, timers)
+  const float* ramp;               // (step)
+  const float* position;           // (node)
+  const float* lag;                // (node) rad
+  const int32_t* joint_node;       // (joint)
+  const float* body_angle;         // (joint)
+  const float* body_length;        // (edge)
+  const float* basis;              // (step, terms)
+  const float* genes;              // (terms, joint and edge)
+
   // The end; the planes may be those of the start.
   float* end_populations[9];
-  float *end_positions, *end_angles;
+  float *end_positions, *end_angles, *end_energy, *end_collected;
+  // Rest shapes, and the controller's time at the end of each step.
+  float* rest_angle;   // (step, joint)
+  float* rest_length;  // (step, edge)
+  float* clock;        // (step)
   // Observed in each step, see `world.Measures`.
   float* centre;      // (step, 2)
   float* path;        // (step, node, 2)

@@ -10,9 +10,12 @@ class Sweeps {
   Sweeps(const Bodies& b, const Rollout& r) : b_(b), r_(r) {
     for (Floats* one : {&rest_angle_, &rest_length_, &bend_, &stretch_, &shear_})
       *one = Floats(b.edge_slots + BLOCK);
+    // In a viscous fluid actuators may be weaker.
+    const float nu_c = r.parameters[NU_C];
+    const float strength = nu_c > 0 ? 0.5f / (1 + r.parameters[VISCOSITY] / nu_c) : 0.5f;
     for (int p : b.filaments) {
       const Piece& piece = b.pieces[p];
-      place(piece.joint_of, piece, r.bend, 0.5f, bend_);
+      place(piece.joint_of, piece, r.bend, strength, bend_);
       place(piece.edge_of, piece, r.stretch, 0.5f, stretch_);
       place(piece.edge_of, piece, r.shear, 1, shear_);
     }
@@ -23,7 +26,7 @@ class Sweeps {
       values_.push_back(Floats(room));
       float* at = values_.back();
       for (const Pairs& pairs : tile.joint_colours) {
-        fill(pairs, r.bend, 0.5f, at + pairs.places());
+        fill(pairs, r.bend, strength, at + pairs.places());
         at += 2 * pairs.places();
       }
       for (const Pairs& pairs : tile.edge_colours) {

@@ -1,4 +1,4 @@
-// Vectors of LANES floats, by the compilers' own extension, and elementary functions on them.
+// Vectors of LANES floats, by the compilers' own extension, and sums over them.
 //
 // Everything is elementwise, and a sum has one order whatever LANES is: 16 partial sums, then a
 // tree. So without contraction the bits depend neither on the instruction set nor on the compiler.
@@ -110,37 +110,6 @@ INLINE Vec absolute(Vec a) { return (Vec)((Ints)a & 0x7fffffff); }
 // Nearest whole number, by the rounding of floats; for |a| below 2^22.
 INLINE Vec nearest(Vec a) { return (a + 12582912.0f) - 12582912.0f; }
 INLINE Vec wrapped(Vec angle) { return angle - 6.2831855f * nearest(angle * 0.15915494f); }
-
-// Sine and cosine: Cody and Waite's reduction in three parts, then the polynomials of Cephes.
-INLINE void sine_cosine(Vec x, Vec& sine, Vec& cosine) {
-  Vec k = nearest(x * 0.63661977f);
-  Vec r = ((x - k * 1.5703125f) - k * 4.8375129699707031e-4f) - k * 7.54978995489188216e-8f;
-  Ints quarter = __builtin_convertvector(k, Ints);
-  Vec z = r * r;
-  Vec s = ((-1.9515295891e-4f * z + 8.3321608736e-3f) * z - 1.6666654611e-1f) * z * r + r;
-  Vec c = (2.443315711809948e-5f * z - 1.388731625493765e-3f) * z + 4.166664568298827e-2f;
-  c = c * z * z - 0.5f * z + 1.0f;
-  Ints swap = (quarter & 1) != 0;
-  sine = (Vec)((Ints)(swap ? c : s) ^ ((quarter & 2) << 30));
-  cosine = (Vec)((Ints)(swap ? s : c) ^ (((quarter + 1) & 2) << 30));
-}
-
-// The angle of (x, y), by the polynomial of Cephes; 0 at the origin.
-INLINE Vec arctangent(Vec y, Vec x) {
-  Vec ax = absolute(x), ay = absolute(y);
-  Vec big = most(ax, ay), small = least(ax, ay);
-  big = big > 0.0f ? big : all(1.0f);
-  Vec t = small / big;
-  Ints far = t > 0.41421356f;
-  Vec u = far ? (t - 1.0f) / (t + 1.0f) : t;
-  Vec z = u * u;
-  Vec p = ((8.05374449538e-2f * z - 1.38776856032e-1f) * z + 1.99777106478e-1f) * z;
-  p = (p - 3.33329491539e-1f) * z * u + u;
-  p = far ? p + 0.78539816f : p;
-  p = ay > ax ? 1.5707963f - p : p;
-  p = x < 0.0f ? 3.1415927f - p : p;
-  return (Vec)((Ints)p | ((Ints)y & INT32_MIN));
-}
 
 // A sum, or the largest value, over blocks of slots.
 struct Sum {

@@ -16,20 +16,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, PyTree
 
 from ..filaments import Layout, Rest, fitted, rest_positions, turns, wrap
-from ..world import State, World, edges_there
+from ..world import Actuators, State, World, edges_there
 from .encoding import Drive
-
-
-class Actuators(eqx.Module):
-    """Bounds on what a body does; None or 0 switches one off."""
-
-    layout: Layout
-    max_speed: float | None = eqx.field(static=True, default=None)
-    """Cells a step of the fastest node, in the frame that moves and turns with the body."""
-    lag: float = eqx.field(static=True, default=0.0)
-    """Time constant of the first-order response, in steps."""
-    max_bend: float | None = eqx.field(static=True, default=None)
-    """Largest angle that is added between any two edges, in rad."""
 
 
 class Response(eqx.Module):
@@ -44,6 +32,8 @@ class Response(eqx.Module):
 
 def carried_out(driven: Drive, actuators: Actuators) -> Drive:
     """Return the simulation with the commands of its controller carried out by actuators."""
+    if driven.controller is not None:
+        driven = replace(driven, controller=replace(driven.controller, actuators=actuators))
     if isinstance(driven.inputs, Rest):
         return _open_loop(driven, actuators)
     return _closed_loop(driven, actuators)

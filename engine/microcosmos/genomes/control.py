@@ -6,6 +6,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, PRNGKeyArray
 
 from ..world import State, World, sense
+from .commands import network_commands
 from .cppn import CPPN, minimal
 from .development import OUTPUTS, Controls, Function, function_of, rest_shape, rest_shapes
 from .encoding import Drive, Scalar, shifted
@@ -28,8 +29,11 @@ class CPPNControl:
         """Open loop, or closed loop where the network senses."""
         controls = replace(self.controls, timer=shifted(self.controls.timer, phase))
         if self.recurrent:
-            return drive_recurrent(genotype, controls, world, start)
-        return drive_feed_forward(function_of(genotype), controls, world, start)
+            driven = drive_recurrent(genotype, controls, world, start)
+        else:
+            driven = drive_feed_forward(function_of(genotype), controls, world, start)
+        given = network_commands(genotype, self.controls, phase, recurrent=self.recurrent)
+        return replace(driven, controller=given)
 
     def size(self, genotype: CPPN) -> tuple[Array, Array]:
         return network_size(genotype, self.controls.inputs + OUTPUTS)

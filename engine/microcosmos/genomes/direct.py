@@ -9,6 +9,7 @@ from jaxtyping import Array, PRNGKeyArray
 
 from ..bodies import Layout
 from ..world import State, World
+from .commands import series_commands
 from .development import Controls, actuated
 from .encoding import Drive, Networkless, Scalar, shifted
 from .genotype import Vector, uniform_vector
@@ -62,7 +63,8 @@ class Direct(Networkless):
         angle = wave(basis, genes["angles"], len(self.controls.joint_nodes))
         length = wave(basis, genes["lengths"], len(self.controls.edges))
         rest = actuated(angle, length, self.controls.ramp, body.controls)
-        return Drive(body.world, body.start, rest)
+        given = series_commands(basis, genes["angles"], genes["lengths"], body.controls)
+        return Drive(body.world, body.start, rest, controller=given)
 
     def divided(self, values: Array) -> dict[str, Array]:
         found, used = {}, 0

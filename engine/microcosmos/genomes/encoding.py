@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float, PRNGKeyArray, PyTree
 
 from ..filaments import Rest
-from ..world import State, World, follow, keep_memory
+from ..world import Controller, State, World, follow, keep_memory
 
 Scalar = Float[Array, ""]
 
@@ -31,6 +31,8 @@ class Drive:
     """Extent of the body in cells; None: that of the task's body."""
     clock: Float[Array, "time"] | None = None
     """Time of the controller at the end of each step, in steps; None: that of the world."""
+    controller: Controller | None = None
+    """The same control for the native kernel; None: the kernel lacks it."""
 
 
 @runtime_checkable

@@ -8,6 +8,7 @@ from jaxtyping import Array, Bool, Float, PRNGKeyArray
 
 from ..bodies import Layout
 from ..world import State, World
+from .commands import network_commands
 from .control import drive_feed_forward, network_size
 from .cppn import CPPN, evaluate, minimal
 from .development import OUTPUTS, Controls, network_inputs
@@ -47,7 +48,8 @@ class Grown:
             return evaluate(genotype, inputs, OUTPUTS)
 
         driven = drive_feed_forward(read, controls, body.world, body.start)
-        return replace(driven, length=body.length)
+        given = network_commands(genotype, body.controls, phase)
+        return replace(driven, length=body.length, controller=given)
 
     def grow(self, world: World, start: State, genotype: CPPN) -> Shaped:
         """Return the body that a network grows."""

@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Array, Float, PRNGKeyArray
 
 from ..world import State, World
+from .commands import layered_commands
 from .control import drive_feed_forward
 from .cppn import ACTIVATIONS, Points
 from .development import Controls
@@ -68,7 +69,11 @@ class Weights:
         def read(inputs):
             return forward(self.layers, genes, inputs)
 
-        return drive_feed_forward(read, controls, world, start)
+        driven = drive_feed_forward(read, controls, world, start)
+        layers = self.layers
+        values = layers.scale * genes
+        given = layered_commands(layers.sizes, layers.activation, values, self.controls, phase)
+        return replace(driven, controller=given)
 
     def size(self, genotype: Vector) -> tuple[Array, Array]:
         """Return hidden nodes and connections, the same for all genotypes."""

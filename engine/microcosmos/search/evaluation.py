@@ -159,15 +159,29 @@ def _evaluate(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
     return Evaluation(fitness.astype(dtype), measures, valid, shown)
 
 
-def drive(task: Task, actuator: Actuator) -> Drive:
-    """Return the simulation of a genotype, or of a body that follows rest shapes."""
+def drive(task: Task, actuator: Actuator, *, differentiable: bool = False) -> Drive:
+    """Return the simulation of a genotype, or of a body that follows rest shapes.
+
+    The native kernel develops what it can, unless the result has to be `differentiable`.
+    """
     if isinstance(actuator, Rest) or task.encoding is None:
         return Drive(task.world, task.start, actuator)
     driven = task.encoding.drive(task.world, task.start, actuator, task.phase)
     driven = driven if task.actuators is None else carried_out(driven, task.actuators)
+    if not differentiable:
+        driven = _developed(driven)
     if task.turn is None:
         return driven
     return replace(driven, start=turned(driven.start, task.turn))
+
+
+def _developed(driven: Drive) -> Drive:
+    """Return the simulation with rest shapes of the native kernel, if it simulates that."""
+    world, start, controller = driven.world, driven.start, driven.controller
+    if controller is None or controller.senses or not native.chosen(world, start):
+        return driven
+    rest, clock = native.develop(world, start, controller)
+    return replace(driven, inputs=rest, clock=clock)
 
 
 def turned(state: State, turn: Scalar) -> State:
@@ -191,9 +205,10 @@ def simulate(
     The native kernel simulates what it can, unless the result has to be `differentiable`.
     """
     open_loop = driven.control is follow and driven.remember is keep_memory
-    plain = observer is observe and segment is None and not differentiable
-    if plain and native.chosen(driven.world, driven.start, open_loop):
-        return native.rollout(driven.world, driven.start, driven.inputs)
+    given: Any = driven.inputs if open_loop else driven.controller
+    if observer is observe and segment is None and not differentiable:
+        if native.chosen(driven.world, driven.start, given is not None):
+            return native.rollout(driven.world, driven.start, given)
     go_on = partial(rollout, control=driven.control, remember=driven.remember, segment=segment)
     return go_on(driven.world, driven.start, driven.inputs, observer)
 

@@ -78,7 +78,7 @@ class Descent(eqx.Module):
 
 def loss(descent: Descent, genes: Float[Array, "gene"], picture: Plane) -> Float[Array, ""]:
     """Return the mean squared difference between density and picture at the end."""
-    driven = drive(descent.task, Vector(genes))
+    driven = drive(descent.task, Vector(genes), differentiable=True)
     end, _ = simulate(driven, lambda state, measures: None, segment=descent.segment)
     found = fields.splat(end.positions, descent.task.world.size, descent.width)
     return jnp.mean((descent.density(found) - picture) ** 2)

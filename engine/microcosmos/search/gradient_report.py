@@ -81,7 +81,10 @@ def report_gradient(
         values = gradients.parts(task, actuator, by)
         error = _error(_gradient(task, actuator, of), values, STEPS["float64"])
     task, actuator = build(jnp.dtype("float32"))
-    values, driven = gradients.parts(task, actuator, by), drive(task, actuator)
+    values, driven = (
+        gradients.parts(task, actuator, by),
+        drive(task, actuator, differentiable=True),
+    )
     program = _gradient(task, actuator, of)
     found, own = jax.device_get(program(values))
     steps = len(jax.tree.leaves(driven.inputs)[0])

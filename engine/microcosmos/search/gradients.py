@@ -75,7 +75,7 @@ def changed(task: Task, actuator: Actuator, values: Values) -> Drive:
         world = replace(world, viscosity=values["viscosity"])
     if "genes" in values:
         actuator = with_genes(actuator, values["genes"])
-    driven = drive(replace(task, world=world), actuator)
+    driven = drive(replace(task, world=world), actuator, differentiable=True)
     if not {"rest_angle", "rest_length"} & values.keys():
         return driven
 

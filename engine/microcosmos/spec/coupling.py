@@ -33,8 +33,9 @@ class Coupling(Part):
     """Marker layers of a filament; 2: half a cell to either side, as in the paper."""
     nu_c: float | None = field(None, gt=0.0, le=1e3, unit="cells²/step", source=OURS)
     """Viscosity at which actuators have half their strength; empty: constant strength."""
-    kernel: Literal["peskin", "roma", "hat"] = field("peskin", source=DELTAS)
-    """Delta function between nodes and cells: four, three or two points wide."""
+    kernel: Literal["roma", "peskin", "hat"] = field("roma", source=DELTAS)
+    """Delta function between nodes and cells: three (Roma), four (Peskin) or two points wide.
+    A narrower one thickens filaments less."""
 
     @property
     def force_free(self) -> bool:

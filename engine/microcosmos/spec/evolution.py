@@ -19,10 +19,10 @@ Name = TypeVar("Name", bound=str)
 SearchSpec = TypeVar("SearchSpec", bound=Generations)
 
 SMALL: dict[str, Any] = {
-    "world": World(width=32, height=32),
-    "body": Chain(nodes=16),
-    "control": Control(period=120, angle_scale=0.6),
-    "task": Task(steps=800),
+    "world": World(width=40, height=40),
+    "body": Chain(nodes=20),
+    "control": Control(period=150, angle_scale=0.6),
+    "task": Task(steps=1000),
 }
 """Parts of the demonstrations."""
 
@@ -32,7 +32,7 @@ UNLIMITED: dict[str, Any] = {"max_speed": None, "lag": 0, "max_bend": None}
 LITERAL: dict[str, Any] = {
     "world": World(width=64, height=64, steric=Steric()),
     "body": Chain(nodes=32),
-    "coupling": Coupling(projection="none", theta_feedback=0, layers=2),
+    "coupling": Coupling(projection="none", theta_feedback=0, layers=2, kernel="peskin"),
     "control": Control(
         timer="linear",
         position="unit",

@@ -1,6 +1,7 @@
 """One world: a periodic box of viscous fluid with bodies in it, in lattice units."""
 
 from . import native
+from .controller import Actuators, Controller, Network, Series
 from .model import Form, Limits, Measures, State, World, at_rest, flow
 from .nodes import repel, sense
 from .present import centre, edges_there, grown_rods, joints_there, mean

@@ -23,7 +23,7 @@ class Form:
     forcing_iterations: int = 3
     constraint_iterations: int = 10
     layers: int = 1
-    kernel: coupling.Kernel = coupling.PESKIN
+    kernel: coupling.Kernel = coupling.ROMA
     magic: Callable = fluid.capped_magic
     fluid: bool = True
     """Without a fluid, only constraints and repulsion move bodies."""

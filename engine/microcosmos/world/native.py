@@ -1,7 +1,7 @@
-"""Whole rollouts in the native kernel, `microcosmos-kernels`, through XLA's foreign functions.
+"""Development and whole rollouts in the native kernel, through XLA's foreign functions.
 
-The kernel takes the steps of `stepping` in the same order, but rounds in its own way: the same
-on every CPU. It has no derivatives.
+The kernel, `microcosmos-kernels`, takes the steps of `stepping` in the same order, but rounds
+in its own way: the same on every CPU. It has no derivatives.
 """
 
 import ctypes
@@ -13,13 +13,16 @@ from importlib import import_module
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float, Int
+from jaxtyping import Array, Float
 
-from .. import coupling, device, filaments, fluid
+from .. import coupling, device, fields, filaments, fluid
+from .controller import Controller
 from .model import Measures, State, World
+from .operands import body_of, controller_of, stiffness_of
 
 LOG = logging.getLogger(__name__)
 PARTS = (
+    "control",
     "windows",
     "moments",
     "interpolation",
@@ -44,15 +47,17 @@ OBSERVED = (
 """Measures in the order of the kernel's results."""
 PROJECTIONS = (coupling.unprojected, coupling.force_free, coupling.torque_free)
 DELTAS = (coupling.PESKIN, coupling.ROMA, coupling.HAT)
+MAGIC = (fluid.capped_magic, fluid.fixed_magic)
 
 
-def chosen(world: World, state: State, open_loop: bool = True) -> bool:
+def chosen(world: World, state: State, covered: bool = True) -> bool:
     """Return whether the kernel simulates a world, see `device.kernel`.
 
-    Raises `ValueError` where it has to and cannot.
+    `covered` is false for a controller that the kernel lacks. Raises `ValueError` where the
+    kernel has to simulate and cannot.
     """
     installed = device.kernel_version() is not None
-    reason = uncovered(world, state) if open_loop else "controllers in closed loop"
+    reason = uncovered(world, state) if covered else "this controller in closed loop"
     if device.kernel() == "native" and (reason or not installed):
         lacking = (
             f"does not cover {reason}" if reason else "is not installed, or no CPU is used"
@@ -69,11 +74,11 @@ def _say_once(reason: str) -> None:
 
 
 @cache
-def register(instruction_set: str | None = None) -> str:
-    """Register the kernel with JAX, once, and return the name of its target."""
+def register(function: str, instruction_set: str | None = None) -> str:
+    """Register a function of the kernel with JAX, once, and return the name of its target."""
     path = import_module("microcosmos_kernels").library(instruction_set)
-    target = f"microcosmos_rollout_{path.stem}"
-    handler = jax.ffi.pycapsule(ctypes.CDLL(str(path)).microcosmos_rollout)
+    target = f"microcosmos_{function}_{path.stem}"
+    handler = jax.ffi.pycapsule(getattr(ctypes.CDLL(str(path)), f"microcosmos_{function}"))
     jax.ffi.register_ffi_target(target, handler, platform="cpu")
     return target
 
@@ -81,9 +86,7 @@ def register(instruction_set: str | None = None) -> str:
 def uncovered(world: World, state: State) -> str | None:
     """Return what of a world the kernel lacks; None if it can simulate the world."""
     lacking = {
-        "a world without fluid": not world.form.fluid,
-        "repulsion between nodes": world.steric is not None,
-        "energy": world.energy is not None,
+        "repulsion smoothed by a Fourier transform": _transformed(world),
         "walls, a uniform force or a sponge": bool(jax.tree.leaves(world.surroundings)),
         "numbers other than float32": state.positions.dtype != jnp.float32,
         "a body without joints listed": world.rods.joints is None,
@@ -91,17 +94,36 @@ def uncovered(world: World, state: State) -> str | None:
     return next((reason for reason, holds in lacking.items() if holds), None)
 
 
+def _transformed(world: World) -> bool:
+    return world.steric is not None and world.steric.gradient is not fields.binomial
+
+
+def develop(
+    world: World, state: State, controller: Controller, instruction_set: str | None = None
+) -> tuple[filaments.Rest, Float[Array, "time"]]:
+    """Return the rest shapes at all times that a controller commands in open loop and its
+    actuators carry out, and the controller's time at the end of each step."""
+    steps, rods = len(controller.ramp), world.rods
+    shapes = [(steps, len(rods.bend)), (steps, len(rods.edges)), (steps,)]
+    body, sizes = body_of(world, state, controller)
+    commands, numbers = controller_of(controller)
+    target = register("develop", instruction_set)
+    found = _call(target, shapes, [*body, *commands], {**sizes, **numbers, "steps": steps})
+    return filaments.Rest(found[0], found[1]), found[2]
+
+
 def rollout(
     world: World,
     state: State,
-    rest: filaments.Rest,
+    given: filaments.Rest | Controller,
     instruction_set: str | None = None,
 ) -> tuple[State, Measures]:
-    """Return the state after all steps of `rest` (time first), and the measures of each.
+    """Return the state after all steps of rest shapes (time first), or of a controller in
+    closed loop, and the measures of each step.
 
     The memory of the controller stays. Raises `ValueError` for a world the kernel lacks.
     """
-    return _rollout(world, state, rest, instruction_set)[:2]
+    return _rollout(world, state, given, instruction_set)[:2]
 
 
 def part_seconds(world: World, state: State, rest: filaments.Rest) -> Float[Array, "part"]:
@@ -112,102 +134,109 @@ def part_seconds(world: World, state: State, rest: filaments.Rest) -> Float[Arra
 def _rollout(
     world: World,
     state: State,
-    rest: filaments.Rest,
+    given: filaments.Rest | Controller,
     instruction_set: str | None = None,
     timed: bool = False,
 ) -> tuple[State, Measures, Float[Array, "part"]]:
     reason = uncovered(world, state)
     if reason:
         raise ValueError(f"the native kernel does not cover {reason}")
-    steps, nodes, form = len(rest.angle), len(state.positions), world.form
-    call = jax.ffi.ffi_call(
-        register(instruction_set),
-        [jax.ShapeDtypeStruct(shape, jnp.float32) for shape in _results(world, nodes, steps)],
-        vmap_method="expand_dims",
-    )
-    found = call(
-        *state.populations,
-        state.positions,
-        state.angles,
-        rest.angle,
-        rest.length,
-        _parameters(world),
-        *_graph(world, nodes),
-        *_layout(world),
-        *_stiffness(world, nodes),
-        iterations=np.int32(form.forcing_iterations),
-        sweeps=np.int32(form.constraint_iterations),
-        layers=np.int32(form.layers),
-        projection=np.int32(PROJECTIONS.index(form.projection)),
-        delta=np.int32(DELTAS.index(form.kernel)),
-        matched=np.int32(world.layout is not None),
-        timed=np.int32(timed),
-        bodies=np.int32(world.groups.count),
-        force_factor=np.float32(form.force_factor),
-        theta_feedback=np.float32(form.theta_feedback),
-    )
+    closed = isinstance(given, Controller)
+    steps = len(given.ramp) if closed else len(given.angle)
+    operands, sizes = _operands(world, state, given)
+    options = {**sizes, **_form(world), "steps": steps, "timed": timed}
+    shapes = _results(world, state, steps, closed)
+    found = _call(register("rollout", instruction_set), shapes, operands, options)
     end = replace(state, populations=tuple(found[:9]), positions=found[9], angles=found[10])
-    observed = dict(zip(OBSERVED, found[11:-1], strict=True))
+    if state.energy is not None:
+        end = replace(end, energy=found[11], collected=found[12])
+    rest = filaments.Rest(found[13], found[14]) if closed else given
+    observed = dict(zip(OBSERVED, found[15:-1], strict=True))
     measures = jax.vmap(lambda rest, step: Measures(rest=rest, **step))(rest, observed)
     return end, measures, found[-1]
 
 
-def _results(world: World, nodes: int, steps: int) -> list[tuple[int, ...]]:
-    """Return the shapes of the end, of `OBSERVED` and of the time of each part."""
-    edges, joints, bodies = len(world.rods.edges), len(world.rods.bend), world.groups.count
+def _operands(
+    world: World, state: State, given: filaments.Rest | Controller
+) -> tuple[list[Array], dict[str, int]]:
+    controller = given if isinstance(given, Controller) else None
+    body, sizes = body_of(world, state, controller)
+    commands, numbers = controller_of(controller)
+    joints, edges = _counts(world)
+    nothing = jnp.zeros((0, joints), jnp.float32), jnp.zeros((0, edges), jnp.float32)
+    rest = nothing if isinstance(given, Controller) else (given.angle, given.length)
+    field = jnp.zeros((0, world.size[1]), jnp.float32) if state.energy is None else state.energy
+    operands = [
+        *state.populations,
+        *body,
+        *stiffness_of(world),
+        _parameters(world),
+        field,
+        _collected(state),
+        *rest,
+        *commands,
+    ]
+    return operands, {**sizes, **numbers, "energetic": state.energy is not None}
+
+
+def _form(world: World) -> dict[str, int]:
+    form = world.form
+    return {
+        "height": world.size[0],
+        "width": world.size[1],
+        "iterations": form.forcing_iterations,
+        "sweeps": form.constraint_iterations,
+        "layers": form.layers,
+        "projection": PROJECTIONS.index(form.projection),
+        "delta": DELTAS.index(form.kernel),
+        "magic": MAGIC.index(form.magic),
+        "fluid": form.fluid,
+        "repelled": world.steric is not None,
+    }
+
+
+def _call(target: str, shapes: list, operands: list, options: dict) -> list[Array]:
+    call = jax.ffi.ffi_call(
+        target,
+        [jax.ShapeDtypeStruct(shape, jnp.float32) for shape in shapes],
+        vmap_method="expand_dims",
+    )
+    return list(call(*operands, **{name: np.int32(value) for name, value in options.items()}))
+
+
+def _counts(world: World) -> tuple[int, int]:
+    return len(world.rods.bend), len(world.rods.edges)
+
+
+def _collected(state: State) -> Float[Array, "node"]:
+    if state.energy is None:
+        return jnp.zeros(0, jnp.float32)
+    if state.collected is None:
+        return jnp.zeros(len(state.positions), jnp.float32)
+    return state.collected
+
+
+def _results(world: World, state: State, steps: int, closed: bool) -> list[tuple[int, ...]]:
+    """Return the shapes of the end, of rest shapes, of `OBSERVED` and of the parts' times."""
+    joints, edges = _counts(world)
+    nodes, bodies = len(state.positions), world.groups.count
+    energetic, commanded = state.energy is not None, steps if closed else 0
     end = [world.size] * 9 + [(nodes, 2), (edges,)]
+    end += [(world.size[0] * energetic, world.size[1]), (nodes * energetic,)]
+    rest = [(commanded, joints), (commanded, edges)]
     numbers = [(steps,)] * 4
     observed = [(steps, 2), (steps, nodes, 2), *numbers, (steps, joints), (steps,)]
-    return [*end, *observed, (steps, bodies, 2), (len(PARTS),)]
+    return [*end, *rest, *observed, (steps, bodies, 2), (len(PARTS),)]
 
 
 def _parameters(world: World) -> Array:
-    rates, limits = fluid.rates(world.viscosity, world.form.magic), world.limits
+    form, limits, energy = world.form, world.limits, world.energy
     bounds = [jnp.inf if one is None else one for one in (limits.displacement, limits.force)]
-    lengths = coupling.step_lengths(world.form.forcing_iterations)
-    return jnp.asarray([rates.even, rates.odd, *bounds, *lengths], jnp.float32)
-
-
-def _graph(world: World, nodes: int) -> list[Array]:
-    pieces = world.groups.member if world.layout is None else world.layout.pieces.member
-    present = jnp.ones(nodes, bool) if world.present is None else world.present
-    assert world.rods.joints is not None
-    graph = (world.rods.edges, world.rods.joints, world.groups.member, pieces, present)
-    return [jnp.asarray(one, jnp.int32) for one in graph]
-
-
-def _layout(world: World) -> list[Array]:
-    if world.layout is None:
-        return [jnp.zeros((1,) * axes, jnp.float32) for axes in (1, 1, 2, 2)]
-    one = world.layout
-    return [
-        jnp.asarray(x, jnp.float32) for x in (one.angle, one.rest_angle, one.turned, one.placed)
-    ]
-
-
-def _stiffness(world: World, nodes: int) -> list[Array]:
-    rods = world.rods
-    bend = rods.bend
-    if world.nu_c is not None:
-        bend = bend / (1 + world.viscosity / world.nu_c)
-    # Colours may be those of the first of several chunks of equal bodies.
-    chunk = len(rods.edge_colours[0].partner)
-    colours = [
-        _colours(pairings, len(stiffness) * chunk // nodes, len(stiffness))
-        for pairings, stiffness in (
-            (rods.edge_colours, rods.stretch),
-            (rods.joint_colours, bend),
-        )
-    ]
-    return [*colours, rods.stretch, rods.shear, bend]
-
-
-def _colours(
-    colours: tuple[filaments.Pairing, ...], chunk: int, count: int
-) -> Int[Array, "constraint"]:
-    """Return the colour of each constraint."""
-    found = jnp.zeros(chunk, jnp.int32)
-    for number, one in enumerate(colours):
-        at = jnp.where(one.sign > 0, one.constraint, chunk)
-        found = found.at[at].set(number, mode="drop")
-    return jnp.tile(found, -(-count // max(chunk, 1)))[:count]
+    rate, diffusion = (None, None) if energy is None else (energy.rate, energy.diffusion)
+    absent = [0.0 if one is None else one for one in (world.nu_c, rate, diffusion)]
+    steric = world.steric
+    repulsion = (0.0, 0.0) if steric is None else (steric.strength, steric.limit)
+    factors = (form.force_factor, form.theta_feedback)
+    values = [world.viscosity, *absent, *bounds, *factors, *repulsion]
+    lengths = coupling.step_lengths(form.forcing_iterations)
+    return jnp.stack([jnp.asarray(one, jnp.float32) for one in (*values, *lengths)])

@@ -230,7 +230,7 @@ def interpolated(plane, positions):
     weights = []
     for axis, side in enumerate(SIZE):
         away = np.arange(side)[None] - positions[:, axis, None]
-        weights.append(coupling.peskin(jnp.asarray(away - side * np.round(away / side))))
+        weights.append(coupling.ROMA.weight(jnp.asarray(away - side * np.round(away / side))))
     return np.einsum("px,py,xy->p", *weights, plane)
 
 

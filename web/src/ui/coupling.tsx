@@ -33,7 +33,7 @@ export function couplingFacts(coupling: Json | undefined): [string, string][] {
     [text.edgeAngles, angles],
     [text.actuatorStrength, strength],
     [text.forcing, text.layers(layers, force_factor ?? 2)],
-    [text.deltaKernel, String(kernel ?? "peskin")],
+    [text.deltaKernel, String(kernel ?? "roma")],
     [text.limits, limits === false ? text.off : text.on],
   ];
 }

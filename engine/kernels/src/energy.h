@@ -1,0 +1,103 @@
+// Energy that nodes sense and collect, as in `world.nodes` and `fields.energy`.
+#pragma once
+#include "points.h"
+
+namespace microcosmos::ISA {
+
+class Energy {
+ public:
+  Floats sensed;     // At each node.
+  Floats collected;  // By each node since the start.
+
+  Energy(const Bodies& b, const Rollout& r, const Lattice& l) : b_(b), r_(r) {
+    sensed = Floats(r.nodes), collected = Floats(r.nodes);
+    if (!r.energetic) return;
+    const size_t cells = (l.height + 1) * l.wide;
+    field_ = Floats(cells), next_ = Floats(cells), taken_ = Floats(cells);
+    for (int x = 0; x < l.height; x++)
+      std::memcpy(field_ + x * l.wide, r.energy + size_t(x) * l.width, 4 * size_t(l.width));
+    std::memcpy(collected, r.collected, 4 * size_t(r.nodes));
+    continue_rows(l);
+  }
+
+  // Read the energy at the nodes, whose windows are those of points in one layer.
+  void sense(const Points& p) {
+    for (int n = 0; n < r_.nodes; n++)
+      sensed[n] = r_.present[n] ? at(p, field_, b_.node_slot[n]) : 0;
+  }
+
+  // Take energy at the points, then let the rest spread. The coverage of cells by points is known.
+  void collect(const Points& p, Lattice& l) {
+    const bool consumed = r_.parameters[ENERGY_RATE] > 0, spreads = r_.parameters[DIFFUSION] > 0;
+    if (consumed) consume(l);
+    for (int n = 0; n < r_.nodes; n++) {
+      if (!r_.present[n]) continue;
+      float found = 0;
+      for (int layer = 0; layer < r_.layers; layer++)
+        found += at(p, consumed ? taken_ : field_, layer * b_.node_slots + b_.node_slot[n]);
+      collected[n] = collected[n] + found / float(r_.layers);
+    }
+    if (spreads) diffuse(l);
+    if (consumed || spreads) continue_rows(l);
+  }
+
+  void end(const Lattice& l) const {
+    if (!r_.energetic) return;
+    for (int x = 0; x < l.height; x++)
+      std::memcpy(r_.end_energy + size_t(x) * l.width, field_ + x * l.wide, 4 * size_t(l.width));
+    std::memcpy(r_.end_collected, collected, 4 * size_t(r_.nodes));
+  }
+
+ private:
+  static float at(const Points& p, const float* plane, int slot) {
+    const float* w = p.weights + 8 * size_t(slot);
+    Vec4 sum = {};
+    for (int i = 0; i < 4; i++) sum = sum + w[i] * load<Vec4>(plane + p.rows[4 * size_t(slot) + i]);
+    sum = sum * load<Vec4>(w + 4);
+    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
+  }
+
+  // Windows that cross the edge of a row continue beyond it.
+  void continue_rows(const Lattice& l) {
+    for (int x = 0; x < l.height; x++)
+      for (int i = 0; i < 3; i++) field_[x * l.wide + l.width + i] = field_[x * l.wide + i];
+  }
+
+  // Remove what nodes take, which together is at most all of a cell.
+  void consume(Lattice& l) {
+    const float rate = r_.parameters[ENERGY_RATE], share = 1.0f / float(r_.layers);
+    each_touched(l, [&](int o) __attribute__((always_inline)) {
+      const Vec field = load(field_ + o), covered = share * load(l.coverage + o);
+      const Vec taken = rate / most(all(1), rate * covered);
+      store(taken_ + o, field * taken), store(field_ + o, field * (1.0f - taken * covered));
+    });
+    for (int n = 0; n < l.beyond_rows; n++) {
+      float* row = taken_ + l.wide * l.beyond[n];
+      for (int i = 0; i < 3; i++) row[l.width + i] = row[i];
+    }
+  }
+
+  void diffuse(const Lattice& l) {
+    const float diffusion = r_.parameters[DIFFUSION];
+    const int W = l.width, H = l.height;
+    for (int x = 0; x < H; x++) {
+      const float* row = field_ + size_t(x) * l.wide;
+      const float* above = field_ + size_t(x ? x - 1 : H - 1) * l.wide;
+      const float* below = field_ + size_t(x + 1 < H ? x + 1 : 0) * l.wide;
+      float* out = next_ + size_t(x) * l.wide;
+      auto step = [&](int y, int before, int after) __attribute__((always_inline)) {
+        const float around = ((below[y] + above[y]) + row[after]) + row[before];
+        out[y] = row[y] + diffusion * (around - 4 * row[y]);
+      };
+      step(0, W - 1, 1), step(W - 1, W - 2, 0);
+      for (int y = 1; y < W - 1; y++) step(y, y - 1, y + 1);
+    }
+    std::swap(field_, next_);
+  }
+
+  const Bodies& b_;
+  const Rollout& r_;
+  Floats field_, next_, taken_;
+};
+
+}  // namespace microcosmos::ISA

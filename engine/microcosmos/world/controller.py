@@ -1,0 +1,67 @@
+"""Descriptions of controllers and actuators that the native kernel carries out."""
+
+import equinox as eqx
+from jaxtyping import Array, Float, Int
+
+from .. import filaments
+
+Scalar = Float[Array, ""]
+
+
+class Network(eqx.Module):
+    """A network at every node of a body; rows are inputs, two outputs, then hidden nodes."""
+
+    activation: Int[Array, "row"]
+    """Number in `naming.ACTIVATIONS`; −1: an input, or no node."""
+    bias: Float[Array, "row"]
+    source: Int[Array, "link"]
+    """Row from which a link comes; −1: there is no link."""
+    target: Int[Array, "link"]
+    weight: Float[Array, "link"]
+    position: Float[Array, "node"]
+    lag: Float[Array, "node"] | None
+    """Phase lag of a travelling sine and cosine, in rad; None: there are none."""
+    timer: Float[Array, "time clock"]
+    joint_node: Int[Array, "joint"]
+    """The node whose outputs a joint takes."""
+    recurrent: bool = eqx.field(static=True)
+    senses: bool = eqx.field(static=True)
+    """Whether the energy at the node is an input, so that the loop is closed."""
+
+
+class Series(eqx.Module):
+    """Sums of functions of time, within ±1, for every joint and then every edge."""
+
+    basis: Float[Array, "time term"]
+    genes: Float[Array, "term item"]
+
+
+class Actuators(eqx.Module):
+    """Bounds on what a body does; None or 0 switches one off."""
+
+    layout: filaments.Layout
+    max_speed: float | None = eqx.field(static=True, default=None)
+    """Cells a step of the fastest node, in the frame that moves and turns with the body."""
+    lag: float = eqx.field(static=True, default=0.0)
+    """Time constant of the first-order response, in steps."""
+    max_bend: float | None = eqx.field(static=True, default=None)
+    """Largest angle that is added between any two edges, in rad."""
+
+
+class Controller(eqx.Module):
+    """What commands rest angles and rest lengths, −1 to 1, and the scales of both."""
+
+    commands: Network | Series
+    ramp: Float[Array, "time"]
+    rest_angle: Float[Array, "joint"]
+    rest_length: Float[Array, "edge"]
+    angle_scale: float = eqx.field(static=True)
+    length_scale: float = eqx.field(static=True)
+    phase: Scalar | None = None
+    """Lead of a periodic timer, in rad."""
+    actuators: Actuators | None = None
+
+    @property
+    def senses(self) -> bool:
+        """Whether rest shapes depend on the simulation."""
+        return isinstance(self.commands, Network) and self.commands.senses

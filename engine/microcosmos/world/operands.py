@@ -1,0 +1,151 @@
+"""Operands of the native kernel: bodies and controllers as arrays and numbers."""
+
+from typing import Any
+
+import jax.numpy as jnp
+from jaxtyping import Array, Int
+
+from .. import filaments
+from .controller import Actuators, Controller, Network, Series
+from .model import State, World
+
+Numbers = dict[str, int]
+GIVEN, NETWORK, SERIES = range(3)
+"""What commands rest shapes, in the kernel's numbers."""
+
+
+def body_of(
+    world: World, state: State, controller: Controller | None
+) -> tuple[list[Array], Numbers]:
+    """Return the graph, the start and the layout of all bodies, and their sizes."""
+    rods, nodes = world.rods, len(state.positions)
+    actuators = None if controller is None else controller.actuators
+    layout = world.layout
+    if layout is None and actuators is not None:
+        layout = actuators.layout
+    pieces = world.groups.member if layout is None else layout.pieces.member
+    present = jnp.ones(nodes, bool) if world.present is None else world.present
+    assert rods.joints is not None
+    graph = (rods.edges, rods.joints, world.groups.member, pieces, present)
+    arrays = [state.positions, state.angles, *(jnp.asarray(one, jnp.int32) for one in graph)]
+    if layout is None:
+        edges, joints = len(rods.edges), len(rods.bend)
+        arrays += [_nothing(0), _nothing(0), _nothing(0, joints), _nothing(0, edges)]
+    else:
+        parts = (layout.angle, layout.rest_angle, layout.turned, layout.placed)
+        arrays += [jnp.asarray(one, jnp.float32) for one in parts]
+    sizes = {
+        "nodes": nodes,
+        "edges": len(rods.edges),
+        "joints": len(rods.bend),
+        "bodies": world.groups.count,
+        "matched": world.layout is not None,
+        "laid_out": layout is not None,
+    }
+    return arrays, sizes
+
+
+def stiffness_of(world: World) -> list[Array]:
+    """Return the colours of edges and joints, which only sweeps need, and all stiffnesses."""
+    rods, nodes = world.rods, len(world.groups.member)
+    stiffness = [rods.stretch, rods.shear, rods.bend]
+    if world.layout is not None:
+        return [jnp.zeros(0, jnp.int32), jnp.zeros(0, jnp.int32), *stiffness]
+    # Colours may be those of the first of several chunks of equal bodies.
+    chunk = len(rods.edge_colours[0].partner)
+    colours = [
+        _colours(pairings, count * chunk // nodes, count)
+        for pairings, count in (
+            (rods.edge_colours, len(rods.edges)),
+            (rods.joint_colours, len(rods.bend)),
+        )
+    ]
+    return [*colours, *stiffness]
+
+
+def controller_of(controller: Controller | None) -> tuple[list[Array], Numbers]:
+    """Return a controller, and its sizes; without one, arrays that hold nothing."""
+    network = series = None
+    if controller is not None:
+        commands = controller.commands
+        network = commands if isinstance(commands, Network) else None
+        series = commands if isinstance(commands, Series) else None
+    arrays = [_bounds(controller), *_network(network)]
+    ramp, angle, length = (_nothing(0),) * 3
+    timer = lag = position = joint_node = None
+    if controller is not None:
+        ramp, angle, length = controller.ramp, controller.rest_angle, controller.rest_length
+    if network is not None:
+        timer, lag, position = network.timer, network.lag, network.position
+        joint_node = network.joint_node
+    arrays += [
+        _nothing(0, 0) if timer is None else timer,
+        ramp,
+        _nothing(0) if position is None else position,
+        _nothing(0) if lag is None else lag,
+        jnp.asarray(() if joint_node is None else joint_node, jnp.int32),
+        angle,
+        length,
+        _nothing(0, 0) if series is None else series.basis,
+        _nothing(0, 0) if series is None else series.genes,
+    ]
+    inputs = 0
+    if network is not None:
+        clocks = network.timer.shape[1] * (1 if network.lag is None else 2)
+        inputs = 1 + clocks + network.senses
+    numbers = {
+        "commands": GIVEN if controller is None else SERIES if network is None else NETWORK,
+        "recurrent": network is not None and network.recurrent,
+        "senses": network is not None and network.senses,
+        "waves": lag is not None,
+        "actuated": controller is not None and controller.actuators is not None,
+        "rows": 0 if network is None else len(network.bias),
+        "links": 0 if network is None else len(network.weight),
+        "inputs": inputs,
+        "timers": 0 if timer is None else timer.shape[1],
+        "terms": 0 if series is None else series.basis.shape[1],
+    }
+    return arrays, numbers
+
+
+def _bounds(controller: Controller | None) -> Array:
+    """Return scales, phase and bounds, in the kernel's order."""
+    if controller is None:
+        return _nothing(6)
+    actuators = controller.actuators
+    phase = 0.0 if controller.phase is None else controller.phase
+    values: list[Any] = [controller.angle_scale, controller.length_scale, phase]
+    if isinstance(actuators, Actuators):
+        share = 1 / (1 + actuators.lag)
+        values += [actuators.max_speed or 0.0, share, actuators.max_bend or 0.0]
+    else:
+        values += [0.0, 1.0, 0.0]
+    return jnp.stack([jnp.asarray(one, jnp.float32) for one in values])
+
+
+def _network(network: Network | None) -> list[Array]:
+    if network is None:
+        none = jnp.zeros(0, jnp.int32)
+        return [none, _nothing(0), none, none, _nothing(0)]
+    return [
+        jnp.asarray(network.activation, jnp.int32),
+        network.bias,
+        jnp.asarray(network.source, jnp.int32),
+        jnp.asarray(network.target, jnp.int32),
+        network.weight,
+    ]
+
+
+def _nothing(*shape: int) -> Array:
+    return jnp.zeros(shape, jnp.float32)
+
+
+def _colours(
+    colours: tuple[filaments.Pairing, ...], chunk: int, count: int
+) -> Int[Array, "constraint"]:
+    """Return the colour of each constraint."""
+    found = jnp.zeros(chunk, jnp.int32)
+    for number, one in enumerate(colours):
+        at = jnp.where(one.sign > 0, one.constraint, chunk)
+        found = found.at[at].set(number, mode="drop")
+    return jnp.tile(found, -(-count // max(chunk, 1)))[:count]

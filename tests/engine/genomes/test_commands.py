@@ -1,0 +1,172 @@
+"""Controllers in the native kernel against JAX: the same shapes in open and closed loop."""
+
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from microcosmos import world
+from microcosmos.build import build_task
+from microcosmos.genomes import CPPN
+from microcosmos.search import drive
+from microcosmos.search.measures import observe
+from microcosmos.spec import parse
+
+kernels = pytest.importorskip(
+    "microcosmos_kernels", reason="microcosmos-kernels is not installed: no compiler?"
+)
+native = world.native
+
+VECTORS = {"search": {"emitters": [{"operator": "iso+line"}]}}
+OPEN = {
+    "cppn": {},
+    "no bounds": {"control": {"max_speed": None, "lag": 0, "max_bend": None}},
+    "a linear timer": {"control": {"timer": "linear", "wave_number": None}},
+    "slowed and bent little": {"control": {"max_speed": 0.01, "max_bend": 0.5, "period": 40}},
+    "recurrent": {"control": {"recurrent": True}},
+    "a body that grows": {"control": {"encoding": "cppn-body"}},
+    "layers": {"control": {"encoding": "weights"}, **VECTORS},
+    "layers of sigmoids": {
+        "control": {"encoding": "weights", "activation": "sigmoid"},
+        **VECTORS,
+    },
+    "series": {"control": {"encoding": "direct"}, **VECTORS},
+    "table": {"control": {"encoding": "direct", "waveform": "table"}, **VECTORS},
+    "a star": {"body": {"builder": "star", "arms": 3, "arm_nodes": 5}},
+}
+ENERGY = {"packets": 5, "width": 3.0}
+CLOSED = {
+    "senses": {"control": {"sense_energy": True}},
+    "senses with memory": {"control": {"sense_energy": True, "recurrent": True}},
+    "senses with layers": {"control": {"encoding": "weights", "sense_energy": True}, **VECTORS},
+    "grows and senses": {"control": {"encoding": "cppn-body", "sense_energy": True}},
+    "senses without bounds": {
+        "control": {"sense_energy": True, "max_speed": None, "lag": 0, "max_bend": None}
+    },
+    "senses with two layers": {"control": {"sense_energy": True}, "coupling": {"layers": 2}},
+}
+
+
+def task_of(document, energy=None, steps=200):
+    small = {
+        "experiment": "quality-diversity",
+        "world": {"width": 32, "height": 37, "energy": energy},
+        "body": {"nodes": 12},
+        "task": {"steps": steps, "fitness": "displacement"},
+    }
+    spec = parse(small | document)
+    return build_task(spec.scene, room=(spec.genome.max_nodes, spec.genome.max_connections))
+
+
+def creature(task, seed):
+    """A random genotype; networks have hidden nodes of every activation between the layers."""
+    found = task.encoding.newcomer(key=jax.random.key(seed))
+    return (
+        with_hidden(found, task, np.random.default_rng(seed))
+        if isinstance(found, CPPN)
+        else found
+    )
+
+
+def with_hidden(network, task, rng):
+    """Add a chain of nine hidden nodes, from an input through all activations to an output."""
+    rows, links = len(network.bias), int(network.connection_used.sum())
+    used = int(network.node_used.sum())
+    inputs = task.encoding.controls.inputs
+    hidden = used + np.arange(9)
+    source, target = np.r_[0, hidden], np.r_[hidden, inputs]
+    assert used + 9 <= rows
+    assert links + 10 <= len(network.weight)
+    fresh = links + np.arange(10)
+    weight = rng.normal(0, 1.5, 10)
+    cyclic = getattr(task.encoding, "recurrent", False)
+    if cyclic:  # The last link leads back.
+        target[-1] = hidden[3]
+    return CPPN(
+        node_used=network.node_used.at[hidden].set(True),
+        node_id=network.node_id.at[hidden].set(hidden),
+        activation=network.activation.at[hidden].set(np.arange(9)),
+        bias=network.bias.at[hidden].set(rng.normal(0, 1, 9)),
+        connection_used=network.connection_used.at[fresh].set(True),
+        innovation=network.innovation.at[fresh].set(fresh),
+        source=network.source.at[fresh].set(source),
+        target=network.target.at[fresh].set(target),
+        enabled=network.enabled.at[fresh].set(True).at[1].set(False),
+        weight=network.weight.at[fresh].set(weight),
+    )
+
+
+@pytest.mark.parametrize("name", OPEN)
+def test_the_kernel_develops_the_rest_shapes_of_jax(name):
+    task = task_of(OPEN[name])
+    for seed in (0, 1):
+        driven = drive(task, creature(task, seed), differentiable=True)
+        rest, clock = jax.jit(native.develop)(driven.world, driven.start, driven.controller)
+        np.testing.assert_allclose(rest.angle, driven.inputs.angle, rtol=0, atol=2e-5)
+        np.testing.assert_allclose(rest.length, driven.inputs.length, rtol=0, atol=2e-5)
+        expected = np.arange(1.0, 201) if driven.clock is None else driven.clock
+        np.testing.assert_allclose(clock, expected, rtol=0, atol=1e-3)
+
+
+def test_a_phase_leads_the_timer():
+    task = task_of({})
+    genotype, phase = creature(task, 3), jnp.float32(1.0)
+    driven = task.encoding.drive(task.world, task.start, genotype, phase)
+    rest, _ = native.develop(driven.world, driven.start, driven.controller)
+    np.testing.assert_allclose(rest.angle, driven.inputs.angle, rtol=0, atol=1e-5)
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_the_kernel_closes_the_loop_as_jax_does(name):
+    consumed = {**ENERGY, "consume": True, "diffusion": 0.05}
+    task = task_of(CLOSED[name], ENERGY if "without" in name else consumed)
+    driven = drive(task, creature(task, 1), differentiable=True)
+
+    @jax.jit
+    def in_jax():
+        return world.rollout(
+            driven.world, driven.start, driven.inputs, observe, driven.control, driven.remember
+        )
+
+    end, seen = in_jax()
+    found, observed = jax.jit(native.rollout)(driven.world, driven.start, driven.controller)
+    for steps in (1, 10, 200):
+        np.testing.assert_allclose(
+            observed.rest.angle[:steps], seen.rest.angle[:steps], rtol=0, atol=1e-4
+        )
+        np.testing.assert_allclose(
+            observed.positions[:steps], seen.positions[:steps], rtol=0, atol=1e-3
+        )
+    np.testing.assert_allclose(found.collected, end.collected, rtol=1e-3, atol=1e-3)
+
+
+@pytest.mark.parametrize("name", ["cppn", "layers", "series"])
+def test_every_instruction_set_develops_the_same_bits(name):
+    task = task_of(OPEN[name])
+    driven = drive(task, creature(task, 0), differentiable=True)
+    sets = kernels.instruction_sets()
+    given = driven.world, driven.start, driven.controller
+    found = [native.develop(*given, one) for one in sets]
+    for other in found[1:]:
+        jax.tree.map(np.testing.assert_array_equal, other, found[0])
+
+
+def test_every_instruction_set_closes_the_loop_with_the_same_bits():
+    task = task_of(CLOSED["senses with memory"], ENERGY)
+    driven = drive(task, creature(task, 0), differentiable=True)
+    given = driven.world, driven.start, driven.controller
+    found = [native.rollout(*given, one) for one in kernels.instruction_sets()]
+    for other in found[1:]:
+        jax.tree.map(np.testing.assert_array_equal, other, found[0])
+
+
+def test_a_network_that_refers_to_rows_it_lacks_is_refused():
+    task = task_of({})
+    driven = drive(task, creature(task, 0), differentiable=True)
+    commands = driven.controller.commands
+    wrong = jnp.full_like(commands.source, len(commands.bias))
+    broken = replace(driven.controller, commands=replace(commands, source=wrong))
+    with pytest.raises(Exception, match="refers to what it lacks"):
+        jax.block_until_ready(native.develop(driven.world, driven.start, broken))
