@@ -206,9 +206,9 @@ def simulate(
     """
     open_loop = driven.control is follow and driven.remember is keep_memory
     given: Any = driven.inputs if open_loop else driven.controller
-    if observer is observe and segment is None and not differentiable:
-        if native.chosen(driven.world, driven.start, given is not None):
-            return native.rollout(driven.world, driven.start, given)
+    plain = observer is observe and segment is None and not differentiable
+    if plain and native.chosen(driven.world, driven.start, given is not None):
+        return native.rollout(driven.world, driven.start, given)
     go_on = partial(rollout, control=driven.control, remember=driven.remember, segment=segment)
     return go_on(driven.world, driven.start, driven.inputs, observer)
 
