@@ -21,6 +21,9 @@ _STARTED = (
 KERNELS = ("auto", "native", "jax")
 """What may simulate worlds: the native kernel where it can, it alone, or JAX alone."""
 KERNEL_VARIABLE = "MICROCOSMOS_KERNEL"
+PORTABLE = "--xla_cpu_max_isa=AVX"
+"""Without fused multiply-adds and wider vectors, XLA's programs give the same bits on every
+x86-64 processor, as the native kernel does. They are slower by a quarter."""
 GPU_FLAGS = "--xla_gpu_deterministic_ops=true --xla_gpu_autotune_level=0"
 
 
@@ -28,22 +31,32 @@ def prepare(devices: int | None = None, cache: str | os.PathLike | None = None) 
     """Configure JAX for repeatable results; call this before JAX is first used.
 
     On a CPU, one device per core (or `devices`) gives every core its own block; results do not
-    depend on the number. If JAX has started, it keeps its devices, with a warning. Compiled
-    programs are cached in JAX_COMPILATION_CACHE_DIR, or in `cache`.
+    depend on the number, nor, with the native kernel, on the model of an x86-64 processor. If
+    JAX has started, it keeps its devices, with a warning. Compiled programs are cached in
+    JAX_COMPILATION_CACHE_DIR, or in `cache`.
     """
-    flags = os.environ.get("XLA_FLAGS", "")
-    if Path("/proc/driver/nvidia").exists() and "xla_gpu_deterministic_ops" not in flags:
-        os.environ["XLA_FLAGS"] = f"{flags} {GPU_FLAGS}".strip()
     jax.config.update("jax_default_matmul_precision", "highest")
     try:
         jax.config.update("jax_num_cpu_devices", devices or _cores())
     except RuntimeError:
         warnings.warn(_STARTED.format(jax.local_device_count()), stacklevel=2)
+    else:
+        if Path("/proc/driver/nvidia").exists():
+            _add_flags(GPU_FLAGS)
+        if kernel() != "jax" and _installed() and platform.machine() in ("x86_64", "AMD64"):
+            _add_flags(PORTABLE)
     if cache and not os.environ.get("JAX_COMPILATION_CACHE_DIR"):
         jax.config.update("jax_compilation_cache_dir", os.fspath(cache))
     # Cache small programs too, so that a resumed run starts within a second.
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
     jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
+
+
+def _add_flags(added: str) -> None:
+    """Add flags of XLA, unless the first of them has been set."""
+    flags = os.environ.get("XLA_FLAGS", "")
+    if added.partition("=")[0] not in flags:
+        os.environ["XLA_FLAGS"] = f"{flags} {added}".strip()
 
 
 def _cores() -> int:
@@ -65,6 +78,10 @@ def kernel_version() -> str | None:
     """Return the native kernel's version; None without it, on a GPU, or if JAX is chosen."""
     if kernel() == "jax" or jax.default_backend() != "cpu":
         return None
+    return _installed()
+
+
+def _installed() -> str | None:
     try:
         return version("microcosmos-kernels")
     except PackageNotFoundError:
@@ -72,9 +89,15 @@ def kernel_version() -> str | None:
 
 
 def device_kind() -> str:
-    """Return platform, model and software, on which the bits of a result depend."""
+    """Return platform, model and software, on which the bits of a result depend.
+
+    With the native kernel and `PORTABLE` programs, all x86-64 processors are one model.
+    """
     device = jax.local_devices()[0]
-    model = _processor() if device.platform == "cpu" else device.device_kind
+    model = device.device_kind
+    if device.platform == "cpu":
+        portable = PORTABLE in os.environ.get("XLA_FLAGS", "") and kernel_version()
+        model = "x86-64" if portable else _processor()
     software = f"microcosmos {VERSION}, jax {jax.__version__}, jaxlib {jaxlib_version}"
     if kernels := kernel_version():
         software += f", microcosmos-kernels {kernels}"

@@ -65,7 +65,8 @@ def forces(case: Case):
 
 def _held(f, nodes, rates, surroundings, steps: int):
     """Return the fluid after `steps` around held nodes, and the momentum received in each."""
-    options = {"surroundings": surroundings, "projection": coupling.unprojected}
+    free = {"surroundings": surroundings, "projection": coupling.unprojected}
+    options = {**free, "kernel": coupling.PESKIN}
 
     def step(f, _):
         f, _, momentum = immersed.step(f, nodes, jnp.zeros_like(nodes), rates, **options)

@@ -16,6 +16,7 @@ def step(
     *,
     surroundings: fluid.Surroundings,
     projection: Callable,
+    kernel: coupling.Kernel,
 ) -> tuple[fluid.Populations, Float[Array, "node 2"], Float[Array, "2"]]:
     """Carry out one step with nodes at `positions` that are to move with `target`.
 
@@ -23,7 +24,7 @@ def step(
     removes), and the momentum that the fluid receives from all nodes.
     """
     rho, momentum = fluid.density(f), fluid.momentum(f)
-    at = coupling.windows(positions, rho.shape)
+    at = coupling.windows(positions, rho.shape, kernel)
     forced = coupling.multi_direct_forcing(
         coupling.interpolate(momentum, coupling.divided(at, rho)),
         target,

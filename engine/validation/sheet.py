@@ -47,7 +47,7 @@ def theory(sheet: Sheet) -> float:
     return taylor * 0.5 * (1 + 1 / grown)
 
 
-def speed(sheet: Sheet, periods: int) -> float:
+def speed(sheet: Sheet, periods: int, kernel: coupling.Kernel = coupling.ROMA) -> float:
     """Measure the speed of a force-free sheet of nodes over the last period.
 
     The wave is prescribed in the sheet's own frame. To make the sheet free of force, the
@@ -58,7 +58,11 @@ def speed(sheet: Sheet, periods: int) -> float:
     rates = fluid.rates(jnp.asarray(sheet.viscosity, dtype), fluid.fixed_magic)
     along = jnp.arange(nodes, dtype=dtype)
     middle = jnp.asarray([0.0, sheet.height // 2], dtype)
-    options = {"surroundings": fluid.Surroundings(), "projection": coupling.force_free}
+    options = {
+        "surroundings": fluid.Surroundings(),
+        "projection": coupling.force_free,
+        "kernel": kernel,
+    }
 
     def shape(time):
         turn = 2 * jnp.pi * (along / nodes - time / period)

@@ -137,7 +137,7 @@ def _free_velocity(x: np.ndarray, change: np.ndarray) -> np.ndarray:
 @jax.jit
 def _deltas(positions):
     """The density that each node alone spreads on the grid."""
-    at = coupling.windows(positions, SIZE)
+    at = coupling.windows(positions, SIZE, world.Form().kernel)
     alone = jnp.eye(len(positions))[:, :, None]
     return jax.vmap(lambda one: coupling.spread(one, at, SIZE)[0])(alone)
 

@@ -12,8 +12,8 @@ from playwright.sync_api import Locator, Page, expect
 from microcosmos.archive import creature
 
 KINDS = {
-    "Quality-diversity": "20 nodes",
-    "Neuroevolution": "20 nodes",
+    "Quality-diversity": "24 nodes",
+    "Neuroevolution": "24 nodes",
     "Folding": "160 nodes",
     "Gaits": "32 nodes",
     "Scaling": "1,000 nodes",

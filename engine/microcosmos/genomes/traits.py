@@ -7,6 +7,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
 from ..bodies import Layout
+from ..portable import product
 from ..world import State, World, at_rest, centre, grown_rods
 from .development import Controls
 
@@ -48,7 +49,7 @@ def shaped(
     dtype = start.positions.dtype
     factor = traits.get("rest_length", jnp.ones(len(layout.angle), dtype))
     turns = traits.get("rest_angle", jnp.zeros(len(layout.joints), dtype))
-    turned = jnp.asarray(layout.turned, dtype) @ turns
+    turned = product(jnp.asarray(layout.turned, dtype), turns[:, None])[:, 0]
     length = jnp.asarray(controls.rest_length, dtype) * factor
     positions = _laid_out(layout, turned, length) + jnp.mean(start.positions, 0)[None]
     first, second = layout.joints.T
@@ -77,4 +78,4 @@ def _laid_out(layout: Layout, turned: Array, length: Array) -> Float[Array, "nod
     """Return node positions relative to their mean."""
     angle = jnp.asarray(layout.angle, turned.dtype) + turned
     v = jnp.stack([jnp.cos(angle), jnp.sin(angle)], 1) * length[:, None]
-    return jnp.asarray(layout.placed, turned.dtype) @ v
+    return product(jnp.asarray(layout.placed, turned.dtype), v)

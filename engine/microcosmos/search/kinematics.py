@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from ..archive.poses import FRAMES, STROKES
+from ..portable import product, root
 from ..world import Measures, World, edges_there
 from .window import Window
 
@@ -63,8 +64,8 @@ def waves(
     last, −1 for the reverse, 0 for a standing wave.
     """
     change = bends - jnp.mean(bends, 0)[None]
-    cosine = jnp.asarray(np.cos(_ANGLES), bends.dtype) @ change
-    sine = -jnp.asarray(np.sin(_ANGLES), bends.dtype) @ change
+    cosine = product(jnp.asarray(np.cos(_ANGLES), bends.dtype), change)
+    sine = -product(jnp.asarray(np.sin(_ANGLES), bends.dtype), change)
     power = jnp.sum(cosine * cosine + sine * sine, 1)
     rates = jnp.arange(1.0, FRAMES // 2 + 1, dtype=bends.dtype) / STROKES
     beats = jnp.sum(rates * power) / jnp.maximum(jnp.sum(power), TINY)
@@ -72,7 +73,7 @@ def waves(
     real, imaginary = cosine[strongest], sine[strongest]
     middle = _middles(real, along), _middles(imaginary, along)
     change = _changes(real, along), _changes(imaginary, along)
-    size, step = (jnp.sqrt(jnp.sum(a * a + b * b) + TINY) for a, b in (middle, change))
+    size, step = (root(jnp.sum(a * a + b * b) + TINY) for a, b in (middle, change))
     turned = jnp.sum(middle[0] * change[1] - middle[1] * change[0])
     moving = jnp.sum(power) > TINY
     wave = 2 * jnp.arctan2(step, 2 * size) / (2 * jnp.pi)
@@ -141,4 +142,4 @@ def _changes(a: Float[Array, "joint"], along: Bool[Array, "pair"]) -> Float[Arra
 
 
 def _norm(v: Float[Array, "*batch 2"]) -> Float[Array, "*batch"]:
-    return jnp.sqrt(jnp.sum(v * v, -1) + 1e-24)
+    return root(jnp.sum(v * v, -1) + 1e-24)

@@ -19,10 +19,8 @@ Name = TypeVar("Name", bound=str)
 SearchSpec = TypeVar("SearchSpec", bound=Generations)
 
 SMALL: dict[str, Any] = {
-    "world": World(width=40, height=40),
-    "body": Chain(nodes=20),
-    "control": Control(period=150, angle_scale=0.6),
-    "task": Task(steps=1000),
+    "control": Control(period=180, angle_scale=0.6),
+    "task": Task(steps=1200),
 }
 """Parts of the demonstrations."""
 

@@ -104,10 +104,10 @@ class Gaits(Part):
         )
 
     def coupling(self, form: str) -> Coupling:
-        """Return the coupling of a form."""
+        """Return the coupling of a form; all have the same delta."""
         if form == "paper":
-            return Coupling(projection="none", theta_feedback=0, layers=2)
-        return Coupling(nu_c=self.nu_c if form == "ours" else None)
+            return Coupling(projection="none", theta_feedback=0, layers=2, kernel="peskin")
+        return Coupling(nu_c=self.nu_c if form == "ours" else None, kernel="peskin")
 
 
 def swimmer_body(swimmer: str, plugin: PluginVersion | None = None) -> Body:

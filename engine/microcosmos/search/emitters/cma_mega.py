@@ -14,6 +14,7 @@ from jaxtyping import Array, Bool, Float, PRNGKeyArray
 
 from ...genomes import Genotype, Vector
 from ...neat import Counters
+from ...portable import product
 from ..gradients import Slopes, unit
 from ..insertion import Elites
 from . import matrix_adaptation as es
@@ -98,7 +99,7 @@ class CmaMega:
     ) -> tuple[Children, CmaMegaState]:
         assert isinstance(children.genotypes, Vector)
         rows = jnp.where(slopes.finite[0], unit(slopes.rows[0]), 0.0)
-        values = jnp.clip(state.theta[None] + state.weights @ rows, -1.0, 1.0)
+        values = jnp.clip(state.theta[None] + product(state.weights, rows), -1.0, 1.0)
         values = jnp.where(state.due, values, children.genotypes.values)
         return replace(children, genotypes=Vector(values)), replace(state, slopes=rows)
 
@@ -109,7 +110,8 @@ class CmaMega:
         order = jnp.lexsort((-gain, ~(outcome.fresh & outcome.entered)))
         strategy = es.strategy(self.outputs, self.slots)
         best = state.weights[order[: len(strategy.weights)]]
-        ahead = jnp.asarray(strategy.weights, best.dtype) @ best @ state.slopes
+        mean = jnp.asarray(strategy.weights, best.dtype)[None]
+        ahead = product(product(mean, best), state.slopes)[0]
         distribution = es.update(state.distribution, state.z, order, strategy)
         stuck = ~jnp.any(outcome.entered) | es.must_restart(distribution)
         return replace(

@@ -14,6 +14,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int, Key
 
+from ...portable import product
+
 SMALLEST, LARGEST = 1e-10, 1e4
 """Standard deviations beyond which a distribution has converged or diverged."""
 
@@ -85,7 +87,7 @@ def draw(
     """Draw children; also return the z of each."""
     mean, m = distribution.mean, distribution.m
     z = jax.vmap(lambda key: jax.random.normal(key, mean.shape, mean.dtype))(keys)
-    return mean[None] + distribution.sigma * (z @ m.T), z
+    return mean[None] + distribution.sigma * product(z, m.T), z
 
 
 def update(
@@ -97,12 +99,12 @@ def update(
     """Return the distribution after its children are ranked; `order` has the best first."""
     w = jnp.asarray(strategy.weights, z.dtype)
     best = z[order[: len(w)]]
-    d = best @ distribution.m.T
+    d = product(best, distribution.m.T)
     c_s, c_1, c_w = strategy.c_s, strategy.c_1, strategy.c_w
     z_w = jnp.sum(w[:, None] * best, 0)
     s = (1 - c_s) * distribution.s + sqrt(c_s * (2 - c_s) * strategy.mu_eff) * z_w
-    rank_one = jnp.outer(distribution.m @ s, s)
-    rank_mu = (w[:, None] * d).T @ best
+    rank_one = product(product(distribution.m, s[:, None]), s[None])
+    rank_mu = product((w[:, None] * d).T, best)
     m = (1 - (c_1 + c_w) / 2) * distribution.m + c_1 / 2 * rank_one + c_w / 2 * rank_mu
     length = jnp.sqrt(jnp.sum(s * s)) / strategy.expected_length
     return Distribution(

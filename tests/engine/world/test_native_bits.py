@@ -1,0 +1,65 @@
+"""The native kernel gives the same bits whatever compiles it, and for whatever processor."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[3]
+SOURCE = ROOT / "engine" / "kernels" / "check" / "evaluations.cpp"
+FLAGS = ["-std=c++17", "-O3", "-ffp-contract=off", "-fno-math-errno", "-Wno-psabi"]
+AVX512 = ["-mavx512f", "-mavx512vl", "-mavx512dq", "-mavx512bw", "-mprefer-vector-width=512"]
+CPU = Path("/proc/cpuinfo")
+
+pytestmark = pytest.mark.long
+
+
+def compiled(compiler, out, *flags):
+    subprocess.run([*compiler, *FLAGS, *flags, SOURCE, "-o", out], check=True)
+    return [out]
+
+
+def printed(command, *arguments):
+    return subprocess.check_output([*command, *arguments], text=True).split()
+
+
+@pytest.fixture(scope="module")
+def zig(tmp_path_factory):
+    """Zig's clang, which compiles for other processors too, from the package registry."""
+    place = tmp_path_factory.mktemp("zig")
+    pip = [sys.executable, "-m", "pip", "install", "-q", "--disable-pip-version-check"]
+    lock = ROOT / "requirements-zig.lock"
+    fetched = subprocess.run([*pip, "--require-hashes", "--target", place, "-r", lock])
+    if fetched.returncode:
+        pytest.skip("Zig cannot be fetched from the package registry")
+    yield [place / "ziglang" / "zig", "c++", "-fno-sanitize=all", "-static"]
+    shutil.rmtree(place)
+
+
+def test_compilers_and_processors_give_the_same_bits(tmp_path, zig):
+    known = CPU.read_text() if CPU.exists() else ""
+    found = {
+        "clang": printed(compiled(zig, tmp_path / "clang", "-target", "x86_64-linux-musl")),
+    }
+    if shutil.which("g++"):
+        found["gcc"] = printed(compiled(["g++"], tmp_path / "gcc"))
+        if " avx2 " in known:
+            found["gcc, AVX2"] = printed(compiled(["g++"], tmp_path / "avx2", "-mavx2"))
+        if " avx512dq " in known:
+            found["gcc, AVX-512"] = printed(compiled(["g++"], tmp_path / "wide", *AVX512))
+    if emulator := shutil.which("qemu-aarch64"):
+        program = compiled(zig, tmp_path / "arm", "-target", "aarch64-linux-musl")
+        found["clang, ARM"] = printed([emulator, *program])
+    else:
+        print("SKIPPED: ARM, there is no qemu-aarch64")
+    assert len(set(map(tuple, found.values()))) == 1, found
+    assert found["clang"][1] == "100", "some evaluations did not stay finite"
+
+
+@pytest.mark.skipif(not shutil.which("g++"), reason="there is no g++")
+def test_random_evaluations_stay_within_their_arrays(tmp_path):
+    checks = "-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=undefined"
+    program = compiled(["g++"], tmp_path / "checked", *checks)
+    assert printed(program, "1000")[1] == "1000"
