@@ -21,9 +21,11 @@ _STARTED = (
 KERNELS = ("auto", "native", "jax")
 """What may simulate worlds: the native kernel where it can, it alone, or JAX alone."""
 KERNEL_VARIABLE = "MICROCOSMOS_KERNEL"
-PORTABLE = "--xla_cpu_max_isa=AVX"
-"""Without fused multiply-adds and wider vectors, XLA's programs give the same bits on every
-x86-64 processor, as the native kernel does. They are slower by a quarter."""
+PORTABLE = "--xla_cpu_max_isa=AVX --xla_cpu_experimental_ynn_fusion_type="
+"""Without fused multiply-adds, wider vectors and sums by a library, XLA's programs give the
+same bits on every x86-64 processor, as the native kernel does. They are slower by a quarter."""
+PORTABLE_JAXLIB = ("0.10.2",)
+"""Versions with which that was tested; XLA ends a process for flags that it does not know."""
 GPU_FLAGS = "--xla_gpu_deterministic_ops=true --xla_gpu_autotune_level=0"
 
 
@@ -43,13 +45,19 @@ def prepare(devices: int | None = None, cache: str | os.PathLike | None = None) 
     else:
         if Path("/proc/driver/nvidia").exists():
             _add_flags(GPU_FLAGS)
-        if kernel() != "jax" and _installed() and platform.machine() in ("x86_64", "AMD64"):
+        if _portable():
             _add_flags(PORTABLE)
     if cache and not os.environ.get("JAX_COMPILATION_CACHE_DIR"):
         jax.config.update("jax_compilation_cache_dir", os.fspath(cache))
     # Cache small programs too, so that a resumed run starts within a second.
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
     jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
+
+
+def _portable() -> bool:
+    """Return whether programs are to give the same bits on every x86-64 processor."""
+    known = platform.machine() in ("x86_64", "AMD64") and jaxlib_version in PORTABLE_JAXLIB
+    return known and kernel() != "jax" and _installed() is not None
 
 
 def _add_flags(added: str) -> None:
@@ -88,16 +96,18 @@ def _installed() -> str | None:
         return None
 
 
-def device_kind() -> str:
+def device_kind(*, portable: bool = True) -> str:
     """Return platform, model and software, on which the bits of a result depend.
 
-    With the native kernel and `PORTABLE` programs, all x86-64 processors are one model.
+    With the native kernel and `PORTABLE` flags, all x86-64 processors are one model, unless
+    programs use what these do not cover: then `portable` is false.
     """
     device = jax.local_devices()[0]
     model = device.device_kind
     if device.platform == "cpu":
-        portable = PORTABLE in os.environ.get("XLA_FLAGS", "") and kernel_version()
-        model = "x86-64" if portable else _processor()
+        flags = os.environ.get("XLA_FLAGS", "").split()
+        alike = portable and set(PORTABLE.split()) <= set(flags) and kernel_version()
+        model = "x86-64" if alike else _processor()
     software = f"microcosmos {VERSION}, jax {jax.__version__}, jaxlib {jaxlib_version}"
     if kernels := kernel_version():
         software += f", microcosmos-kernels {kernels}"

@@ -1,7 +1,7 @@
-"""Arithmetic whose bits are the same on every processor: XLA may not rewrite it.
+"""Arithmetic whose bits are the same on every processor, with the flags of `device.PORTABLE`.
 
-XLA makes matrix products of sums of products, which libraries split as a processor likes, and
-reciprocal roots of x / √y, which processors approximate differently.
+XLA leaves matrix products to libraries, which split sums as a processor likes, and turns x / √y
+into a product with a reciprocal root, which processors approximate differently.
 """
 
 import jax.numpy as jnp
@@ -12,8 +12,8 @@ from jaxtyping import Array, Float
 def product(
     one: Float[Array, "row item"], other: Float[Array, "item column"]
 ) -> Float[Array, "row column"]:
-    """Return the product of two matrices."""
-    return jnp.sum(optimization_barrier(one[:, :, None] * other[None]), 1)
+    """Return the product of two matrices, as written-out sums."""
+    return jnp.sum(one[:, :, None] * other[None], 1)
 
 
 def root(x: Float[Array, "*shape"]) -> Float[Array, "*shape"]:

@@ -5,7 +5,8 @@ four searches at equal evaluations, five seeds each, submitted over HTTP; a run 
 killed, stopped, paused and resumed, whose archive has to be byte for byte the undisturbed
 one, as has that of a second installation, on PostgreSQL and a Redis server; creatures that
 sense and collect energy; searches with derivatives and without; a page that is left open for
-half an hour, or for as many minutes as `MINUTES` says; and thousands of malformed files.
+half an hour, or for as many minutes as `MINUTES` says; thousands of malformed files; and a
+search on an emulated older processor.
 Names of parts choose some.
 """
 
@@ -19,6 +20,7 @@ import rich
 from databases import Missing, service_settings
 from drive import Installation, interrupt, kill_job, pause_and_resume, running, stop_worker
 from left_open import leave_open
+from processors import processors
 from searches import HOURS, METHODS, SEEDS, carry_out, compare, forage, spec
 from slopes import compare_slopes
 from swimming import swimming
@@ -97,6 +99,7 @@ PARTS = {
     "slopes": compare_slopes,
     "page": leave_open,
     "uploads": uploads,
+    "processors": processors,
 }
 
 

@@ -41,7 +41,7 @@ def check(file: Mapping[str, Any]) -> Check:
     return Check(
         recorded=file["measured"]["measures"],
         repeated=repeated,
-        same_device=file["measured"]["device"] == device_kind(),
+        same_device=file["measured"]["device"] in (device_kind(), device_kind(portable=False)),
     )
 
 

@@ -102,6 +102,19 @@ def build_repeats(chosen: spec.Evolution, plan: Plan) -> reevaluation.Programs |
     )
 
 
+def is_portable(chosen: spec.Evolution) -> bool:
+    """Return whether a search does without derivatives, Fourier transforms, plug-ins and other
+    libraries, which may sum as a processor likes."""
+    steric = chosen.world.steric
+    transformed = steric is not None and steric.smoothing == "gaussian"
+    foreign = any(
+        one.operator == "cma-me" or getattr(one, "backend", "microcosmos") != "microcosmos"
+        for one in chosen.emitters
+    )
+    plugins = plugin_versions(chosen.scene)
+    return not (any(chosen.gradients) or transformed or foreign or plugins)
+
+
 def build_plan(chosen: spec.Evolution) -> Plan:
     """Build everything that the experiment needs besides programs."""
     scene = chosen.scene
@@ -119,7 +132,7 @@ def build_plan(chosen: spec.Evolution) -> Plan:
         emitters=build_emitters(chosen, encoding),
         names=names_of(chosen.emitters),
         counters=neat.first_counters(*fixed),
-        device=device.device_kind(),
+        device=device.device_kind(portable=is_portable(chosen)),
         limits=build_stop_limits(chosen.search.stop),
         reevaluation=build_reevaluation(chosen),
         feasible=chosen.search.feasible,

@@ -25,7 +25,7 @@ def build_folding(chosen: spec.Folding) -> folding.Folding:
         updates=chosen.updates,
         block=chosen.block,
         identity_template=identity_template(chosen.scene),
-        device=device.device_kind(),
+        device=device.device_kind(portable=False),
     )
 
 

@@ -41,7 +41,7 @@ def build_refinement(chosen: spec.Refinement) -> refinement.Refinement:
         encoding=task.encoding,
         parent=found["sha256"],
         provenance=found["provenance"],
-        device=device.device_kind(),
+        device=device.device_kind(portable=False),
         feasible=chosen.feasible,
         measures=measures_of(scene),
         plugins=plugin_versions(scene),

@@ -18,7 +18,7 @@ from .scene import build_world
 
 def build_gaits(chosen: spec.Gaits) -> TableRun:
     """Build a gait sweep, whose programs are compiled on first use."""
-    strokes, kind = build_strokes(chosen), device.device_kind()
+    strokes, kind = build_strokes(chosen), device.device_kind(portable=False)
 
     def rows(number: int, stop: Callable[[], bool]) -> tuple[Row, ...]:
         return gaits.stroke_rows(strokes[number], stop, block=chosen.block, device=kind)
@@ -42,7 +42,7 @@ def build_scaling(chosen: spec.Scaling) -> TableRun:
             found.append(scaling.pairs_row(start.positions, scene.box.size, plan))
         return tuple(Row(row) for row in found)
 
-    kind = device.device_kind()
+    kind = device.device_kind(portable=False)
     return TableRun(_json(chosen), kind, len(chosen.nodes), rows, scaling.report)
 
 

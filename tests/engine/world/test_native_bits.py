@@ -1,5 +1,7 @@
 """The native kernel gives the same bits whatever compiles it, and for whatever processor."""
 
+import json
+import os
 import shutil
 import subprocess
 import sys
@@ -56,6 +58,32 @@ def test_compilers_and_processors_give_the_same_bits(tmp_path, zig):
         print("SKIPPED: ARM, there is no qemu-aarch64")
     assert len(set(map(tuple, found.values()))) == 1, found
     assert found["clang"][1] == "100", "some evaluations did not stay finite"
+
+
+def test_a_run_goes_on_with_another_instruction_set(tmp_path):
+    kernels = pytest.importorskip("microcosmos_kernels")
+    small = {
+        "experiment": "quality-diversity",
+        "world": {"width": 24, "height": 24},
+        "body": {"nodes": 8},
+        "control": {"period": 40},
+        "task": {"steps": 100},
+        "search": {"generations": 4, "batch": 8},
+    }
+    spec = tmp_path / "spec.json"
+    spec.write_text(json.dumps(small))
+    fastest = kernels.instruction_sets()[-1]
+
+    def evolve(out, instruction_set, generations):
+        command = [Path(sys.executable).with_name("microcosmos"), "evolve", spec, "--out", out]
+        chosen = os.environ | {kernels.VARIABLE: instruction_set, "JAX_PLATFORMS": "cpu"}
+        subprocess.run([*command, "--generations", str(generations)], check=True, env=chosen)
+        return out.read_bytes()
+
+    whole = evolve(tmp_path / "whole.h5", "basic", 4)
+    evolve(tmp_path / "parts.h5", fastest, 2)
+    evolve(tmp_path / "parts.h5", "basic", 3)
+    assert evolve(tmp_path / "parts.h5", fastest, 4) == whole
 
 
 @pytest.mark.skipif(not shutil.which("g++"), reason="there is no g++")
