@@ -52,7 +52,7 @@ PAPER = QualityDiversity(
 
 PRESETS = {
     "demo": (
-        "A small demonstration, under a minute on two cores; the fittest swim 0.7 lengths in "
+        "A small demonstration, a minute on two cores; the fittest swim 0.6 lengths in "
         "1,000 steps",
         DEMO,
     ),
