@@ -65,7 +65,8 @@ def test_the_most_similar_runs_count(api, spec, measured):
         measured(large, 1.0)
         measured(spec, 1.0)
     cells = ask(api, spec)["speed"]["cell_steps_per_second"]
-    assert ask(api, large)["speed"]["cell_steps_per_second"] == pytest.approx(16 * cells)
+    times = 128**2 / (spec["world"]["width"] * spec["world"]["height"])
+    assert ask(api, large)["speed"]["cell_steps_per_second"] == pytest.approx(times * cells)
 
 
 def test_only_runs_of_this_experiment_and_device_count(api, services, spec, sweep, measured):
@@ -104,7 +105,7 @@ def test_an_estimate_contains_the_queue(api, services, spec, run_id):
 
 def test_the_body_is_drawn_in_its_world(api, spec):
     found = ask(api, {**spec, "body": {"builder": "ring", "nodes": 12}})["drawing"]
-    assert (found["width"], found["height"]) == (32, 32)
+    assert (found["width"], found["height"]) == (48, 48)
     (body,) = found["bodies"]
     assert (body["name"], body["nodes"], len(body["positions"])) == ("ring", 12, 12)
     assert sorted(map(sorted, body["edges"])) == sorted(
@@ -115,7 +116,7 @@ def test_the_body_is_drawn_in_its_world(api, spec):
 def test_a_creature_that_is_refined_is_drawn(api, identity):
     file = creature.document(identity(), None, None)
     found = ask(api, {"experiment": "refinement", "creature": file})["drawing"]
-    assert [(body["name"], body["nodes"]) for body in found["bodies"]] == [("chain", 16)]
+    assert [(body["name"], body["nodes"]) for body in found["bodies"]] == [("chain", 24)]
 
 
 def test_large_drawings_are_thinned(api):

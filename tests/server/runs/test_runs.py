@@ -60,7 +60,7 @@ def test_a_submitted_run_is_queued_and_enqueued(api, services, spec):
         ("world.colour", "red", "world.colour", "no field of this name"),
         ("world.viscosity", -1, "world.viscosity", "greater than or equal to 0.001"),
         ("body.nodes", 10**9, "body.nodes", "less than or equal to 4096"),
-        ("body.nodes", 32, "world.width", "at least 39 cells"),
+        ("body.nodes", 48, "world.width", "at least 56 cells"),
         ("search.block", 4096, "search.block", "bytes of memory"),
         ("experiment", "x", "experiment", "quality-diversity"),
         ("seed", "one", "seed", "valid integer"),
