@@ -114,8 +114,8 @@ def changes_are_counted_kept_and_undone(page: Page) -> None:
     expect(beginning(page)).to_contain_text("Restored draft")
     expect(beginning(page)).to_contain_text(text)
     expect(field(page, "Task", "Steps")).to_have_value("120")
-    page.get_by_role("button", name="Reset to 800", exact=True).click()
-    expect(field(page, "Task", "Steps")).to_have_value("800")
+    page.get_by_role("button", name=re.compile("^Reset to 1,?200$")).click()
+    expect(field(page, "Task", "Steps")).to_have_value("1200")
     page.get_by_role("button", name="Discard draft").click()
     expect(beginning(page)).to_contain_text("Same as preset “demo”")
     page.get_by_role("button", name="Undo", exact=True).click()
@@ -172,7 +172,7 @@ def a_creature_gives_its_world(page: Page, address: str) -> None:
     page.get_by_role("button", name="Open this creature instead").click()
     page.wait_for_url(f"{address}/creatures/{name}")
     page.goto(f"{address}/new?creature={name}")
-    expect(field(page, "World", "Width")).to_have_value("32")
+    expect(field(page, "World", "Width")).to_have_value("48")
 
 
 def a_run_is_started_by_keyboard_alone(new: Page, address: str) -> None:
