@@ -6,6 +6,7 @@ Results repeat bit for bit on one kind of device; another kind may round differe
 import os
 import platform
 import warnings
+from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -45,13 +46,17 @@ def prepare(devices: int | None = None, cache: str | os.PathLike | None = None) 
     else:
         if Path("/proc/driver/nvidia").exists():
             _add_flags(GPU_FLAGS)
-        if _portable():
-            _add_flags(PORTABLE)
     if cache and not os.environ.get("JAX_COMPILATION_CACHE_DIR"):
         jax.config.update("jax_compilation_cache_dir", os.fspath(cache))
     # Cache small programs too, so that a resumed run starts within a second.
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
     jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
+
+
+def _started() -> bool:
+    """Return whether JAX has started, and so has read its flags."""
+    bridge = import_module("jax._src.xla_bridge")  # JAX has no public name for it.
+    return getattr(bridge, "backends_are_initialized", lambda: False)()
 
 
 def _portable() -> bool:
@@ -134,3 +139,8 @@ def compiler_options() -> dict[str, object]:
         return {}
     # One thread computes a block: splitting its small loops costs more than it gains.
     return {"xla_cpu_multi_thread_eigen": False, "xla_cpu_prefer_vector_width": 512}
+
+
+# On import, since evaluations must round alike whether or not a process calls `prepare`.
+if _portable() and not _started():
+    _add_flags(PORTABLE)
