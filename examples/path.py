@@ -36,7 +36,7 @@ def main(steps: int = 200, updates: int = 100, rate: float = 0.03) -> list[float
     path = jnp.asarray(bend(steps), jnp.float32) + jnp.mean(task.start.positions, 0)[None]
 
     def distance(genes):
-        driven = search.drive(task, Vector(genes))
+        driven = search.drive(task, Vector(genes), differentiable=True)
         _, middle = search.simulate(driven, lambda _, measures: measures.centre, segment=20)
         return jnp.sqrt(jnp.mean(jnp.sum((middle - path) ** 2, 1)))
 

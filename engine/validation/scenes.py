@@ -10,7 +10,12 @@ from microcosmos import bodies, coupling, fields, filaments, groups, world
 from microcosmos.bodies import swimmers
 from microcosmos.build import build_matching, build_rods
 
-LITERAL = world.Form(projection=coupling.unprojected, theta_feedback=0.0, forcing_iterations=1)
+LITERAL = world.Form(
+    projection=coupling.unprojected,
+    theta_feedback=0.0,
+    forcing_iterations=1,
+    kernel=coupling.PESKIN,
+)
 """The paper's literal form: a body can push itself and ignore the flow."""
 
 
