@@ -105,7 +105,7 @@ STEPS = 60
 SCENE = {
     "world": {"width": 24, "height": 24, "viscosity": 0.1},
     "body": {"nodes": 8},
-    # With Roma's delta this body's small gradient is 3 % off in float32.
+    # With Roma's delta gradient and differences are 3 % apart in float32; cause unknown.
     "coupling": {"kernel": "peskin"},
     "control": {"encoding": "direct", "period": 30, "terms": 1},
     "task": {"steps": STEPS},
