@@ -56,15 +56,21 @@ def _grid() -> jnp.ndarray:
 
 
 def _forward(network: genomes.CPPN) -> dict[str, Any]:
-    # New genes are numbered by a generation.
+    # A generation numbers new genes. Short fractions do not show how a machine rounds.
     network = replace(
         jax.tree.map(jnp.asarray, network),
         node_id=jnp.arange(network.node_id.shape[0]),
         innovation=jnp.arange(network.innovation.shape[0]),
+        weight=_shortened(network.weight),
+        bias=_shortened(network.bias),
     )
     outputs = genomes.evaluate(network, _grid(), len(OUTPUTS))
     control = {"wave_number": WAVES}
     return _case("cppn", genomes.to_genes(network), control, np.asarray(outputs), WITH_WAVE)
+
+
+def _shortened(values: np.ndarray) -> jnp.ndarray:
+    return jnp.round(values * 1024) / 1024
 
 
 def _recurrent() -> dict[str, Any]:
