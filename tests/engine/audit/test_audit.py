@@ -101,14 +101,11 @@ def test_an_audit_that_takes_too_long_is_refused():
         audit(creature.document(identity_template(longer), None, None))
 
 
-STEPS = 60
 SCENE = {
     "world": {"width": 24, "height": 24, "viscosity": 0.1},
     "body": {"nodes": 8},
-    # With Roma's delta gradient and differences are 3 % apart in float32; cause unknown.
-    "coupling": {"kernel": "peskin"},
     "control": {"encoding": "direct", "period": 30, "terms": 1},
-    "task": {"steps": STEPS},
+    "task": {"steps": 120},
 }
 
 
@@ -122,10 +119,11 @@ def file():
 
 @pytest.mark.long
 def test_the_report_agrees_with_finite_differences_and_tells_of_time_and_starts(file):
+    # After two periods, since a creature that has hardly moved yet is mostly rounding in float32.
     report = report_gradient(file, starts=3)
     assert report.errors["float64"] <= 1e-6
     assert report.errors["float32"] <= 1e-2
-    assert list(report.norms) == [15, 30, 60]
+    assert list(report.norms) == [30, 60, 120]
     assert 0 <= report.sign_agreement <= 1
     assert -1 <= report.cosine <= 1
     assert report.limited == 0
