@@ -119,7 +119,7 @@ def file():
 
 @pytest.mark.long
 def test_the_report_agrees_with_finite_differences_and_tells_of_time_and_starts(file):
-    # After two periods, since a creature that has hardly moved yet is mostly rounding in float32.
+    # Over four periods: in float32 a creature that has hardly moved is mostly rounding.
     report = report_gradient(file, starts=3)
     assert report.errors["float64"] <= 1e-6
     assert report.errors["float32"] <= 1e-2
