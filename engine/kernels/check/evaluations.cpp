@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "../src/step.h"
+#include "../src/summary.h"
 
 using namespace microcosmos;
 
@@ -40,6 +41,7 @@ struct Evaluation {
   Indices ends, pairs, member, piece, present, edge_colour, joint_colour, activation, source,
       target, joint_node;
   Numbers rest_angle, rest_length, clock, out[20];
+  Numbers places, frames, shown, measures;
 
   explicit Evaluation(Random& random) {
     r.height = 24 + random.below(20), r.width = 24 + random.below(20), r.steps = 40;
@@ -61,23 +63,44 @@ struct Evaluation {
       r.commands = GIVEN;
     }
     ISA::World(r).run();
+    summarise();
   }
 
-  bool finite() const {
-    for (float x : out[0])
-      if (!(x - x == 0)) return false;
-    return true;
-  }
+  bool finite() const { return shown[STATUS] == OK; }
 
   uint32_t sum(uint32_t found) const {
     for (const Numbers& plane : planes) found = checksum(found, plane.data(), 4 * plane.size());
     for (const Numbers* one : {&rest_angle, &rest_length})
       found = checksum(found, one->data(), 4 * one->size());
     for (const Numbers& one : out) found = checksum(found, one.data(), 4 * one.size());
+    for (const Numbers* one : {&places, &frames, &shown, &measures})
+      found = checksum(found, one->data(), 4 * one->size());
     return found;
   }
 
  private:
+  // Measure the motion, over strokes of a quarter of it.
+  void summarise() {
+    Observed o = {};
+    o.height = r.height, o.width = r.width, o.steps = r.steps, o.nodes = r.nodes;
+    o.edges = r.edges, o.joints = r.joints, o.bodies = r.bodies, o.energetic = r.energetic;
+    std::copy(r.end_populations, r.end_populations + 9, o.populations);
+    o.positions = r.positions, o.angles = r.angles, o.ends = r.ends, o.pairs = r.pairs;
+    o.present = r.present, o.collected = r.end_collected;
+    o.rest_angle = rest_angle.data(), o.rest_length = rest_length.data();
+    o.centre = r.centre, o.path = r.path, o.speed = r.speed, o.node_speed = r.node_speed;
+    o.held = r.held, o.heading = r.heading, o.power = r.power, o.curvature = r.curvature;
+    o.force = r.force;
+    const float scales[3] = {parameters[VISCOSITY], float(r.nodes), float(r.steps) / 4};
+    for (int t = 0; t < r.steps && r.senses; t++) clock[t] = float(t + 1);
+    o.clock = clock.data(), o.scales = scales;
+    places.assign(2 * PLACES, 0), frames.assign(2 * FRAMES * size_t(r.nodes), 0);
+    shown.assign(SHOWN, 0), measures.assign(MEASURE_COUNT, 0);
+    o.places = places.data(), o.frames = frames.data(), o.shown = shown.data();
+    o.measures = measures.data();
+    ISA::Summary(o).write();
+  }
+
   void body(Random& random, bool chain) {
     const int arms = chain ? 1 : 3, each = chain ? 4 + random.below(14) : 3 + random.below(3);
     const float spacing = random.between(0.75f, 1.0f);

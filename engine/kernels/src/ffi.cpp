@@ -1,10 +1,12 @@
-// The rollout as a target of XLA's foreign function interface: one world, or a batch of them in
-// turn. Operands and results have the order of `world.native`.
+// Targets of XLA's foreign function interface: one world, or a batch of them in turn. Operands and
+// results have the order of `world.native` and `search.summary`.
 #include "arrays.h"
 #include "step.h"
+#include "summary.h"
 
 namespace ffi = xla::ffi;
 using microcosmos::Arrays;
+using microcosmos::Observed;
 using microcosmos::Rollout;
 
 namespace {
@@ -139,6 +141,27 @@ void name_development(Arrays& a, Rollout& r) {
   a.end();
 }
 
+// Name the arrays of a summary.
+void name_summary(Arrays& a, Observed& o) {
+  const int64_t H = o.height, W = o.width, N = o.nodes, E = o.edges, J = o.joints, T = o.steps;
+  for (int i = 0; i < 9; i++) a.in("a plane", &o.populations[i], {H, W});
+  a.in("positions", &o.positions, {N, 2}), a.in("angles", &o.angles, {E});
+  a.in("edges", &o.ends, {E, 2}), a.in("joints", &o.pairs, {J, 2});
+  a.in("present", &o.present, {N}), a.in("collected", &o.collected, {when(o.energetic, N)});
+  a.in("rest angles", &o.rest_angle, {T, J}), a.in("rest lengths", &o.rest_length, {T, E});
+  a.in("centre", &o.centre, {T, 2}), a.in("path", &o.path, {T, N, 2});
+  a.in("speed", &o.speed, {T}), a.in("node speed", &o.node_speed, {T});
+  a.in("held", &o.held, {T}), a.in("heading", &o.heading, {T});
+  a.in("curvature", &o.curvature, {T, J}), a.in("power", &o.power, {T});
+  a.in("force", &o.force, {T, o.bodies, 2}), a.in("clock", &o.clock, {T});
+  a.in("scales", &o.scales, {3});
+  a.out("places", &o.places, {microcosmos::PLACES, 2});
+  a.out("frames", &o.frames, {microcosmos::FRAMES, N, 2});
+  a.out("shown", &o.shown, {microcosmos::SHOWN});
+  a.out("measures", &o.measures, {microcosmos::MEASURE_COUNT});
+  a.end();
+}
+
 bool within(const int32_t* values, int64_t count, int32_t least, int64_t limit) {
   for (int64_t i = 0; i < count; i++)
     if (values[i] < least || values[i] >= limit) return false;
@@ -163,13 +186,18 @@ ffi::Error invalid(const std::string& reason) {
   return ffi::Error::InvalidArgument("microcosmos-kernels: " + reason);
 }
 
+bool sound(const Observed& o) {
+  return within(o.ends, 2 * o.edges, 0, o.nodes) && within(o.pairs, 2 * o.joints, 0, o.edges) &&
+         within(o.present, o.nodes, 0, 2);
+}
+
 // Do the work for each world of a batch in turn.
-template <class Work>
-ffi::Error each_world(Arrays& arrays, Rollout& r, Work work) {
+template <class Given, class Work>
+ffi::Error each_world(Arrays& arrays, const Given& given, Work work) {
   if (!arrays.error.empty()) return invalid(arrays.error);
   for (int64_t world = 0; world < arrays.worlds(); world++) {
     arrays.point(world);
-    if (!sound(r)) return invalid("the body or the network refers to what it lacks");
+    if (!sound(given)) return invalid("the body or the network refers to what it lacks");
     try {
       work();
     } catch (const std::bad_alloc&) {
@@ -204,6 +232,20 @@ ffi::Error develop(ffi::RemainingArgs args, ffi::RemainingRets rets, ffi::Dictio
   return each_world(arrays, r, [&] { microcosmos::ISA::develop(r); });
 }
 
+ffi::Error summarise(ffi::RemainingArgs args, ffi::RemainingRets rets, ffi::Dictionary numbers) {
+  Observed o = {};
+  Numbers number(numbers);
+  o.height = number("height"), o.width = number("width"), o.steps = number("steps");
+  o.nodes = number("nodes"), o.edges = number("edges"), o.joints = number("joints");
+  o.bodies = number("bodies"), o.energetic = number("energetic");
+  if (!number.error.empty()) return invalid(number.error);
+  for (int32_t one : {o.height, o.width, o.steps, o.nodes, o.bodies})
+    if (one < 1) return invalid("a motion has at least one step of one node in one cell");
+  Arrays arrays(args, rets);
+  if (arrays.begin()) name_summary(arrays, o);
+  return each_world(arrays, o, [&] { microcosmos::ISA::Summary(o).write(); });
+}
+
 }  // namespace
 
 #define MICROCOSMOS_TARGET(function)                                                       \
@@ -214,6 +256,7 @@ ffi::Error develop(ffi::RemainingArgs args, ffi::RemainingRets rets, ffi::Dictio
 
 MICROCOSMOS_TARGET(rollout);
 MICROCOSMOS_TARGET(develop);
+MICROCOSMOS_TARGET(summarise);
 
 // The best instruction set of this processor: 0 basic, 1 avx2, 2 avx512.
 extern "C" __attribute__((visibility("default"))) int microcosmos_instruction_set() {

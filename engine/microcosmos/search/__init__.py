@@ -6,18 +6,11 @@ from .cells import Axis, Cells, Grid, Voronoi, voronoi
 from .emitters import NO_PARENT, OPERATORS, Children, Emitter, Outcome
 from .evaluation import (
     STATUSES,
-    Actuator,
     Evaluation,
-    Goal,
-    Task,
-    drive,
     evaluate,
     in_trials,
     judged,
     motion_of,
-    shift_energy,
-    simulate,
-    turned,
 )
 from .gradient_report import GradientReport, report_gradient
 from .gradients import Slopes, slopes
@@ -32,5 +25,7 @@ from .insertion import (
     no_elites,
 )
 from .measures import MEASURES, Measure, Motion, motion, observe
+from .simulation import drive, shift_energy, simulate, turned
 from .strokes import STROKE_MEASURES, Conditions, swim
+from .task import Actuator, Goal, Task
 from .window import Poses

@@ -16,7 +16,8 @@ from jaxtyping import Array, Float, Int
 
 from .. import fields
 from ..genomes import Vector
-from .evaluation import Task, drive, simulate
+from .simulation import drive, simulate
+from .task import Task
 
 Plane = Float[Array, "x y"]
 

@@ -17,8 +17,10 @@ from jaxtyping import Array, Float
 from ..device import compiler_options
 from . import gradients
 from .blocks import mapped
-from .evaluation import Actuator, Task, drive, motion_of, simulate
+from .evaluation import motion_of
 from .reevaluation import Disturbance, Spread, disturbance, moved
+from .simulation import drive, simulate
+from .task import Actuator, Task
 
 STEPS = (1e-3, 1e-4, 1e-5, 1e-6)
 """Steps of finite differences in float64, as shares of the values' length; the best counts."""

@@ -17,16 +17,9 @@ from ..filaments import Rest
 from ..genomes import CPPN, Drive, Genotype, Vector
 from ..world import State, World
 from .blocks import mapped
-from .evaluation import (
-    Actuator,
-    Task,
-    drive,
-    fitness_of,
-    in_trials,
-    motion_of,
-    shift_energy,
-    simulate,
-)
+from .evaluation import fitness_of, in_trials, motion_of
+from .simulation import drive, shift_energy, simulate
+from .task import Actuator, Task
 
 PARTS = ("genes", "rest_angle", "rest_length", "stretch", "shear", "bend", "viscosity")
 """Parts of a creature that derivatives are taken by."""

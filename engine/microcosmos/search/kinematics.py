@@ -20,7 +20,7 @@ def kinematics(
     world: World, observed: Measures, window: Window, length: Scalar | float
 ) -> dict[str, Scalar]:
     """Measure the poses of a window; `length` is the body's, in cells."""
-    at = window.steps() - 1
+    at = window.places()
     shapes, bends = observed.positions[at], observed.curvature[at]
     moved = observed.centre[window.stop - 1] - observed.centre[jnp.maximum(window.start - 1, 0)]
     beats, wave, direction = waves(bends, along(world))

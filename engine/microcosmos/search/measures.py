@@ -124,7 +124,12 @@ def effort(rest: Float[Array, "time item"], kept: Bool[Array, "item"] | None = N
 def curvature(
     found: Curvature, kept: Bool[Array, "joint"] | None = None
 ) -> tuple[Scalar, Scalar]:
-    """Return mean and standard deviation of |curvature| over time and joints, 1/cells."""
+    """Return mean and standard deviation of |curvature| over time and joints, 1/cells.
+
+    Both are 0 without joints.
+    """
+    if found.shape[1] == 0:
+        return jnp.zeros((), found.dtype), jnp.zeros((), found.dtype)
     size = jnp.abs(found)
     average = jnp.mean(mean(size.T, kept))
     squares = jnp.mean(mean((size.T - average) ** 2, kept))

@@ -14,8 +14,10 @@ from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 from ..genomes import Genotype
 from ..world import State
 from .cells import Cells
-from .evaluation import Evaluation, Task, drive, evaluate_drive, turned
+from .evaluation import Evaluation, evaluate_drive
 from .insertion import Elites
+from .simulation import drive, turned
+from .task import Task
 
 Scalar = Float[Array, "*block"]
 

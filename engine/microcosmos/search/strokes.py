@@ -9,8 +9,10 @@ from jaxtyping import Array, Float
 from ..filaments import Rest
 from ..genomes import Drive
 from ..world import Limits, centre
-from .evaluation import Evaluation, Task, simulate
+from .evaluation import Evaluation
 from .measures import MOTION, motion
+from .simulation import simulate
+from .task import Task
 
 STROKE_MEASURES = (
     *MOTION,

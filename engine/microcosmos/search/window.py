@@ -21,10 +21,11 @@ class Window(eqx.Module):
     strokes: Count
     """2, or 0 if the creature completed fewer."""
 
-    def steps(self) -> Int[Array, "frame"]:
-        """Return the steps done at the recorded moments, which are at equal times."""
+    def places(self) -> Int[Array, "frame"]:
+        """Return the steps, from 0, after which poses are recorded: at equal times."""
         passed = jnp.arange(1, FRAMES + 1) * (self.stop - self.start)
-        return self.start + (2 * passed + FRAMES) // (2 * FRAMES)
+        done = self.start + (2 * passed + FRAMES) // (2 * FRAMES)
+        return jnp.maximum(done, 1) - 1
 
 
 def window(strokes: Float[Array, "time"]) -> Window:
@@ -67,7 +68,7 @@ def poses(
     """Record the poses of a simulation whose centre was at `start` before the first step."""
     dtype = positions.dtype
     kept = jnp.ones(positions.shape[1], bool) if present is None else present
-    shown = positions[window.steps() - 1]
+    shown = positions[window.places()]
     there = kept[None, :, None]
     low = jnp.min(jnp.where(there, shown, jnp.inf), (0, 1))
     high = jnp.max(jnp.where(there, shown, -jnp.inf), (0, 1))

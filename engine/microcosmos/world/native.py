@@ -6,6 +6,7 @@ in its own way: the same on every CPU. It has no derivatives.
 
 import ctypes
 import logging
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from importlib import import_module
@@ -108,7 +109,7 @@ def develop(
     body, sizes = body_of(world, state, controller)
     commands, numbers = controller_of(controller)
     target = register("develop", instruction_set)
-    found = _call(target, shapes, [*body, *commands], {**sizes, **numbers, "steps": steps})
+    found = call(target, shapes, [*body, *commands], {**sizes, **numbers, "steps": steps})
     return filaments.Rest(found[0], found[1]), found[2]
 
 
@@ -146,7 +147,7 @@ def _rollout(
     operands, sizes = _operands(world, state, given)
     options = {**sizes, **_form(world), "steps": steps, "timed": timed}
     shapes = _results(world, state, steps, closed)
-    found = _call(register("rollout", instruction_set), shapes, operands, options)
+    found = call(register("rollout", instruction_set), shapes, operands, options)
     end = replace(state, populations=tuple(found[:9]), positions=found[9], angles=found[10])
     if state.energy is not None:
         end = replace(end, energy=found[11], collected=found[12])
@@ -195,13 +196,21 @@ def _form(world: World) -> dict[str, int]:
     }
 
 
-def _call(target: str, shapes: list, operands: list, options: dict) -> list[Array]:
-    call = jax.ffi.ffi_call(
+def call(
+    target: str,
+    shapes: Sequence[tuple[int, ...]],
+    operands: Sequence[Array],
+    options: Mapping[str, int],
+) -> list[Array]:
+    """Return the results, of these shapes, of a registered function."""
+    function = jax.ffi.ffi_call(
         target,
         [jax.ShapeDtypeStruct(shape, jnp.float32) for shape in shapes],
         vmap_method="expand_dims",
     )
-    return list(call(*operands, **{name: np.int32(value) for name, value in options.items()}))
+    return list(
+        function(*operands, **{name: np.int32(value) for name, value in options.items()})
+    )
 
 
 def _counts(world: World) -> tuple[int, int]:

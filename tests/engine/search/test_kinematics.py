@@ -97,7 +97,7 @@ def test_the_excursion_is_across_the_path(float64):
 def test_the_window_is_the_last_two_whole_strokes(float64, strokes, expected):
     found = window(jnp.asarray(strokes))
     assert (int(found.start), int(found.stop), int(found.strokes)) == expected
-    steps = np.asarray(found.steps())
+    steps = np.asarray(found.places()) + 1
     assert steps[-1] == found.stop
     exact = found.start + np.arange(1, FRAMES + 1) / FRAMES * (found.stop - found.start)
     assert np.abs(steps - exact).max() <= 0.5
@@ -110,7 +110,7 @@ def test_poses_are_the_positions_at_those_steps(float64):
     last = window(jnp.arange(1.0, 301) / 100)
     found = poses(jnp.zeros(2), centre, positions, kept, last, 4.0)
     cells = np.asarray(found.origin) + np.asarray(found.scale) * np.asarray(found.positions)
-    shown = np.asarray(positions)[np.asarray(last.steps()) - 1]
+    shown = np.asarray(positions)[np.asarray(last.places())]
     np.testing.assert_allclose(cells[:, kept], shown[:, kept], atol=float(found.scale))
     assert float(found.scale) < 2e-4
     np.testing.assert_array_equal(found.path[0], 0)
