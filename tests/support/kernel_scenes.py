@@ -67,6 +67,28 @@ def fed(body, size=(48, 48), *, rate=None, diffusion=None, **options):
     return box, world.at_rest(box, start.positions), rest
 
 
+def surrounded(given, *names):
+    """A scene with some of a uniform force, walls and a sponge.
+
+    The body in the middle touches the walls: a channel across the edges of the world, and
+    pillars. The sponge covers a third of the world, and of the walls.
+    """
+    box, start, rest = given
+    solid, strength = np.zeros(box.size, bool), np.zeros(box.size)
+    solid[:, 3] = solid[:, -1] = solid[0, ::5] = True
+    x, y = np.array(box.size) // 2
+    solid[x - 4 : x - 1, y + 1 : y + 3] = solid[x + 7, y] = True
+    strength[: box.size[0] // 3] = np.linspace(0, 0.3, box.size[0] // 3)[:, None]
+    sponge = fluid.Sponge(jnp.float32(strength), jnp.asarray([0.02, -0.01], jnp.float32))
+    parts = {
+        "force": jnp.asarray([2e-5, -1e-5], jnp.float32),
+        "solid": jnp.asarray(solid),
+        "sponge": sponge,
+    }
+    around = fluid.Surroundings(**{name: parts[name] for name in names})
+    return replace(box, surroundings=around), start, rest
+
+
 def chain(nodes=20, spacing=1.0, **stiffness):
     return bodies.chain(nodes, spacing, **{**STIFF, **stiffness})
 
@@ -136,6 +158,20 @@ SCENES = {
     ),
     "energy for two layers": lambda: fed(chain(), matched=True, rate=0.1, layers=2),
     "energy without fluid": lambda: fed(chain(), rate=0.1, diffusion=0.05, fluid=False),
+    "a uniform force": lambda: surrounded(scene(chain(), matched=True), "force"),
+    "walls": lambda: surrounded(scene(chain(), matched=True), "solid"),
+    "a sponge": lambda: surrounded(scene(chain(), (45, 51), matched=True), "sponge"),
+    "walls for two layers": lambda: surrounded(scene(chain(), (45, 51), layers=2), "solid"),
+    "a uniform force and a sponge": lambda: surrounded(
+        scene(chain(), (45, 51)), "force", "sponge"
+    ),
+    "walls, a uniform force and a sponge": lambda: surrounded(
+        scene(chain(), (45, 51), matched=True, layers=2), "force", "solid", "sponge"
+    ),
+    "bodies that touch each other and walls": lambda: surrounded(
+        repelling(heap()), "force", "solid", "sponge"
+    ),
+    "walls without fluid": lambda: surrounded(scene(chain(), fluid=False), "force", "solid"),
     "a body that has grown": lambda: grown(chain(), 13),
     "a stiff body that has grown": lambda: grown(chain(), 13, matched=True),
 }
@@ -167,7 +203,7 @@ def any_scene(rng):
     weak = rng.random() < 0.2
     matched = set(stiffness.values()) == {1.0} and feedback == 1 and not weak
     deltas = [coupling.PESKIN, coupling.PESKIN, coupling.ROMA, coupling.HAT]
-    return scene(
+    given = scene(
         body,
         (int(rng.integers(64, 100)), int(rng.integers(64, 100))),
         matched=matched and rng.random() < 0.8,
@@ -182,6 +218,18 @@ def any_scene(rng):
         kernel=deltas[rng.integers(len(deltas))],
         magic=fluid.capped_magic if rng.random() < 0.8 else fluid.fixed_magic,
     )
+    return anywhere(given, rng) if rng.random() < 0.5 else given
+
+
+def anywhere(given, rng):
+    """A scene in random surroundings."""
+    box, start, rest = given
+    solid = jnp.asarray(rng.random(box.size) < rng.choice([0.01, 0.3]))
+    strength = jnp.float32(rng.uniform(0, 0.5, box.size) * (rng.random(box.size) < 0.1))
+    force, velocity = (jnp.float32(rng.uniform(-s, s, 2)) for s in (5e-5, 0.05))
+    sponge = fluid.Sponge(strength, velocity)
+    parts = [one if rng.random() < 0.6 else None for one in (force, solid, sponge)]
+    return replace(box, surroundings=fluid.Surroundings(*parts)), start, rest
 
 
 def run(rollout, scene, steps=100):

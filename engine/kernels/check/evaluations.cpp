@@ -37,9 +37,10 @@ using Indices = std::vector<int32_t>;
 struct Evaluation {
   Rollout r = {};
   Numbers parameters, planes[9], positions, angles, energy, collected, layout, matrix, stiffness,
-      control, bias, weight, timer, ramp, position, lag, body_angle, body_length;
+      control, bias, weight, timer, ramp, position, lag, body_angle, body_length, uniform_force,
+      sponge, sponge_velocity;
   Indices ends, pairs, member, piece, present, edge_colour, joint_colour, activation, source,
-      target, joint_node;
+      target, joint_node, walls;
   Numbers rest_angle, rest_length, clock, out[20];
   Numbers places, frames, shown, measures;
 
@@ -54,6 +55,7 @@ struct Evaluation {
     body(random, chain);
     controller(random);
     place(random);
+    surround(random);
   }
 
   void run() {
@@ -211,6 +213,20 @@ struct Evaluation {
     const size_t sizes[] = {2 * N, size_t(r.edges), cells, N,    2 * T, 2 * T * N, T, T, T,
                             T,     T * J,           T,     2 * T};
     for (int i = 0; i < 13; i++) out[i].assign(sizes[i], 0), *results[i] = out[i].data();
+  }
+
+  // A tenth of the cells are walls, another tenth a sponge.
+  void surround(Random& random) {
+    r.driven = random.below(3) == 0, r.walled = random.below(3) == 0;
+    r.damped = random.below(3) == 0;
+    uniform_force = {random.between(-5e-5f, 5e-5f), random.between(-5e-5f, 5e-5f)};
+    sponge_velocity = {random.between(-0.05f, 0.05f), random.between(-0.05f, 0.05f)};
+    for (int i = 0; i < r.height * r.width; i++) {
+      walls.push_back(random.below(10) == 0);
+      sponge.push_back(random.below(10) == 0 ? random.unit() : 0);
+    }
+    r.uniform_force = uniform_force.data(), r.walls = walls.data();
+    r.sponge = sponge.data(), r.sponge_velocity = sponge_velocity.data();
   }
 };
 

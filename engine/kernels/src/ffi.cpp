@@ -59,6 +59,7 @@ std::string read_world(Rollout& r, Numbers number) {
   r.delta = microcosmos::Delta(number("delta"));
   r.fixed_magic = number("magic");
   r.fluid = number("fluid"), r.repelled = number("repelled"), r.energetic = number("energetic"),
+  r.driven = number("driven"), r.walled = number("walled"), r.damped = number("damped"),
   r.timed = number("timed");
   if (!number.error.empty()) return number.error;
   if (r.height < 4 || r.width < 4) return "a world has at least 4 cells along each axis";
@@ -114,6 +115,10 @@ void name_rollout(Arrays& a, Rollout& r) {
   a.in("parameters", &r.parameters, {microcosmos::STEP_LENGTHS + r.iterations});
   a.in("energy", &r.energy, {when(energetic, H), W});
   a.in("collected", &r.collected, {when(energetic, N)});
+  a.in("uniform force", &r.uniform_force, {when(r.driven, 2)});
+  a.in("walls", &r.walls, {when(r.walled, H), W});
+  a.in("strength of the sponge", &r.sponge, {when(r.damped, H), W});
+  a.in("velocity of the sponge", &r.sponge_velocity, {when(r.damped, 2)});
   a.in("rest angles", &r.given_angle, {given, J});
   a.in("rest lengths", &r.given_length, {given, E});
   name_controller(a, r);

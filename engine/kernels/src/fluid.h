@@ -17,6 +17,7 @@ struct Lattice {
   Array<uint8_t> crossing;       // Rows whose windows continue beyond the edge.
   Array<int32_t> block, beyond;  // Touched blocks; rows of `crossing`.
   int touched_blocks = 0, beyond_rows = 0;
+  float push_x = 0, push_y = 0;  // The uniform force.
 
   Lattice(int height, int width)
       : height(height), width(width), blocks((width + BLOCK - 1) / BLOCK) {
@@ -87,7 +88,8 @@ INLINE Vec collide(Vec* f, Vec fx, Vec fy, const Rates& k) {
 
 // Collide and stream in place, a row at a time: what goes to the next row waits until that has
 // been read, what goes to the row before is written at once. Return the largest speed before.
-template <bool FILLED>
+// With DRIVEN, the uniform force acts on every cell.
+template <bool FILLED, bool DRIVEN>
 __attribute__((noinline)) float advance(Lattice& l, const Rates& k) {
   const size_t P = l.plane, S = l.row, W = l.width, H = l.height;
   const size_t end = (W - 1) / LANES * LANES,
@@ -95,6 +97,7 @@ __attribute__((noinline)) float advance(Lattice& l, const Rates& k) {
   float *const t1 = l.next_row, *const t5 = t1 + S, *const t7 = t5 + S;
   Ints inside;
   for (int i = 0; i < LANES; i++) inside[i] = end + i < W ? -1 : 0;
+  const Vec push_x = all(l.push_x), push_y = all(l.push_y);
   Vec fastest = {};
   for (size_t x = 0; x < H; x++) {
     float* const r = l.populations + x * S;
@@ -113,9 +116,11 @@ __attribute__((noinline)) float advance(Lattice& l, const Rates& k) {
       Vec square;
       if (__builtin_expect(touched[y / BLOCK], 0)) {
         const Vec a = load(g + 2 * y), b = load(g + 2 * y + LANES);
-        square = collide<true>(f, even(a, b), odd(a, b), k);
+        Vec fx = even(a, b), fy = odd(a, b);
+        if (DRIVEN) fx = fx + push_x, fy = fy + push_y;
+        square = collide<true>(f, fx, fy, k);
       } else
-        square = collide<false>(f, Vec{}, Vec{}, k);
+        square = collide<DRIVEN>(f, push_x, push_y, k);
       fastest = most(fastest, square);
       store(r + y, f[0]);
       store(u2 + y, f[2]);

@@ -51,6 +51,9 @@ struct Rollout {
   bool fluid;        // Without a fluid, only constraints move bodies.
   bool repelled;     // Nodes repel each other.
   bool energetic;    // There is energy.
+  bool driven;       // A uniform force acts on the fluid.
+  bool walled;       // There are walls.
+  bool damped;       // There is a sponge.
   bool matched;      // Shape matching; otherwise sweeps.
   bool laid_out;     // There is a layout.
   bool timed;        // Take the time of each part.
@@ -61,6 +64,12 @@ struct Rollout {
   const float* angles;          // (edge)
   const float* energy;          // (height, width)
   const float* collected;       // (node)
+
+  // Surroundings of the fluid.
+  const float* uniform_force;    // (2)
+  const int32_t* walls;          // (height, width) 1 in walls
+  const float* sponge;           // (height, width) strength
+  const float* sponge_velocity;  // (2)
 
   const int32_t* ends;     // (edge, 2) nodes
   const int32_t* pairs;    // (joint, 2) edges

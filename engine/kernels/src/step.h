@@ -7,6 +7,7 @@
 #include "energy.h"
 #include "measuring.h"
 #include "repulsion.h"
+#include "surroundings.h"
 #include "sweeps.h"
 
 namespace microcosmos::ISA {
@@ -37,6 +38,7 @@ class World {
       : r_(r),
         b_(r),
         l_(r.height, r.width),
+        surroundings_(r, l_),
         p_(b_, r, r.layers),
         at_nodes_(b_, r, 1),
         n_(b_, r),
@@ -58,7 +60,7 @@ class World {
     begin();
     const bool closed = r_.commands != GIVEN;
     const Rates rates(r_.parameters[VISCOSITY], r_.fixed_magic);
-    const bool filled = r_.width % BLOCK == 0;
+    const auto flow = chosen_flow();
     for (int t = 0; t < r_.steps; t++) {
       const float* rest_angle = (closed ? r_.rest_angle : r_.given_angle) + size_t(t) * r_.joints;
       const float* rest_length = (closed ? r_.rest_length : r_.given_length) + size_t(t) * r_.edges;
@@ -94,7 +96,8 @@ class World {
       carry();
       measuring_.record(t, n_, forcing_, motion_);
       watch.stop(MEASURES);
-      r_.speed[t] = filled ? advance<true>(l_, rates) : advance<false>(l_, rates);
+      r_.speed[t] = flow(l_, rates);
+      surroundings_.act(l_);
       watch.stop(FLUID);
     }
     end();
@@ -110,6 +113,13 @@ class World {
       n_.x[b_.node_slot[n]] = r_.positions[2 * n], n_.y[b_.node_slot[n]] = r_.positions[2 * n + 1];
     }
     for (int e = 0; e < r_.edges; e++) n_.angle[b_.edge_slot[e]] = r_.angles[e];
+  }
+
+  // The collision and streaming of this world.
+  float (*chosen_flow() const)(Lattice&, const Rates&) {
+    const bool filled = r_.width % BLOCK == 0;
+    if (r_.driven) return filled ? advance<true, true> : advance<false, true>;
+    return filled ? advance<true, false> : advance<false, false>;
   }
 
   // The rest shape of a step, in closed loop.
@@ -245,6 +255,7 @@ class World {
   const Rollout& r_;
   Bodies b_;
   Lattice l_;
+  Surroundings surroundings_;
   Points p_, at_nodes_;
   Nodes n_;
   Forcing forcing_;

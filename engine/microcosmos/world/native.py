@@ -19,7 +19,7 @@ from jaxtyping import Array, Float
 from .. import coupling, device, fields, filaments, fluid
 from .controller import Controller
 from .model import Measures, State, World
-from .operands import body_of, controller_of, stiffness_of
+from .operands import body_of, controller_of, stiffness_of, surroundings_of
 
 LOG = logging.getLogger(__name__)
 PARTS = (
@@ -88,7 +88,6 @@ def uncovered(world: World, state: State) -> str | None:
     """Return what of a world the kernel lacks; None if it can simulate the world."""
     lacking = {
         "repulsion smoothed by a Fourier transform": _transformed(world),
-        "walls, a uniform force or a sponge": bool(jax.tree.leaves(world.surroundings)),
         "numbers other than float32": state.positions.dtype != jnp.float32,
         "a body without joints listed": world.rods.joints is None,
     }
@@ -163,6 +162,7 @@ def _operands(
     controller = given if isinstance(given, Controller) else None
     body, sizes = body_of(world, state, controller)
     commands, numbers = controller_of(controller)
+    around, features = surroundings_of(world)
     joints, edges = _counts(world)
     nothing = jnp.zeros((0, joints), jnp.float32), jnp.zeros((0, edges), jnp.float32)
     rest = nothing if isinstance(given, Controller) else (given.angle, given.length)
@@ -174,10 +174,11 @@ def _operands(
         _parameters(world),
         field,
         _collected(state),
+        *around,
         *rest,
         *commands,
     ]
-    return operands, {**sizes, **numbers, "energetic": state.energy is not None}
+    return operands, {**sizes, **numbers, **features, "energetic": state.energy is not None}
 
 
 def _form(world: World) -> dict[str, int]:

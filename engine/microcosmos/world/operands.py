@@ -63,6 +63,25 @@ def stiffness_of(world: World) -> list[Array]:
     return [*colours, *stiffness]
 
 
+def surroundings_of(world: World) -> tuple[list[Array], Numbers]:
+    """Return the uniform force, the walls and the sponge, and which of them there are."""
+    around, width = world.surroundings, world.size[1]
+    force, solid, sponge = around.force, around.solid, around.sponge
+    walls = jnp.zeros((0, width), jnp.int32) if solid is None else jnp.asarray(solid, jnp.int32)
+    arrays = [
+        _nothing(0) if force is None else jnp.asarray(force, jnp.float32),
+        walls,
+        _nothing(0, width) if sponge is None else jnp.asarray(sponge.strength, jnp.float32),
+        _nothing(0) if sponge is None else jnp.asarray(sponge.velocity, jnp.float32),
+    ]
+    numbers: Numbers = {
+        "driven": force is not None,
+        "walled": solid is not None,
+        "damped": sponge is not None,
+    }
+    return arrays, numbers
+
+
 def controller_of(controller: Controller | None) -> tuple[list[Array], Numbers]:
     """Return a controller, and its sizes; without one, arrays that hold nothing."""
     network = series = None

@@ -54,6 +54,7 @@ def agree(scene):
         "two layers",
         "bodies that touch",
         "energy that is taken and spreads",
+        "walls, a uniform force and a sponge",
     ],
 )
 def test_every_instruction_set_gives_the_same_bits(name):

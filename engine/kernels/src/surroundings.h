@@ -1,0 +1,92 @@
+// Surroundings of the fluid: walls, a uniform force and a sponge, as in `fluid.surroundings`.
+#pragma once
+#include <algorithm>
+#include <vector>
+
+#include "fluid.h"
+#include "rollout.h"
+
+namespace microcosmos::ISA {
+
+class Surroundings {
+ public:
+  Surroundings(const Rollout& r, Lattice& l) {
+    if (r.driven) l.push_x = r.uniform_force[0], l.push_y = r.uniform_force[1];
+    if (r.walled) find_walls(r, l);
+    if (r.damped) find_sponge(r, l);
+  }
+
+  // Bounce back at walls, then relax the sponge, after the fluid has streamed.
+  void act(Lattice& l) const {
+    for (const Link& one : links_) l.populations[one.fluid] = l.populations[one.wall];
+    for (size_t cell : walls_)
+      for (int i = 0; i < 9; i++) l.populations[i * l.plane + cell] = 0;
+    each(0, int(blocks_.size()) * BLOCK, [&](int i, int part) __attribute__((always_inline)) {
+      const Vec strength = load(strength_ + i);
+      float* at = l.populations + blocks_[i / BLOCK] + part * LANES;
+      for (int direction = 0; direction < 9; direction++, at += l.plane) {
+        const Vec f = load(at);
+        store(at, f + strength * (free_[direction] - f));
+      }
+    });
+  }
+
+ private:
+  static constexpr int WAYS[9][2] = {{0, 0}, {1, 0},   {-1, 0}, {0, 1}, {0, -1},
+                                     {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
+  // Populations of a fluid cell and of the wall beside it: what streams into the wall returns as
+  // its opposite.
+  struct Link {
+    size_t fluid, wall;
+  };
+
+  void find_walls(const Rollout& r, const Lattice& l) {
+    auto solid = [&](int x, int y) { return r.walls[size_t(x) * r.width + y] != 0; };
+    for (int x = 0; x < r.height; x++)
+      for (int y = 0; y < r.width; y++) {
+        const size_t cell = x * l.row + y;
+        if (solid(x, y)) {
+          walls_.push_back(cell);
+          continue;
+        }
+        for (int i = 1; i < 9; i++) {
+          const int from_x = (x - WAYS[i][0] + r.height) % r.height;
+          const int from_y = (y - WAYS[i][1] + r.width) % r.width;
+          const int opposite = i % 2 ? i + 1 : i - 1;
+          if (solid(from_x, from_y))
+            links_.push_back({i * l.plane + cell, opposite * l.plane + from_x * l.row + from_y});
+        }
+      }
+  }
+
+  // The blocks that the sponge reaches, and the equilibrium of its stream at rest density.
+  void find_sponge(const Rollout& r, const Lattice& l) {
+    for (int pass = 0; pass < 2; pass++) {
+      if (pass) strength_ = Floats(blocks_.size() * BLOCK), blocks_.clear();
+      for (int x = 0; x < r.height; x++)
+        for (int from = 0; from < r.width; from += BLOCK) {
+          const float* given = r.sponge + size_t(x) * r.width + from;
+          const int count = std::min(BLOCK, r.width - from);
+          if (std::all_of(given, given + count, [](float one) { return one == 0; })) continue;
+          if (pass) std::copy(given, given + count, strength_ + blocks_.size() * BLOCK);
+          blocks_.push_back(x * l.row + from);
+        }
+    }
+    const float ux = r.sponge_velocity[0], uy = r.sponge_velocity[1];
+    const float square = 1.5f * (ux * ux + uy * uy);
+    const float along[] = {ux, uy, ux + uy, ux - uy};
+    free_[0] = -Rates::REST * square;
+    for (int pair = 0; pair < 4; pair++) {
+      const float weight = pair < 2 ? Rates::STRAIGHT : Rates::DIAGONAL, cu = along[pair];
+      const float even = weight * (4.5f * cu * cu - square), odd = 3 * weight * cu;
+      free_[2 * pair + 1] = even + odd, free_[2 * pair + 2] = even - odd;
+    }
+  }
+
+  std::vector<Link> links_;
+  std::vector<size_t> walls_, blocks_;  // Wall cells, and blocks of the sponge, in a plane.
+  Floats strength_;
+  float free_[9] = {};
+};
+
+}  // namespace microcosmos::ISA
