@@ -14,8 +14,8 @@ WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist 
 # Tests start hundreds of processes, which need not read all sources anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: run install web style-python style-page test test-all test-long mutants check peers bench \
-	acceptance validate pictures docs texts release-check lock
+.PHONY: run install web wheels style-python style-page test test-all test-long mutants check peers \
+	bench acceptance validate pictures docs texts release-check lock
 
 run: install web
 	@$(BIN)/python -m server.local
@@ -129,11 +129,16 @@ docs: install
 	@$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements-docs.lock
 	$(BIN)/sphinx-build -q -W --keep-going -d .cache/doctrees docs docs/_build
 
+# Wheels of the native kernel for x86-64 and ARM, so that its users need no compiler.
+wheels: $(INSTALLED)
+	@rm -f dist/microcosmos_kernels-*
+	@$(BIN)/python engine/kernels/wheels.py dist
+
 # Install the wheel into an empty environment, with the newest versions of its dependencies.
 release-check: install
-	rm -rf dist && $(BIN)/python -m pip wheel -q --disable-pip-version-check --no-build-isolation --no-deps -w dist .
+	rm -f dist/microcosmos-* && $(BIN)/python -m pip wheel -q --disable-pip-version-check --no-build-isolation --no-deps -w dist .
 	folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && $(PYTHON) -m venv $$folder/venv \
-	&& $$folder/venv/bin/pip install -q --disable-pip-version-check dist/*.whl && cd $$folder \
+	&& $$folder/venv/bin/pip install -q --disable-pip-version-check dist/microcosmos-*.whl && cd $$folder \
 	&& venv/bin/python -c 'import microcosmos as mc; mc.evolve; print(mc.__version__, mc.__file__)' \
 	&& JAX_PLATFORMS=cpu venv/bin/microcosmos evolve demo --out demo.h5 \
 	&& JAX_PLATFORMS=cpu venv/bin/microcosmos replay demo.best.json --check
@@ -160,3 +165,4 @@ lock:
 	$(COMPILE) --group pyproject.toml:peers -c requirements.lock -o requirements-peers.lock
 	$(COMPILE) --group pyproject.toml:node -o requirements-node.lock
 	$(COMPILE) --group pyproject.toml:zig -o requirements-zig.lock
+	$(COMPILE) --group pyproject.toml:xla --no-deps -o requirements-xla.lock

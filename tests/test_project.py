@@ -39,6 +39,12 @@ def test_lock_files_have_hashes_and_no_address(path):
     assert "://" not in text
 
 
+def test_released_kernels_have_the_interface_that_their_project_names():
+    kernel = tomllib.loads((ROOT / "engine/kernels/pyproject.toml").read_text())
+    lock = (ROOT / "requirements-xla.lock").read_text()
+    assert lock.split()[0] in kernel["build-system"]["requires"]
+
+
 @pytest.mark.parametrize(
     "path", sorted((ROOT / ".github").rglob("*.yml")), ids=lambda p: p.name
 )

@@ -13,7 +13,9 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 ZIG = HERE.parents[1] / "requirements-zig.lock"
-PIP = [sys.executable, "-m", "pip", "install", "-q", "--disable-pip-version-check"]
+PIP = [sys.executable, "-m", "pip", "-q", "--disable-pip-version-check"]
+# Without isolation: the lock file has the tools and the interface of XLA.
+PIP_BUILD = ["--no-build-isolation", "--no-deps"]
 
 
 def main() -> None:
@@ -33,14 +35,16 @@ def system_compiler() -> str | None:
 def zig(place: Path) -> str | None:
     """Install Zig's compiler into a folder and return the command that runs it."""
     print("Fetching a C++ compiler for the native kernel ...")
-    fetched = subprocess.run([*PIP, "--require-hashes", "--target", place, "-r", ZIG])
+    fetch = [*PIP, "install", "--require-hashes", "--target", place, "-r", ZIG]
+    fetched = subprocess.run(fetch)
     if fetched.returncode:
         return None
     command = place / "c++"
-    # Zig adds checks of undefined behaviour that need a library of its own.
+    # Zig adds checks of undefined behaviour that need a library of its own. It compiles its C++
+    # library once for programs and libraries if both are stripped and have the same addressing.
     command.write_text(
-        f"#!/bin/sh\nPYTHONPATH={place} exec {sys.executable} -m ziglang c++ -fno-sanitize=all "
-        '"$@"\n'
+        f"#!/bin/sh\nexport PYTHONPATH={place} ZIG_GLOBAL_CACHE_DIR={place / 'cache'}\n"
+        f'exec {sys.executable} -m ziglang c++ -fno-sanitize=all -fPIC -s "$@"\n'
     )
     command.chmod(0o755)
     return os.fspath(command)
@@ -48,11 +52,14 @@ def zig(place: Path) -> str | None:
 
 def build(compiler: str) -> bool:
     """Build and install with the tools of this environment; return whether that worked."""
+    command = [*PIP, "install", *PIP_BUILD, "--force-reinstall", HERE]
+    return subprocess.run(command, env=tools(compiler)).returncode == 0
+
+
+def tools(compiler: str) -> dict[str, str]:
+    """Return the environment variables with which the tools of this environment build."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    environment = {**os.environ, "PATH": path, "CXX": compiler}
-    # Without isolation: the lock file has the tools and the interface of XLA.
-    command = [*PIP, "--no-build-isolation", "--no-deps", "--force-reinstall", os.fspath(HERE)]
-    return subprocess.run(command, env=environment).returncode == 0
+    return {**os.environ, "PATH": path, "CXX": compiler}
 
 
 if __name__ == "__main__":
