@@ -1,6 +1,7 @@
 // Targets of XLA's foreign function interface: one world, or a batch of them in turn. Operands and
 // results have the order of `world.native` and `search.summary`.
 #include "arrays.h"
+#include "processor.h"
 #include "step.h"
 #include "summary.h"
 
@@ -263,14 +264,6 @@ MICROCOSMOS_TARGET(rollout);
 MICROCOSMOS_TARGET(develop);
 MICROCOSMOS_TARGET(summarise);
 
-// The best instruction set of this processor: 0 basic, 1 avx2, 2 avx512.
 extern "C" __attribute__((visibility("default"))) int microcosmos_instruction_set() {
-#if defined(__x86_64__)
-  __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
-    return 2;
-  if (__builtin_cpu_supports("avx2")) return 1;
-#endif
-  return 0;
+  return microcosmos::instruction_set();
 }
