@@ -45,11 +45,11 @@ def scene(body, size=(48, 48), *, matched=False, limits=(0.1, 0.1), nu_c=None, *
     return box, start, filaments.Rest(jnp.float32(angle), jnp.float32(length))
 
 
-def repelling(body, size=(48, 48), strength=4.0, **options):
+def repelling(body, size=(48, 48), strength=4.0, gradient=fields.binomial, **options):
     """A scene whose nodes repel each other."""
     box, start, rest = scene(body, size, **options)
     limit, strength = jnp.float32(0.1), jnp.float32(strength)
-    return replace(box, steric=fields.Steric(strength, limit, fields.binomial)), start, rest
+    return replace(box, steric=fields.Steric(strength, limit, gradient)), start, rest
 
 
 def moved(given, way):
@@ -152,6 +152,15 @@ SCENES = {
     ),
     "bodies that touch": lambda: repelling(heap(), matched=True),
     "bodies that touch without fluid": lambda: repelling(heap(), fluid=False),
+    "repulsion by a Fourier transform": lambda: repelling(
+        chain(), matched=True, gradient=fields.gaussian
+    ),
+    "repulsion by a Fourier transform across the edges": lambda: moved(
+        repelling(chain(24, 0.8), (24, 37), gradient=fields.gaussian), (10.0, 17.0)
+    ),
+    "bodies that touch, by a Fourier transform": lambda: repelling(
+        heap(), (45, 51), matched=True, layers=2, gradient=fields.gaussian
+    ),
     "energy": lambda: fed(chain(), matched=True),
     "energy that is taken and spreads": lambda: fed(
         chain(), (45, 51), matched=True, rate=0.1, diffusion=0.05
@@ -218,7 +227,13 @@ def any_scene(rng):
         kernel=deltas[rng.integers(len(deltas))],
         magic=fluid.capped_magic if rng.random() < 0.8 else fluid.fixed_magic,
     )
-    return anywhere(given, rng) if rng.random() < 0.5 else given
+    if rng.random() < 0.5:
+        given = anywhere(given, rng)
+    box, start, rest = given
+    if rng.random() < 0.3:
+        gradient = (fields.gaussian, fields.binomial)[rng.integers(2)]
+        box = replace(box, steric=fields.Steric(jnp.float32(4), jnp.float32(0.1), gradient))
+    return box, start, rest
 
 
 def anywhere(given, rng):

@@ -38,7 +38,7 @@ struct Evaluation {
   Rollout r = {};
   Numbers parameters, planes[9], positions, angles, energy, collected, layout, matrix, stiffness,
       control, bias, weight, timer, ramp, position, lag, body_angle, body_length, uniform_force,
-      sponge, sponge_velocity;
+      sponge, sponge_velocity, smoothing;
   Indices ends, pairs, member, piece, present, edge_colour, joint_colour, activation, source,
       target, joint_node, walls;
   Numbers rest_angle, rest_length, clock, out[20];
@@ -56,6 +56,7 @@ struct Evaluation {
     controller(random);
     place(random);
     surround(random);
+    smooth(random);
   }
 
   void run() {
@@ -213,6 +214,13 @@ struct Evaluation {
     const size_t sizes[] = {2 * N, size_t(r.edges), cells, N,    2 * T, 2 * T * N, T, T, T,
                             T,     T * J,           T,     2 * T};
     for (int i = 0; i < 13; i++) out[i].assign(sizes[i], 0), *results[i] = out[i].data();
+  }
+
+  // Weights over the whole world, which fall with the distance.
+  void smooth(Random& random) {
+    r.transformed = random.below(2);
+    for (int i = 0; i < 2 * 64; i++) smoothing.push_back(random.between(-1, 1) / float(4 + i % 64));
+    r.smoothing_x = r.smoothing_y = smoothing.data();
   }
 
   // A tenth of the cells are walls, another tenth a sponge.

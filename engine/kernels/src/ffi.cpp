@@ -60,6 +60,7 @@ std::string read_world(Rollout& r, Numbers number) {
   r.delta = microcosmos::Delta(number("delta"));
   r.fixed_magic = number("magic");
   r.fluid = number("fluid"), r.repelled = number("repelled"), r.energetic = number("energetic"),
+  r.transformed = number("transformed");
   r.driven = number("driven"), r.walled = number("walled"), r.damped = number("damped"),
   r.timed = number("timed");
   if (!number.error.empty()) return number.error;
@@ -116,6 +117,8 @@ void name_rollout(Arrays& a, Rollout& r) {
   a.in("parameters", &r.parameters, {microcosmos::STEP_LENGTHS + r.iterations});
   a.in("energy", &r.energy, {when(energetic, H), W});
   a.in("collected", &r.collected, {when(energetic, N)});
+  a.in("smoothing across rows", &r.smoothing_x, {when(r.transformed, 2), H});
+  a.in("smoothing along rows", &r.smoothing_y, {when(r.transformed, 2), W});
   a.in("uniform force", &r.uniform_force, {when(r.driven, 2)});
   a.in("walls", &r.walls, {when(r.walled, H), W});
   a.in("strength of the sponge", &r.sponge, {when(r.damped, H), W});

@@ -1,7 +1,8 @@
-// Repulsion between nodes, down the gradient of their density smoothed by binomial weights, as in
-// `world.nodes` and `fields.steric`.
+// Repulsion between nodes, down the gradient of their density, as in `world.nodes` and
+// `fields.steric`: smoothed by binomial weights, or by a Fourier transform.
 #pragma once
 #include "nodes.h"
+#include "transformed.h"
 
 namespace microcosmos::ISA {
 
@@ -10,7 +11,7 @@ class Repulsion {
   Floats push_x, push_y;    // Displacements within bodies, without their rigid motion.
   Floats drift_x, drift_y;  // Rigid motion of bodies that touch each other.
 
-  Repulsion(const Bodies& b, const Rollout& r) : b_(b), r_(r) {
+  Repulsion(const Bodies& b, const Rollout& r) : b_(b), r_(r), transformed_(r) {
     for (Floats* one : {&push_x, &push_y, &drift_x, &drift_y}) *one = Floats(b.node_slots + BLOCK);
     if (!r.repelled) return;
     wide_ = size_t(r.width) + 2 * MARGIN;
@@ -21,9 +22,16 @@ class Repulsion {
   }
 
   void find(const Nodes& n) {
-    deposit(n);
-    for (size_t i = 0; i < order_.size(); i++) read(order_[i], places_[i]);
-    clear();
+    place(n);
+    if (r_.transformed) {
+      transformed_.deposit(places_);
+      for (size_t i = 0; i < order_.size(); i++) read_transformed(order_[i], places_[i]);
+    } else {
+      for (const Place& p : places_)
+        each_cell(p, [](float* at, float weight) { *at = *at + weight; });
+      for (size_t i = 0; i < order_.size(); i++) read(order_[i], places_[i]);
+      for (const Place& p : places_) each_cell(p, [](float* at, float) { *at = 0; });
+    }
     for (const Range& body : b_.bodies) divide(body, n);
   }
 
@@ -34,10 +42,6 @@ class Repulsion {
                                       4.0f / 16, 1.0f / 16, 0,         0};
   static constexpr float SLOPE[9] = {0,         -1.0f / 32, -4.0f / 32, -5.0f / 32, 0,
                                      5.0f / 32, 4.0f / 32,  1.0f / 32,  0};
-  struct Place {
-    int x, y;      // The cell before the node.
-    float dx, dy;  // The node's distance from it.
-  };
   struct Rigid {
     float x, y, spin;
   };
@@ -55,19 +59,14 @@ class Repulsion {
     return first < 0 ? first + size : first;
   }
 
-  // Add each node to the four cells around it; columns near an edge also stand beyond the other.
-  void deposit(const Nodes& n) {
+  void place(const Nodes& n) {
     for (size_t i = 0; i < order_.size(); i++) {
       Place& p = places_[i];
       p.x = cell(n.x[order_[i]], r_.height, p.dx), p.y = cell(n.y[order_[i]], r_.width, p.dy);
-      each_cell(p, [](float* at, float weight) { *at = *at + weight; });
     }
   }
 
-  void clear() {
-    for (const Place& p : places_) each_cell(p, [](float* at, float) { *at = 0; });
-  }
-
+  // The four cells around a node; columns near an edge also stand beyond the other.
   template <class Work>
   INLINE void each_cell(const Place& p, Work work) {
     for (int i = 0; i < 2; i++) {
@@ -100,6 +99,13 @@ class Repulsion {
     }
     const float strength = -r_.parameters[REPULSION];
     push_x[slot] = strength * total(gx), push_y[slot] = strength * total(gy);
+  }
+
+  void read_transformed(int slot, const Place& p) {
+    float gx, gy;
+    transformed_.read(p, gx, gy);
+    const float strength = -r_.parameters[REPULSION];
+    push_x[slot] = strength * gx, push_y[slot] = strength * gy;
   }
 
   static float total(Vec8 v) {
@@ -199,6 +205,7 @@ class Repulsion {
 
   const Bodies& b_;
   const Rollout& r_;
+  Transformed transformed_;
   size_t wide_ = 0;
   Floats density_;
   std::vector<int> order_;

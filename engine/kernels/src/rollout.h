@@ -50,6 +50,7 @@ struct Rollout {
   bool fixed_magic;  // Lambda = 3/16 at every viscosity; otherwise capped.
   bool fluid;        // Without a fluid, only constraints move bodies.
   bool repelled;     // Nodes repel each other.
+  bool transformed;  // A Fourier transform smooths their density; otherwise binomial weights.
   bool energetic;    // There is energy.
   bool driven;       // A uniform force acts on the fluid.
   bool walled;       // There are walls.
@@ -64,6 +65,10 @@ struct Rollout {
   const float* angles;          // (edge)
   const float* energy;          // (height, width)
   const float* collected;       // (node)
+
+  // Weights of the transform along each axis: of smoothing, then of the slope.
+  const float* smoothing_x;  // (2, height)
+  const float* smoothing_y;  // (2, width)
 
   // Surroundings of the fluid.
   const float* uniform_force;    // (2)

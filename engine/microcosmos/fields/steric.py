@@ -11,6 +11,7 @@ from collections.abc import Callable
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float
 
 Plane = Float[Array, "x y"]
@@ -43,6 +44,17 @@ def gaussian(density: Plane) -> Gradient:
     # The Nyquist wave has no sign: its derivative is zero.
     waves = [jnp.where(jnp.abs(k) > 3.14159, 0.0, k) for k in (kx, ky)]
     return jnp.stack([jnp.fft.irfft2(1j * k * smooth, size) for k in waves])
+
+
+def gaussian_weights(cells: int) -> np.ndarray:
+    """Return the weights along a periodic axis by which `gaussian` smooths, and differentiates.
+
+    In double precision: rounded to single, they do not show how a processor computes them.
+    """
+    k = 2 * np.pi * np.fft.fftfreq(cells)
+    smooth = np.exp(-0.5 * k * k)
+    slope = 1j * np.where(np.abs(k) > 3.14159, 0.0, k) * smooth
+    return np.stack([np.fft.ifft(smooth).real, np.fft.ifft(slope).real])
 
 
 def binomial(density: Plane) -> Gradient:

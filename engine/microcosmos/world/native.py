@@ -19,7 +19,7 @@ from jaxtyping import Array, Float
 from .. import coupling, device, fields, filaments, fluid
 from .controller import Controller
 from .model import Measures, State, World
-from .operands import body_of, controller_of, stiffness_of, surroundings_of
+from .operands import body_of, controller_of, smoothing_of, stiffness_of, surroundings_of
 
 LOG = logging.getLogger(__name__)
 PARTS = (
@@ -87,15 +87,16 @@ def register(function: str, instruction_set: str | None = None) -> str:
 def uncovered(world: World, state: State) -> str | None:
     """Return what of a world the kernel lacks; None if it can simulate the world."""
     lacking = {
-        "repulsion smoothed by a Fourier transform": _transformed(world),
+        "repulsion of another form": not _known_repulsion(world),
         "numbers other than float32": state.positions.dtype != jnp.float32,
         "a body without joints listed": world.rods.joints is None,
     }
     return next((reason for reason, holds in lacking.items() if holds), None)
 
 
-def _transformed(world: World) -> bool:
-    return world.steric is not None and world.steric.gradient is not fields.binomial
+def _known_repulsion(world: World) -> bool:
+    known = (fields.gaussian, fields.binomial)
+    return world.steric is None or world.steric.gradient in known
 
 
 def develop(
@@ -162,6 +163,7 @@ def _operands(
     controller = given if isinstance(given, Controller) else None
     body, sizes = body_of(world, state, controller)
     commands, numbers = controller_of(controller)
+    smoothing, transformed = smoothing_of(world)
     around, features = surroundings_of(world)
     joints, edges = _counts(world)
     nothing = jnp.zeros((0, joints), jnp.float32), jnp.zeros((0, edges), jnp.float32)
@@ -174,11 +176,13 @@ def _operands(
         _parameters(world),
         field,
         _collected(state),
+        *smoothing,
         *around,
         *rest,
         *commands,
     ]
-    return operands, {**sizes, **numbers, **features, "energetic": state.energy is not None}
+    options = {**sizes, **numbers, **transformed, **features}
+    return operands, {**options, "energetic": state.energy is not None}
 
 
 def _form(world: World) -> dict[str, int]:

@@ -5,7 +5,7 @@ from typing import Any
 import jax.numpy as jnp
 from jaxtyping import Array, Int
 
-from .. import filaments
+from .. import fields, filaments
 from .controller import Actuators, Controller, Network, Series
 from .model import State, World
 
@@ -61,6 +61,15 @@ def stiffness_of(world: World) -> list[Array]:
         )
     ]
     return [*colours, *stiffness]
+
+
+def smoothing_of(world: World) -> tuple[list[Array], Numbers]:
+    """Return the weights along both axes of repulsion smoothed by a Fourier transform."""
+    transformed = world.steric is not None and world.steric.gradient is fields.gaussian
+    if not transformed:
+        return [_nothing(0, cells) for cells in world.size], {"transformed": False}
+    weights = [fields.gaussian_weights(cells) for cells in world.size]
+    return [jnp.asarray(one, jnp.float32) for one in weights], {"transformed": True}
 
 
 def surroundings_of(world: World) -> tuple[list[Array], Numbers]:

@@ -191,3 +191,14 @@ def test_repulsion_can_be_differentiated(gradient, require_slope, float64):
         return jnp.sum(weights * slope_at(gradient, positions))
 
     require_slope(total, positions, rtol=1e-7)
+
+
+@pytest.mark.parametrize("size", [(8, 9), (24, 37)])
+def test_a_transform_smooths_by_products_of_its_weights(size, float64):
+    smooth, slope = zip(*(fields.gaussian_weights(cells) for cells in size), strict=True)
+    density = jnp.zeros(size).at[2, 3].set(1.0)
+    rolled = [
+        np.roll(np.outer(*pair), (2, 3), (0, 1))
+        for pair in ((slope[0], smooth[1]), (smooth[0], slope[1]))
+    ]
+    np.testing.assert_allclose(fields.gaussian(density), rolled, atol=1e-14)
