@@ -58,8 +58,7 @@ def variety(creatures: Sequence[PoseStream]) -> Variety:
     if len(creatures) < 2:
         raise ValueError(f"variety needs at least two creatures, got {len(creatures)}")
     chosen = [creatures[i] for i in sample(len(creatures))]
-    strokes = np.stack([stroke(stream) for stream in chosen])
-    chains = np.array([is_chain(stream.edges) for stream in chosen])
+    strokes, chains = _strokes(chosen)
     found = distances(strokes, chains)
     alone = distances(strokes - strokes.mean(1, keepdims=True), chains)
     pairs = np.triu_indices(len(chosen), 1)
@@ -72,6 +71,19 @@ def variety(creatures: Sequence[PoseStream]) -> Variety:
         creatures=len(creatures),
         compared=len(chosen),
     )
+
+
+def exemplars(creatures: Sequence[PoseStream]) -> list[int]:
+    """Return the index of a creature of each kind, given and counted from the fittest."""
+    chosen = sample(len(creatures))
+    found = distances(*_strokes([creatures[i] for i in chosen]))
+    return [int(chosen[i]) for i in kinds(found)]
+
+
+def _strokes(creatures: Sequence[PoseStream]) -> tuple[np.ndarray, np.ndarray]:
+    """Return strokes, and which creatures are chains."""
+    strokes = np.stack([stroke(stream) for stream in creatures])
+    return strokes, np.array([is_chain(stream.edges) for stream in creatures])
 
 
 def sample(count: int) -> np.ndarray:

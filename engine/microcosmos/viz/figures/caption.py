@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...archive.variety import KIND
 from ...spec import Chain
 from ...spec.body import PluginBody, SwimmerBody, shape
 from ...spec.emitters import PopulationEmitter
@@ -11,6 +12,7 @@ from .axes import Axis, chosen
 from .groups import Group
 from .reading import Archive, Search
 from .sheet import Layout, Motion
+from .strips import Strip
 
 NAMES = {"best": "best fitness", "mean": "mean fitness", "qd_score": "QD score"}
 """Names of curves that differ from those of their columns."""
@@ -59,6 +61,18 @@ def of_sheet(found: Archive, plan: Layout, motions: Sequence[Motion], moments: i
     )
     if any(motion.trusted is not None for motion in motions):
         first += " Trusted or not is the verdict of the physics audit; the others have none."
+    return " ".join([first, run(found)])
+
+
+def of_strips(found: Archive, shown: Sequence[Strip], moments: int) -> str:
+    """Return the caption of film strips of kinds of motion."""
+    first = (
+        f"{len(shown)} kinds of motion among {len(found.cells):,} elites: from the fittest on, "
+        f"each is more than {KIND:g} body lengths (motion distance) from all before it. "
+        f"{moments} moments of one stroke, in order and from dark to light; the dot marks the "
+        f"first node. Bodies have one scale and travel upwards; the arrow is the way of one "
+        f"stroke, the number the fitness."
+    )
     return " ".join([first, run(found)])
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from . import caption, curves, groups, lineage, maps, saving, sheet
+from . import caption, curves, groups, lineage, maps, saving, sheet, strips
 from .lineage import family
 from .reading import Archive, read
 from .style import millimetres, styled
@@ -81,6 +81,17 @@ def contact(
         width, palette = millimetres(options.width), options.palette
         figure = sheet.sheet(found, plan, moved, moments=moments, colours=palette, width=width)
         return options.publish(figure, out, caption.of_sheet(found, plan, moved, moments))
+
+
+def kinds(file: Path, out: Path, options: Print, most: int, moments: int) -> list[Path]:
+    """Draw a stroke of an elite of each kind of motion in an archive file, at most `most`."""
+    saving.kind(out)
+    found = open_archive(file)
+    shown = strips.exemplars(file.read_bytes(), most)
+    with styled():
+        width, palette = millimetres(options.width), options.palette
+        figure = strips.strips(found, shown, moments=moments, colours=palette, width=width)
+        return options.publish(figure, out, caption.of_strips(found, shown, moments))
 
 
 def tree(file: Path, out: Path, options: Print, cell: int | None) -> list[Path]:

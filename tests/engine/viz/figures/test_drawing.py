@@ -11,9 +11,10 @@ import pytest
 from small_spec import SMALL_SCENE
 
 from microcosmos import spec
+from microcosmos.archive import variety
 from microcosmos.build import build, local
 from microcosmos.experiments import table_file
-from microcosmos.viz.figures import drawing, motions, reading
+from microcosmos.viz.figures import drawing, motions, reading, strips
 
 pytestmark = pytest.mark.long
 
@@ -72,10 +73,21 @@ def test_a_sheet_states_the_verdicts_of_given_audits(archive, tmp_path, figure):
     assert "--audit" in figure("sheet", archive, out, "--audit", archive, code=2)
 
 
+def test_the_fittest_of_each_kind_of_motion_is_shown(archive):
+    data = archive.read_bytes()
+    found, shown = reading.read(data), strips.exemplars(data, 100)
+    assert len(shown) == variety.of(data).kinds
+    fitness = found.fitness[[one.elite for one in shown]]
+    assert fitness[0] == found.fitness.max()
+    assert np.all(np.diff(fitness) <= 0)
+    assert [one.elite for one in strips.exemplars(data, 1)] == [shown[0].elite]
+
+
 def test_each_command_of_the_help_writes_its_figure_and_its_caption(archive, tmp_path, figure):
     for name, *options in (
         ("archive", "--axes", "straightness,bending_effort", "--latex", "--caption"),
         ("curves", "--against", "generations"),
+        ("kinds", "--most", "3", "--moments", "5"),
         ("lineage", "--palette", "magma"),
     ):
         out = tmp_path / f"{name}.pdf"
@@ -85,7 +97,7 @@ def test_each_command_of_the_help_writes_its_figure_and_its_caption(archive, tmp
         assert "3 generations of 16 (48 evaluations, seed 0)" in text
     assert (tmp_path / "archive.caption.tex").exists()
     text = figure("--help")
-    for name in ("file", "archive", "curves", "sheet", "lineage"):
+    for name in ("file", "archive", "curves", "sheet", "kinds", "lineage"):
         assert re.search(rf"\b{name}\b", text)
 
 

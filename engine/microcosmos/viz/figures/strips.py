@@ -1,0 +1,110 @@
+"""Film strips of the kinds of motion in an archive, from recorded poses."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...archive.file import load
+from ...archive.poses import FRAMES, STROKES, PoseStream, streams
+from ...archive.variety import exemplars as of_each_kind
+from .reading import Archive
+from .sheet import numerals
+from .style import GREY, INK, PALE, blank, palette
+
+COLUMNS = 2
+GAP = 0.12
+"""Between poses, in body lengths."""
+
+
+@dataclass(frozen=True, eq=False)
+class Strip:
+    """A stroke of an elite; places are in body lengths, the way of the centre is upwards."""
+
+    elite: int
+    poses: np.ndarray
+    """(frame, node, 2), about the mean of the nodes in each frame."""
+    edges: np.ndarray
+    advance: float
+    """Way of the centre in the stroke, in body lengths."""
+
+
+def exemplars(data: bytes, most: int) -> list[Strip]:
+    """Return the fittest elite of each kind of motion in an archive file, at most `most`."""
+    tree, attributes = load(data)
+    order = np.argsort(-tree["archive"]["fitness"], kind="stable")
+    recorded = streams(tree, attributes)
+    kinds = of_each_kind([recorded[i] for i in order])[:most]
+    return [strip(int(order[i]), recorded[order[i]]) for i in kinds]
+
+
+def strip(elite: int, stream: PoseStream) -> Strip:
+    """Return the last stroke of a pose stream; all of it without two strokes."""
+    cells = stream.cells.astype(float) / stream.length
+    if stream.strokes:
+        cells = cells[-FRAMES // STROKES - 1 :]
+    middle = cells.mean(1)
+    across, along = middle[-1] - middle[0]
+    size = float(np.hypot(across, along))
+    # The world's axes are turned so that the way is (0, size).
+    turn = np.array([[along, -across], [across, along]]) / size if size > 1e-9 else np.eye(2)
+    return Strip(elite, (cells - middle[:, None]) @ turn.T, stream.edges, size)
+
+
+def strips(
+    found: Archive,
+    shown: Sequence[Strip],
+    *,
+    moments: int = 8,
+    colours: str = "viridis",
+    width: float = 178.0,
+) -> Any:
+    """Draw each stroke as poses side by side, which are equal in scale and in time apart."""
+    rows = -(-len(shown) // COLUMNS)
+    posed = [_poses(one, moments) for one in shown]
+    step = GAP + max(np.ptp(poses[..., 0], 1).max() for poses in posed)
+    tall = GAP + max(np.ptp(poses[..., 1]) for poses in posed)
+    length = (moments + 0.5) * step
+    figure = blank(width, width / COLUMNS * tall / length * rows + 2 * rows)
+    panels = figure.subplots(rows, COLUMNS, squeeze=False).ravel()
+    names = numerals(len(shown))
+    for panel in panels[len(shown) :]:
+        panel.set_axis_off()
+    for panel, one, poses, name in zip(panels, shown, posed, names, strict=False):
+        middle = (poses[..., 1].min() + poses[..., 1].max()) / 2
+        low, high = middle - tall / 2, middle + tall / 2
+        panel.set(xlim=(-step / 2, length - step / 2), ylim=(low, high), aspect="equal")
+        panel.set(xticks=[], yticks=[])
+        panel.spines[:].set_color(PALE)
+        _draw(panel, one, poses, step, colours)
+        _arrow(panel, length - 0.75 * step, middle, one.advance)
+        look = {"fontsize": 5.5, "transform": panel.transAxes}
+        panel.text(0.005, 0.97, name, va="top", color=INK, **look)
+        fitness = f"{found.fitness[one.elite]:.3g}"
+        panel.text(0.995, 0.03, fitness, ha="right", va="bottom", color=GREY, **look)
+    return figure
+
+
+def _poses(one: Strip, moments: int) -> np.ndarray:
+    """Return poses at equal parts of the stroke, without its end, which repeats its start."""
+    frames = np.rint(np.linspace(0, len(one.poses) - 1, moments + 1)).astype(int)[:-1]
+    return one.poses[frames]
+
+
+def _draw(panel: Any, one: Strip, poses: np.ndarray, step: float, colours: str) -> None:
+    from matplotlib.collections import LineCollection
+
+    shade = palette(colours)
+    for number, pose in enumerate(poses):
+        places = pose + np.array([number * step, 0])
+        colour = shade(0.9 * number / len(poses))
+        look = {"colors": [colour], "linewidths": 1.4, "capstyle": "round"}
+        panel.add_collection(LineCollection(list(places[one.edges]), **look))
+        panel.plot(*places[0], "o", color=colour, ms=2.4, mew=0)
+
+
+def _arrow(panel: Any, x: float, middle: float, advance: float) -> None:
+    ends = {"xy": (x, middle + advance / 2), "xytext": (x, middle - advance / 2)}
+    style = {"arrowstyle": "->", "lw": 0.7, "color": INK, "shrinkA": 0, "shrinkB": 0}
+    panel.annotate("", **ends, arrowprops=style)
