@@ -167,11 +167,11 @@ def kinds(
     options: drawing.Print,
     file: File,
     out: Out = None,
-    most: Annotated[int, Option(min=1, max=100, help="Largest number of kinds.")] = 12,
+    limit: Annotated[int, Option(min=1, max=100, help="Largest number of kinds.")] = 12,
     moments: Annotated[int, Option(min=2, max=32, help="Number of moments of a stroke.")] = 8,
 ) -> None:
     """Draw film strips of the kinds of motion in an archive, the fittest first."""
-    _print(drawing.kinds(file, _beside(file, out, "kinds"), options, most, moments))
+    _print(drawing.kinds(file, _beside(file, out, "kinds"), options, limit, moments))
 
 
 @figures.command()

@@ -87,7 +87,7 @@ def test_each_command_of_the_help_writes_its_figure_and_its_caption(archive, tmp
     for name, *options in (
         ("archive", "--axes", "straightness,bending_effort", "--latex", "--caption"),
         ("curves", "--against", "generations"),
-        ("kinds", "--most", "3", "--moments", "5"),
+        ("kinds", "--limit", "3", "--moments", "5"),
         ("lineage", "--palette", "magma"),
     ):
         out = tmp_path / f"{name}.pdf"
