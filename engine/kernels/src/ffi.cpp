@@ -40,6 +40,8 @@ std::string read_body(Rollout& r, Numbers number) {
   r.actuated = number("actuated"), r.rows = number("rows"), r.links = number("links");
   r.inputs = number("inputs"), r.timers = number("timers"), r.terms = number("terms");
   if (!number.error.empty()) return number.error;
+  if (r.commands < microcosmos::GIVEN || r.commands > microcosmos::SERIES)
+    return "there is no such controller";
   for (int32_t one : {r.steps, r.edges, r.joints, r.rows, r.links, r.timers, r.terms})
     if (one < 0) return "a count is negative";
   if (r.nodes < 1 || r.bodies < 1) return "a world has at least one node";
@@ -68,6 +70,8 @@ std::string read_world(Rollout& r, Numbers number) {
   if (r.iterations < 1 || r.layers < 1 || r.layers > 2 || r.sweeps < 0)
     return "iterations, sweeps or layers";
   if (r.delta < 0 || r.delta > microcosmos::HAT) return "there is no such delta";
+  if (r.projection < microcosmos::NOTHING || r.projection > microcosmos::FORCE_AND_TORQUE)
+    return "there is no such projection";
   return "";
 }
 

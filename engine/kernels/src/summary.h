@@ -3,6 +3,7 @@
 // Sums are in double precision and in one order; loops over joints or nodes are innermost, so that
 // a compiler makes vectors of them without changing that order.
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "functions.h"
@@ -137,7 +138,7 @@ class Summary {
     const double before = strokes(low), passed = strokes(high) - before;
     if (!(passed > 0)) return high;
     const double share = (done - before) / passed;
-    return low + (share < 0 ? 0 : share > 1 ? 1 : share);
+    return low + (share > 0 ? std::min(share, 1.0) : 0);  // What is no number counts as 0.
   }
 
   // Find the last two whole strokes, as in `search.window`.
@@ -147,7 +148,7 @@ class Summary {
     done_ = last > 0 && last < 1e9 ? down(last) : 0;
     if (done_ < STROKES) return;
     start_ = done_ == STROKES ? 0 : int(when(done_ - STROKES) + 0.5);
-    stop_ = int(when(done_) + 0.5), window_ = STROKES;
+    stop_ = std::max(1, int(when(done_) + 0.5)), window_ = STROKES;
     if (start_ >= stop_) start_ = stop_ - 1;
   }
 
