@@ -15,7 +15,7 @@ WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist 
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: run install web wheels style-python style-page test test-all test-long mutants check peers \
-	bench acceptance validate pictures docs texts release-check lock
+	bench acceptance fuzz validate pictures docs texts release-check lock
 
 run: install web
 	@$(BIN)/python -m server.local
@@ -112,6 +112,16 @@ bench: peers web
 # All parts, or some: make acceptance PARTS=databases
 acceptance: install web
 	PYTHONPATH=tests/support $(BIN)/python tests/faults/acceptance.py $(PARTS)
+
+# Random worlds and bodies under sanitisers: make fuzz WORLDS=300, or SANITISED="g++ -mavx2"
+WORLDS ?= 100000
+SANITISED ?= g++
+CHECKS := -std=c++17 -O1 -g -ffp-contract=off -Wno-psabi \
+	-fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all
+fuzz:
+	@folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && \
+	$(SANITISED) $(CHECKS) engine/kernels/check/worlds.cpp -o $$folder/worlds && \
+	$$folder/worlds $(WORLDS)
 
 # Take a picture of every page into docs/pictures/page; DATA names a folder with finished runs.
 pictures: install web

@@ -6,22 +6,11 @@
 
 #include "../src/step.h"
 #include "../src/summary.h"
+#include "random.h"
 
 using namespace microcosmos;
 
 namespace {
-
-struct Random {
-  uint32_t state;
-  uint32_t bits() {
-    state ^= state << 13, state ^= state >> 17, state ^= state << 5;
-    return state;
-  }
-  int below(int count) { return int((bits() >> 8) % uint32_t(count)); }
-  // Multiples of 2^-24, so that no rounding is involved.
-  float unit() { return float(bits() >> 8) * (1.0f / 16777216); }
-  float between(float low, float high) { return low + (high - low) * unit(); }
-};
 
 uint32_t checksum(uint32_t found, const void* data, size_t bytes) {
   for (size_t i = 0; i < bytes; i++) {

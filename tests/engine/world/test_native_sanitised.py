@@ -57,3 +57,12 @@ def test_any_world_stays_within_its_arrays(tmp_path):
     }
     done = subprocess.run([sys.executable, "-c", RUN], env=environment, capture_output=True)
     assert done.stdout.decode().strip() == "nothing found", done.stderr.decode()[-3000:]
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not shutil.which("g++"), reason="there is no g++")
+def test_any_body_that_the_boundary_accepts_stays_within_its_arrays():
+    """`make fuzz` simulates 100,000 of these worlds."""
+    command = ["make", "--no-print-directory", "fuzz", "WORLDS=300"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert done.stdout.startswith("300 worlds, "), done.stdout + done.stderr[-3000:]
