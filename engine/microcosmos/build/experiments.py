@@ -103,8 +103,8 @@ def build_repeats(chosen: spec.Evolution, plan: Plan) -> reevaluation.Programs |
 
 
 def is_portable(chosen: spec.Evolution) -> bool:
-    """Return whether a search does without derivatives, Fourier transforms, plug-ins and other
-    libraries, which may sum as a processor likes."""
+    """Return whether a search does without derivatives, plug-ins and other libraries, which may
+    sum as a processor likes, and without weights that NumPy's exponentials give."""
     steric = chosen.world.steric
     transformed = steric is not None and steric.smoothing == "gaussian"
     foreign = any(
