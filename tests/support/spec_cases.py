@@ -139,12 +139,8 @@ CASES: dict[str, dict[str, Any]] = {
 }
 """Documents of scenes. The plug-ins are those of `movers.py`."""
 
-LONG = {
-    "a rest shape in cells",
-    "a gait of a plug-in",
-    *(name for name in CASES if name.startswith(("layers of", "the "))),
-}
-"""Cases that differ from another one in one choice."""
+QUICK = ("a network", "a network that senses", "layers", "a grown body", "plug-ins", "a gait")
+"""Cases of the quick tests."""
 
 ANOTHER = object()
 """Any number or text but the default."""

@@ -38,7 +38,7 @@ def scene_of(name):
 def cases(kept=lambda document: True):
     """Return test parameters of the cases whose document is kept."""
     return [
-        pytest.param(name, marks=pytest.mark.long if name in spec_cases.LONG else ())
+        pytest.param(name, marks=() if name in spec_cases.QUICK else pytest.mark.long)
         for name, document in spec_cases.CASES.items()
         if kept(document)
     ]
