@@ -50,7 +50,7 @@ def main() -> None:
         rest = statistics.median(a - b for a, b in seconds)
         share = statistics.median((a - b) / a for a, b in seconds)
         rows.append((name, f"{whole:.3f}", f"{rollouts:.3f}", f"{rest:.4f}", f"{share:.1%}"))
-    columns = ("", "whole", "rollouts", "the rest", "share (bar 2 %)")
+    columns = ("", "whole", "rollouts", "the rest", "share (bar 8 %)")
     timing.print_table("Median seconds of a generation of 64 creatures", columns, rows)
 
 
