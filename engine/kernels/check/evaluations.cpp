@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "../src/step.h"
-#include "../src/summary.h"
+#include "observed.h"
 #include "random.h"
 
 using namespace microcosmos;
@@ -73,16 +73,7 @@ struct Evaluation {
  private:
   // Measure the motion, over strokes of a quarter of it.
   void summarise() {
-    Observed o = {};
-    o.height = r.height, o.width = r.width, o.steps = r.steps, o.nodes = r.nodes;
-    o.edges = r.edges, o.joints = r.joints, o.bodies = r.bodies, o.energetic = r.energetic;
-    std::copy(r.end_populations, r.end_populations + 9, o.populations);
-    o.positions = r.positions, o.angles = r.angles, o.ends = r.ends, o.pairs = r.pairs;
-    o.present = r.present, o.collected = r.end_collected;
-    o.rest_angle = rest_angle.data(), o.rest_length = rest_length.data();
-    o.centre = r.centre, o.path = r.path, o.speed = r.speed, o.node_speed = r.node_speed;
-    o.held = r.held, o.heading = r.heading, o.power = r.power, o.curvature = r.curvature;
-    o.force = r.force;
+    Observed o = observed(r);
     const float scales[3] = {parameters[VISCOSITY], float(r.nodes), float(r.steps) / 4};
     for (int t = 0; t < r.steps && r.senses; t++) clock[t] = float(t + 1);
     o.clock = clock.data(), o.scales = scales;

@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "../src/step.h"
-#include "../src/summary.h"
+#include "observed.h"
 #include "random.h"
 
 using namespace microcosmos;
@@ -88,20 +88,10 @@ class Fuzzed {
 
   // The status by the summary of the motion.
   int status() {
-    Observed o = {};
-    o.height = r.height, o.width = r.width, o.steps = r.steps, o.nodes = r.nodes;
-    o.edges = r.edges, o.joints = r.joints, o.bodies = r.bodies, o.energetic = r.energetic;
-    std::copy(r.end_populations, r.end_populations + 9, o.populations);
-    o.positions = r.positions, o.angles = r.angles, o.ends = r.ends, o.pairs = r.pairs;
-    o.present = r.present, o.collected = r.end_collected;
-    const bool closed = r.commands != GIVEN;
-    o.rest_angle = closed ? r.rest_angle : r.given_angle;
-    o.rest_length = closed ? r.rest_length : r.given_length;
-    o.centre = r.centre, o.path = r.path, o.speed = r.speed, o.node_speed = r.node_speed;
-    o.held = r.held, o.heading = r.heading, o.power = r.power, o.curvature = r.curvature;
+    Observed o = observed(r);
     for (int t = 0; t < r.steps; t++)
       if (!developed_) r.clock[t] = tamed(float(t + 1));
-    o.force = r.force, o.clock = r.clock, o.scales = numbers(3, 0.01f, 10);
+    o.clock = r.clock, o.scales = numbers(3, 0.01f, 10);
     float* shown = room(SHOWN);
     o.places = room(2 * PLACES), o.frames = room(2 * FRAMES * size_t(r.nodes));
     o.shown = shown, o.measures = room(MEASURE_COUNT);

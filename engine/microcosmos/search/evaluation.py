@@ -114,7 +114,7 @@ def _summary(
         valid = status(driven.world, end, values["mach"])
         return values, poses_of(task, driven, observed), valid
     world, start, clock = driven.world, driven.start, clock_of(driven, len(observed.power))
-    length = task.length if driven.length is None else driven.length
+    length = _length(task, driven)
     values, shown, valid = summarise(world, start, end, observed, clock, task.period, length)
     values["trial_spread"] = jnp.zeros_like(values["speed"])
     return with_plugins(task, driven, end, observed, values), shown, valid
@@ -122,7 +122,7 @@ def _summary(
 
 def motion_of(task: Task, driven: Drive, end: State, observed: Measures) -> dict[str, Any]:
     """Return measures of any actuator's motion."""
-    length = task.length if driven.length is None else driven.length
+    length = _length(task, driven)
     values = motion(driven.world, driven.start, end, observed, length)
     done = strokes(driven, task.period, len(observed.centre))
     values["speed"], values["stride"] = swimming(observed.centre, done, length)
@@ -144,9 +144,14 @@ def with_plugins(
     return values | {measure.name: measure.of(whole) for measure in task.plugin_measures}
 
 
+def _length(task: Task, driven: Drive) -> Scalar | float:
+    """Return the length of the body that was simulated, in cells."""
+    return task.length if driven.length is None else driven.length
+
+
 def poses_of(task: Task, driven: Drive, observed: Measures) -> Poses:
     """Return the pose stream of a simulation."""
-    length = task.length if driven.length is None else driven.length
+    length = _length(task, driven)
     last = window(strokes(driven, task.period, len(observed.centre)))
     begun, present = centre(driven.world, driven.start), driven.world.present
     return poses(begun, observed.centre, observed.positions, present, last, length)

@@ -5,32 +5,13 @@ from itertools import product
 
 import numpy as np
 import pytest
+from pose_streams import stream
 
 from microcosmos.archive import variety
-from microcosmos.archive.poses import FRAMES, MOMENTS, PoseStream, quantised
+from microcosmos.archive.poses import FRAMES
 
 NOISE = 2e-4
 """Distance of equal motions: poses are in 16 bits, sums in single precision."""
-
-
-def stream(positions, length, edges=None, strokes=2):
-    """A pose stream of positions (frame, node, 2), of a chain unless there are edges."""
-    units, origin, scale = quantised(positions)
-    nodes = np.arange(positions.shape[1])
-    return PoseStream(
-        positions=units,
-        path=np.zeros((MOMENTS, 2), np.float32),
-        origin=origin,
-        scale=scale,
-        edges=np.stack([nodes[:-1], nodes[1:]], 1) if edges is None else np.array(edges),
-        start=0,
-        stop=400,
-        strokes=strokes,
-        steps=400,
-        size=(64, 64),
-        length=length,
-        creature="",
-    )
 
 
 def wave(seed, nodes=25, frames=32):

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from pose_streams import stream
 
-from microcosmos.archive.poses import FRAMES, MOMENTS, PoseStream, quantised
+from microcosmos.archive.poses import FRAMES
 from microcosmos.viz.figures.strips import strip
 
 LENGTH = 5.0
@@ -14,21 +15,7 @@ def swimming(way, strokes=2):
     time = np.arange(1, FRAMES + 1) / FRAMES
     opened = 2 + np.cos(4 * np.pi * time)
     body = np.stack([np.outer(opened, [-1, 0, 1]), np.outer(opened, [0, 1, 0])], 2)
-    units, origin, scale = quantised(body + time[:, None, None] * np.array(way))
-    return PoseStream(
-        positions=units,
-        path=np.zeros((MOMENTS, 2), np.float32),
-        origin=origin,
-        scale=scale,
-        edges=np.array([[0, 1], [1, 2]]),
-        start=0,
-        stop=400,
-        strokes=strokes,
-        steps=400,
-        size=(64, 64),
-        length=LENGTH,
-        creature="",
-    )
+    return stream(body + time[:, None, None] * np.array(way), LENGTH, strokes=strokes)
 
 
 @pytest.mark.parametrize("degrees", [0, 60, 200])

@@ -1,0 +1,23 @@
+// What a rollout observed, for its summary.
+#pragma once
+#include <algorithm>
+
+#include "../src/rollout.h"
+#include "../src/summary.h"
+
+// All but the clock, the scales and the results.
+inline microcosmos::Observed observed(const microcosmos::Rollout& r) {
+  microcosmos::Observed o = {};
+  o.height = r.height, o.width = r.width, o.steps = r.steps, o.nodes = r.nodes;
+  o.edges = r.edges, o.joints = r.joints, o.bodies = r.bodies, o.energetic = r.energetic;
+  std::copy(r.end_populations, r.end_populations + 9, o.populations);
+  o.positions = r.positions, o.angles = r.angles, o.ends = r.ends, o.pairs = r.pairs;
+  o.present = r.present, o.collected = r.end_collected;
+  const bool closed = r.commands != microcosmos::GIVEN;
+  o.rest_angle = closed ? r.rest_angle : r.given_angle;
+  o.rest_length = closed ? r.rest_length : r.given_length;
+  o.centre = r.centre, o.path = r.path, o.speed = r.speed, o.node_speed = r.node_speed;
+  o.held = r.held, o.heading = r.heading, o.power = r.power, o.curvature = r.curvature;
+  o.force = r.force;
+  return o;
+}
