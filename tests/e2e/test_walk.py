@@ -39,6 +39,8 @@ def watch_it_live(page: Page) -> None:
     expect(elites(page)).not_to_have_text("0 elites", timeout=SLOW)
     expect(page.get_by_text(re.compile(r"^\d+ / 12$"))).not_to_have_text("0 / 12", timeout=SLOW)
     expect(page.get_by_text("12 / 12")).to_be_visible(timeout=SLOW)
+    # The page of a finished run is laid out anew, which moves the map.
+    expect(page.get_by_role("button", name="Extend")).to_be_visible(timeout=SLOW)
     expect(page.get_by_role("img", name="QD score over generations")).to_be_visible()
     assert page.evaluate("window.neverReloaded")
 
