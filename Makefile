@@ -113,11 +113,13 @@ bench: peers web
 acceptance: install web
 	PYTHONPATH=tests/support $(BIN)/python tests/faults/acceptance.py $(PARTS)
 
-# Random worlds and bodies under sanitisers: make fuzz WORLDS=300, or SANITISED="g++ -mavx2"
+# Random worlds and bodies under sanitisers, also SANITISERS=thread:
+# make fuzz WORLDS=300, or SANITISED="g++ -mavx2"
 WORLDS ?= 100000
 SANITISED ?= g++
-CHECKS := -std=c++17 -O1 -g -ffp-contract=off -Wno-psabi \
-	-fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all
+SANITISERS ?= address,undefined,float-cast-overflow
+CHECKS = -std=c++17 -O1 -g -pthread -ffp-contract=off -Wno-psabi \
+	-fsanitize=$(SANITISERS) -fno-sanitize-recover=all
 fuzz:
 	@folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && \
 	$(SANITISED) $(CHECKS) engine/kernels/check/worlds.cpp -o $$folder/worlds && \

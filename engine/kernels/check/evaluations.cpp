@@ -37,6 +37,7 @@ struct Evaluation {
     r.height = 24 + random.below(20), r.width = 24 + random.below(20), r.steps = 40;
     r.iterations = 1 + random.below(4), r.sweeps = 5, r.bodies = 1;
     r.layers = 1 + (random.below(4) == 0);
+    r.threads = 1, r.observed = true;
     r.projection = FORCE_AND_TORQUE, r.delta = Delta(random.below(3));
     r.fluid = random.below(8) != 0, r.energetic = random.below(2), r.repelled = random.below(2);
     const bool chain = random.below(3) != 0;
@@ -198,7 +199,6 @@ struct Evaluation {
 
   // Weights over the whole world, which fall with the distance.
   void smooth(Random& random) {
-    r.transformed = random.below(2);
     for (int i = 0; i < 2 * 64; i++) smoothing.push_back(random.between(-1, 1) / float(4 + i % 64));
     r.smoothing_x = r.smoothing_y = smoothing.data();
   }

@@ -1,12 +1,14 @@
 // Random tiny worlds and bodies for sanitisers: whatever the boundary lets pass, at the edges of
 // all sizes, with numbers that are not finite. Every array has its exact size. `worlds N [FIRST]`
 // simulates N of them from number FIRST on, and prints how many ended finite. A world that is not
-// finite at its end, and whose status does not say so, ends the program with status 1.
+// finite at its end, and whose status does not say so, or that several threads simulate with other
+// results than one, ends the program with status 1.
 #include <cfloat>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <string>
 
 #include "../src/step.h"
 #include "observed.h"
@@ -36,7 +38,8 @@ class Fuzzed {
     r.iterations = 1 + random_.below(4), r.sweeps = random_.below(4);
     r.layers = 1 + random_.below(2), r.projection = Projection(random_.below(3));
     r.delta = Delta(random_.below(3)), r.fixed_magic = coin(), r.fluid = !few();
-    r.repelled = coin(), r.energetic = coin(), r.timed = few();
+    r.repelled = coin(), r.energetic = coin();
+    r.observed = true, r.threads = 1;
     if (coin())
       filaments();
     else
@@ -58,6 +61,14 @@ class Fuzzed {
     ISA::World(r).run();
   }
 
+  // Whether several threads give the same results.
+  bool repeated() {
+    const auto before = all_numbers();
+    r.threads = 2 + random_.below(4);
+    ISA::World(r).run();
+    return before == all_numbers();
+  }
+
   // Whether populations and present nodes are finite at the end. Without a fluid, populations stay
   // what they were given as.
   bool finite() const {
@@ -77,7 +88,16 @@ class Fuzzed {
   bool developed_ = false;
   int odds_;  // One number in so many is wild; 0: none.
   std::vector<std::unique_ptr<float[]>> floats_;
+  std::vector<size_t> counts_;
   std::vector<std::unique_ptr<int32_t[]>> ints_;
+
+  // The bytes of all arrays.
+  std::string all_numbers() const {
+    std::string found;
+    for (size_t i = 0; i < counts_.size(); i++)
+      found.append(reinterpret_cast<const char*>(floats_[i].get()), 4 * counts_[i]);
+    return found;
+  }
 
   bool coin() { return random_.below(2); }
   bool few() { return random_.below(8) == 0; }
@@ -101,12 +121,22 @@ class Fuzzed {
 
   float* room(size_t count) {
     floats_.emplace_back(new float[count]());
+    counts_.push_back(count);
     return floats_.back().get();
   }
 
   float* numbers(size_t count, float low, float high) {
     float* found = room(count);
     for (size_t i = 0; i < count; i++) found[i] = tamed(random_.between(low, high));
+    return found;
+  }
+
+  // Weights along an axis of so many cells, for worlds with repulsion: a few, or one for each.
+  float* weights(int cells) {
+    float* found = numbers(r.repelled * 2 * cells, -0.2f, 0.2f);
+    if (r.repelled && coin())
+      for (int i = 0; i < 2 * cells; i++)
+        if (i % cells > 2 && i % cells < cells - 3) found[i] = 0;
     return found;
   }
 
@@ -201,9 +231,8 @@ class Fuzzed {
 
   void surround() {
     const size_t cells = size_t(r.height) * r.width;
-    r.transformed = r.repelled && coin(), r.driven = few(), r.walled = few(), r.damped = few();
-    r.smoothing_x = numbers(r.transformed * 2 * r.height, -0.2f, 0.2f);
-    r.smoothing_y = numbers(r.transformed * 2 * r.width, -0.2f, 0.2f);
+    r.driven = few(), r.walled = few(), r.damped = few();
+    r.smoothing_x = weights(r.height), r.smoothing_y = weights(r.width);
     r.uniform_force = numbers(r.driven * 2, -1e-3f, 1e-3f);
     r.walls = indices(r.walled * cells, 0, 2);
     r.sponge = numbers(r.damped * cells, 0, 1);
@@ -242,6 +271,10 @@ int main(int count, char** arguments) {
     Fuzzed one{uint32_t(number)};
     one.run();
     finite += one.finite();
+    if (!one.repeated()) {
+      std::printf("world %d depends on the number of threads\n", number);
+      return 1;
+    }
     if (!one.reported()) {
       std::printf("world %d does not say that it is not finite\n", number);
       return 1;

@@ -13,19 +13,16 @@
 
 #include "memory.h"
 #include "rollout.h"
+#include "threads.h"
 #include "vectors.h"
 
 namespace microcosmos::ISA {
-
-struct Range {
-  int from = 0, to = 0;
-};
 
 // Pairs of slots (the ends of edges, or the edges of joints) in blocks of 16.
 struct Pairs {
   std::vector<int32_t> first, second;  // Slots; what fills up a block follows the last pair.
   std::vector<int32_t> item;           // Edge or joint of each place; -1: none.
-  std::vector<int32_t> own;            // For edges: their slots.
+  std::vector<int32_t> own;            // Slot of an edge, or of a joint's first edge.
   std::vector<uint8_t> adjacent;       // Of each block: all lists of slots are consecutive.
 
   int places() const { return int(first.size()); }
@@ -34,9 +31,11 @@ struct Pairs {
     first.push_back(one), second.push_back(other), item.push_back(number), own.push_back(slot);
   }
 
-  // Fill up the last block. Arrays have room for a block beyond their last slot.
-  void fill() {
-    while (first.size() % BLOCK) add(first.back() + 1, second.back() + 1, -1, own.back() + 1);
+  // Fill up the last block, with slots before these ends: those beyond may belong to others.
+  void fill(int end, int own_end) {
+    while (first.size() % BLOCK)
+      add(std::min(first.back() + 1, end - 1), std::min(second.back() + 1, end - 1), -1,
+          std::min(own.back() + 1, own_end - 1));
     adjacent.resize(first.size() / BLOCK);
     for (int block = 0; block < int(adjacent.size()); block++) adjacent[block] = consecutive(block);
   }
@@ -76,6 +75,25 @@ struct Piece {
   bool chain = false;
 };
 
+// What one member of a team works on, from bodies to the tiles and filaments of their sweeps.
+struct Share {
+  Range bodies, pieces, nodes, edges, tiles, filaments;  // Nodes and edges: slots.
+};
+
+// One member of a team, whose threads take each part of a step together.
+struct Member {
+  int number;
+  Share share;
+  Team& team;
+
+  void wait() const { team.wait(); }
+  bool first() const { return number == 0; }
+  // Its part of `count` things that need not be those of its share.
+  Range part(int64_t count) const {
+    return {int(count * number / team.size()), int(count * (number + 1) / team.size())};
+  }
+};
+
 struct Bodies {
   std::vector<Piece> pieces;
   std::vector<Range> bodies;  // Slots of nodes.
@@ -85,12 +103,16 @@ struct Bodies {
   Pairs joints;  // In their order.
   // Of sweeps: constraints by tile (bodies that fit a near cache), then colour.
   struct Tile {
+    Range pieces;
     std::vector<Pairs> edge_colours, joint_colours;
   };
   std::vector<Tile> tiles;
   std::vector<int32_t> filaments;  // Pieces that are swept in registers instead.
 
   explicit Bodies(const Rollout& r);
+
+  // Whole bodies for each of `count` members of a team, with about as many nodes.
+  std::vector<Share> shares(const Rollout& r, int count) const;
 
  private:
   void place_nodes(const Rollout& r);
@@ -159,15 +181,17 @@ inline void Bodies::place_edges(const Rollout& r) {
   std::vector<int> edge_at(edge_slots, -1);
   for (int e = 0; e < r.edges; e++) edge_at[edge_slot[e]] = e;
   int one = 0, other = 0;
-  for (int slot = 0; slot < edge_slots; slot++) {
-    const int e = edge_at[slot];
-    one = e < 0 ? one + 1 : node_slot[r.ends[2 * e]];
-    other = e < 0 ? other + 1 : node_slot[r.ends[2 * e + 1]];
-    edges.add(one, other, e, slot);
-  }
+  for (const Piece& piece : pieces)
+    for (int slot = piece.edges.from; slot < piece.edges.to; slot++) {
+      const int e = edge_at[slot], last = piece.nodes.to - 1;
+      one = e < 0 ? std::min(one + 1, last) : node_slot[r.ends[2 * e]];
+      other = e < 0 ? std::min(other + 1, last) : node_slot[r.ends[2 * e + 1]];
+      edges.add(one, other, e, slot);
+    }
   for (int j = 0; j < r.joints; j++)
-    joints.add(edge_slot[r.pairs[2 * j]], edge_slot[r.pairs[2 * j + 1]], j, j);
-  edges.fill(), joints.fill();
+    joints.add(edge_slot[r.pairs[2 * j]], edge_slot[r.pairs[2 * j + 1]], j,
+               edge_slot[r.pairs[2 * j]]);
+  edges.fill(node_slots, edge_slots), joints.fill(edge_slots, edge_slots);
 }
 
 // Whether a piece is a filament short enough for registers, whose colours take turns.
@@ -184,16 +208,17 @@ inline void Bodies::colour(const Rollout& r) {
   if (r.matched) return;
   constexpr int TILE = 512;          // Slots.
   using Found = std::array<int, 5>;  // Colour, slots of the pair, number, own slot.
-  auto coloured = [](std::vector<Pairs>& colours, std::vector<Found>& found) {
+  auto coloured = [](std::vector<Pairs>& colours, std::vector<Found>& found, int end, int own) {
     std::sort(found.begin(), found.end());
     for (auto [colour, one, other, item, slot] : found) {
       if (colour >= int(colours.size())) colours.resize(colour + 1);
       colours[colour].add(one, other, item, slot);
     }
-    for (Pairs& pairs : colours) pairs.fill();
+    for (Pairs& pairs : colours) pairs.fill(end, own);
   };
   for (size_t p = 0; p < pieces.size();) {
     Tile tile;
+    tile.pieces.from = int(p);
     std::vector<Found> edges_found, joints_found;
     const int start = pieces[p].nodes.from;
     do {
@@ -204,14 +229,60 @@ inline void Bodies::colour(const Rollout& r) {
       for (int e : pieces[p].edge_of)
         edges_found.push_back({r.edge_colour[e], node_slot[r.ends[2 * e]],
                                node_slot[r.ends[2 * e + 1]], e, edge_slot[e]});
-      for (int j : pieces[p].joint_of)
-        joints_found.push_back(
-            {r.joint_colour[j], edge_slot[r.pairs[2 * j]], edge_slot[r.pairs[2 * j + 1]], j, j});
+      for (int j : pieces[p].joint_of) {
+        const int one = edge_slot[r.pairs[2 * j]], other = edge_slot[r.pairs[2 * j + 1]];
+        joints_found.push_back({r.joint_colour[j], one, other, j, one});
+      }
     } while (++p < pieces.size() && pieces[p].nodes.to - start <= TILE);
-    coloured(tile.edge_colours, edges_found);
-    coloured(tile.joint_colours, joints_found);
+    const Piece& last = pieces[p - 1];
+    coloured(tile.edge_colours, edges_found, last.nodes.to, last.edges.to);
+    coloured(tile.joint_colours, joints_found, last.edges.to, last.edges.to);
+    tile.pieces.to = int(p);
     if (!tile.edge_colours.empty()) tiles.push_back(std::move(tile));
   }
+}
+
+// Whether no edge and no joint joins two bodies.
+inline bool apart(const Rollout& r) {
+  auto of = [&](int edge, int end) { return r.member[r.ends[2 * edge + end]]; };
+  bool found = true;
+  for (int e = 0; e < r.edges; e++) found = found && of(e, 0) == of(e, 1);
+  for (int j = 0; j < r.joints; j++)
+    found = found && of(r.pairs[2 * j], 0) == of(r.pairs[2 * j + 1], 0);
+  return found;
+}
+
+inline std::vector<Share> Bodies::shares(const Rollout& r, int count) const {
+  // A share begins with a body and does not cut a tile.
+  auto body = [&](int piece) { return r.member[pieces[piece].node_of[0]]; };
+  std::vector<uint8_t> begins(pieces.size(), apart(r));
+  for (size_t p = 1; p < pieces.size(); p++) begins[p] = begins[p] && body(p) != body(p - 1);
+  for (const Tile& tile : tiles)
+    for (int p = tile.pieces.from + 1; p < tile.pieces.to; p++) begins[p] = 0;
+  std::vector<Share> found(count);
+  const int end = int(pieces.size());
+  for (int n = 0, piece = 0, tile = 0, filament = 0; n < count; n++) {
+    Share& s = found[n];
+    s.pieces.from = piece, s.tiles.from = tile, s.filaments.from = filament;
+    const int64_t goal = int64_t(node_slots) * (n + 1) / count;
+    while (piece < end && (piece == s.pieces.from || n + 1 == count || !begins[piece] ||
+                           pieces[piece].nodes.from < goal))
+      piece++;
+    while (tile < int(tiles.size()) && tiles[tile].pieces.from < piece) tile++;
+    while (filament < int(filaments.size()) && filaments[filament] < piece) filament++;
+    s.pieces.to = piece, s.tiles.to = tile, s.filaments.to = filament;
+    const bool some = piece > s.pieces.from;
+    s.nodes.from = some ? pieces[s.pieces.from].nodes.from : node_slots;
+    s.edges.from = some ? pieces[s.pieces.from].edges.from : edge_slots;
+    s.bodies.from = !some ? r.bodies : n == 0 ? 0 : body(s.pieces.from);
+  }
+  for (int n = 0; n < count; n++) {
+    const bool last = n + 1 == count;
+    found[n].nodes.to = last ? node_slots : found[n + 1].nodes.from;
+    found[n].edges.to = last ? edge_slots : found[n + 1].edges.from;
+    found[n].bodies.to = last ? r.bodies : found[n + 1].bodies.from;
+  }
+  return found;
 }
 
 }  // namespace microcosmos::ISA

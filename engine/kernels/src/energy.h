@@ -17,28 +17,41 @@ class Energy {
     for (int x = 0; x < l.height; x++)
       std::memcpy(field_ + x * l.wide, r.energy + size_t(x) * l.width, 4 * size_t(l.width));
     std::memcpy(collected, r.collected, 4 * size_t(r.nodes));
-    continue_rows(l);
+    for (const Band& band : l.bands) continue_rows(l, band);
   }
 
   // Read the energy at the nodes, whose windows are those of points in one layer.
-  void sense(const Points& p) {
-    for (int n = 0; n < r_.nodes; n++)
+  void sense(const Points& p, const Member& me) {
+    me.wait();
+    const Range nodes = me.part(r_.nodes);
+    for (int n = nodes.from; n < nodes.to; n++)
       sensed[n] = r_.present[n] ? at(p, field_, b_.node_slot[n]) : 0;
   }
 
   // Take energy at the points, then let the rest spread. The coverage of cells by points is known.
-  void collect(const Points& p, Lattice& l) {
+  void collect(const Points& p, Lattice& l, const Member& me) {
+    const Band& band = l.bands[me.number];
     const bool consumed = r_.parameters[ENERGY_RATE] > 0, spreads = r_.parameters[DIFFUSION] > 0;
-    if (consumed) consume(l);
-    for (int n = 0; n < r_.nodes; n++) {
+    if (consumed) {
+      consume(l, band);
+      me.wait();
+    }
+    const Range nodes = me.part(r_.nodes);
+    for (int n = nodes.from; n < nodes.to; n++) {
       if (!r_.present[n]) continue;
       float found = 0;
       for (int layer = 0; layer < r_.layers; layer++)
         found += at(p, consumed ? taken_ : field_, layer * b_.node_slots + b_.node_slot[n]);
       collected[n] = collected[n] + found / float(r_.layers);
     }
-    if (spreads) diffuse(l);
-    if (consumed || spreads) continue_rows(l);
+    me.wait();
+    if (spreads) {
+      diffuse(l, band);
+      me.wait();
+      if (me.first()) std::swap(field_, next_);
+      me.wait();
+    }
+    if (consumed || spreads) continue_rows(l, band);
   }
 
   void end(const Lattice& l) const {
@@ -58,29 +71,29 @@ class Energy {
   }
 
   // Windows that cross the edge of a row continue beyond it.
-  void continue_rows(const Lattice& l) {
-    for (int x = 0; x < l.height; x++)
+  void continue_rows(const Lattice& l, const Band& band) {
+    for (int x = band.from; x < band.to; x++)
       for (int i = 0; i < 3; i++) field_[x * l.wide + l.width + i] = field_[x * l.wide + i];
   }
 
   // Remove what nodes take, which together is at most all of a cell.
-  void consume(Lattice& l) {
+  void consume(Lattice& l, const Band& band) {
     const float rate = r_.parameters[ENERGY_RATE], share = 1.0f / float(r_.layers);
-    each_touched(l, [&](int o) __attribute__((always_inline)) {
+    each_touched(band, [&](int o) __attribute__((always_inline)) {
       const Vec field = load(field_ + o), covered = share * load(l.coverage + o);
       const Vec taken = rate / most(all(1), rate * covered);
       store(taken_ + o, field * taken), store(field_ + o, field * (1.0f - taken * covered));
     });
-    for (int n = 0; n < l.beyond_rows; n++) {
-      float* row = taken_ + l.wide * l.beyond[n];
+    for (int n = 0; n < band.beyond_rows; n++) {
+      float* row = taken_ + l.wide * band.beyond[n];
       for (int i = 0; i < 3; i++) row[l.width + i] = row[i];
     }
   }
 
-  void diffuse(const Lattice& l) {
+  void diffuse(const Lattice& l, const Band& band) {
     const float diffusion = r_.parameters[DIFFUSION];
     const int W = l.width, H = l.height;
-    for (int x = 0; x < H; x++) {
+    for (int x = band.from; x < band.to; x++) {
       const float* row = field_ + size_t(x) * l.wide;
       const float* above = field_ + size_t(x ? x - 1 : H - 1) * l.wide;
       const float* below = field_ + size_t(x + 1 < H ? x + 1 : 0) * l.wide;
@@ -92,7 +105,6 @@ class Energy {
       step(0, W - 1, 1), step(W - 1, W - 2, 0);
       for (int y = 1; y < W - 1; y++) step(y, y - 1, y + 1);
     }
-    std::swap(field_, next_);
   }
 
   const Bodies& b_;

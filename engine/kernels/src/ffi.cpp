@@ -61,12 +61,13 @@ std::string read_world(Rollout& r, Numbers number) {
   r.projection = microcosmos::Projection(number("projection"));
   r.delta = microcosmos::Delta(number("delta"));
   r.fixed_magic = number("magic");
-  r.fluid = number("fluid"), r.repelled = number("repelled"), r.energetic = number("energetic"),
-  r.transformed = number("transformed");
+  r.fluid = number("fluid"), r.repelled = number("repelled"), r.energetic = number("energetic");
   r.driven = number("driven"), r.walled = number("walled"), r.damped = number("damped"),
-  r.timed = number("timed");
+  r.observed = number("observed"), r.timed = number("timed"), r.threads = number("threads");
   if (!number.error.empty()) return number.error;
   if (r.height < 4 || r.width < 4) return "a world has at least 4 cells along each axis";
+  if (r.threads < 1 || r.threads > 1024) return "there is at least one thread, and at most 1024";
+  if (!r.observed && r.commands != microcosmos::GIVEN) return "what is commanded is observed";
   if (r.iterations < 1 || r.layers < 1 || r.layers > 2 || r.sweeps < 0)
     return "iterations, sweeps or layers";
   if (r.delta < 0 || r.delta > microcosmos::HAT) return "there is no such delta";
@@ -110,9 +111,10 @@ void name_controller(Arrays& a, Rollout& r) {
 
 // Name the arrays of a rollout.
 void name_rollout(Arrays& a, Rollout& r) {
-  const int64_t H = r.height, W = r.width, N = r.nodes, E = r.edges, J = r.joints, T = r.steps;
+  const int64_t H = r.height, W = r.width, N = r.nodes, E = r.edges, J = r.joints;
   const bool closed = r.commands != microcosmos::GIVEN, energetic = r.energetic;
-  const int64_t swept = !r.matched, given = when(!closed, T), B = r.bodies;
+  const int64_t T = when(r.observed, r.steps), given = when(!closed, r.observed ? T : 1);
+  const int64_t swept = !r.matched, B = r.bodies;
   for (int i = 0; i < 9; i++) a.in("a plane", &r.populations[i], {H, W});
   name_body(a, r);
   a.in("colours of edges", &r.edge_colour, {swept * E});
@@ -121,8 +123,8 @@ void name_rollout(Arrays& a, Rollout& r) {
   a.in("parameters", &r.parameters, {microcosmos::STEP_LENGTHS + r.iterations});
   a.in("energy", &r.energy, {when(energetic, H), W});
   a.in("collected", &r.collected, {when(energetic, N)});
-  a.in("smoothing across rows", &r.smoothing_x, {when(r.transformed, 2), H});
-  a.in("smoothing along rows", &r.smoothing_y, {when(r.transformed, 2), W});
+  a.in("smoothing across rows", &r.smoothing_x, {when(r.repelled, 2), H});
+  a.in("smoothing along rows", &r.smoothing_y, {when(r.repelled, 2), W});
   a.in("uniform force", &r.uniform_force, {when(r.driven, 2)});
   a.in("walls", &r.walls, {when(r.walled, H), W});
   a.in("strength of the sponge", &r.sponge, {when(r.damped, H), W});

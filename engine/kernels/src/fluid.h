@@ -1,38 +1,55 @@
 // The fluid: D2Q9 with two relaxation times and Guo's forcing, collided and streamed in place.
 #pragma once
+#include <vector>
+
 #include "memory.h"
 #include "vectors.h"
 
 namespace microcosmos::ISA {
+
+// Rows of cells that one member of a team works on, and which of them bodies touch.
+struct Band {
+  int from, to;                  // Rows.
+  Array<int32_t> block, beyond;  // Touched blocks; rows whose windows continue beyond the edge.
+  int touched_blocks = 0, beyond_rows = 0;
+  std::vector<int32_t> points;  // Points whose windows reach these rows, in their order.
+  Floats next_row, last_row;    // Populations on their way to the band after, and before.
+  float fastest = 0;            // Square of the largest speed.
+
+  Band(int from, int to, int blocks) : from(from), to(to) {
+    const size_t rows = to - from, row = size_t(blocks) * BLOCK;
+    block = Array<int32_t>(rows * blocks), beyond = Array<int32_t>(rows);
+    next_row = Floats(3 * row + 64), last_row = Floats(3 * row + 64);
+  }
+};
 
 // Planes of populations, of velocities and of forces, and the blocks that bodies touch.
 struct Lattice {
   int height, width, blocks;  // Blocks in a row.
   size_t row, plane;          // Floats from a row, and from a plane, to the next.
   size_t wide;                // The same for rows that continue beyond the edge.
-  Floats populations, next_row, last_row;
+  Floats populations;
   Floats velocity, force;        // Pairs (x, y).
   Floats volume, coverage;       // 1 / density; nodes over a cell.
   Array<uint8_t> touched;        // (row, block)
   Array<uint8_t> crossing;       // Rows whose windows continue beyond the edge.
-  Array<int32_t> block, beyond;  // Touched blocks; rows of `crossing`.
-  int touched_blocks = 0, beyond_rows = 0;
+  std::vector<Band> bands;       // Together all rows.
   float push_x = 0, push_y = 0;  // The uniform force.
 
-  Lattice(int height, int width)
+  Lattice(int height, int width, int parts)
       : height(height), width(width), blocks((width + BLOCK - 1) / BLOCK) {
     row = size_t(blocks) * BLOCK;
     plane = row * height + 48;  // Planes must not meet in the same lines of a cache.
     wide = row + BLOCK;
     populations = Floats(9 * plane);
-    next_row = Floats(3 * row + 64);
-    last_row = Floats(3 * row + 64);
     const size_t cells = (height + 1) * wide;
     velocity = Floats(2 * cells), force = Floats(2 * cells);
     volume = Floats(cells), coverage = Floats(cells);
     touched = Array<uint8_t>(size_t(height) * blocks);
     crossing = Array<uint8_t>(height);
-    block = Array<int32_t>(size_t(height) * blocks), beyond = Array<int32_t>(height);
+    bands.reserve(parts);
+    for (int64_t n = 0; n < parts; n++)
+      bands.emplace_back(int(height * n / parts), int(height * (n + 1) / parts), blocks);
   }
 };
 
@@ -86,25 +103,27 @@ INLINE Vec collide(Vec* f, Vec fx, Vec fy, const Rates& k) {
   return square;
 }
 
-// Collide and stream in place, a row at a time: what goes to the next row waits until that has
-// been read, what goes to the row before is written at once. Return the largest speed before.
-// With DRIVEN, the uniform force acts on every cell.
+// Collide and stream the rows of a band in place, one at a time: what goes to the next row waits
+// until that has been read, what goes to the row before is written at once. What leaves the band
+// waits for `join`. With DRIVEN, the uniform force acts on every cell.
 template <bool FILLED, bool DRIVEN>
-__attribute__((noinline)) float advance(Lattice& l, const Rates& k) {
-  const size_t P = l.plane, S = l.row, W = l.width, H = l.height;
+__attribute__((noinline)) void advance(Lattice& l, Band& band, const Rates& k) {
+  const size_t P = l.plane, S = l.row, W = l.width;
   const size_t end = (W - 1) / LANES * LANES,
                last = W - 1 - end;  // The last vector and its last lane.
-  float *const t1 = l.next_row, *const t5 = t1 + S, *const t7 = t5 + S;
+  float *const t1 = band.next_row, *const t5 = t1 + S, *const t7 = t5 + S;
   Ints inside;
   for (int i = 0; i < LANES; i++) inside[i] = end + i < W ? -1 : 0;
   const Vec push_x = all(l.push_x), push_y = all(l.push_y);
   Vec fastest = {};
-  for (size_t x = 0; x < H; x++) {
+  const size_t first_row = band.from, end_row = band.to;
+  for (size_t x = first_row; x < end_row; x++) {
     float* const r = l.populations + x * S;
-    // Directions 2, 6 and 8 go to the row before; from the first row they wait for the last.
-    float *const u2 = x ? r - S + 2 * P : l.last_row, *const u6 =
-                                                          x ? r - S + 6 * P : l.last_row + S;
-    float* const u8 = x ? r - S + 8 * P : l.last_row + 2 * S;
+    // Directions 2, 6 and 8 go to the row before.
+    const bool leaves = x == first_row;
+    float* const u2 = leaves ? band.last_row : r - S + 2 * P;
+    float* const u6 = leaves ? band.last_row + S : r - S + 6 * P;
+    float* const u8 = leaves ? band.last_row + 2 * S : r - S + 8 * P;
     const float* const g = l.force + 2 * x * l.wide;
     const uint8_t* const touched = l.touched + x * l.blocks;
     Vec first[9],
@@ -121,7 +140,7 @@ __attribute__((noinline)) float advance(Lattice& l, const Rates& k) {
         square = collide<true>(f, fx, fy, k);
       } else
         square = collide<DRIVEN>(f, push_x, push_y, k);
-      fastest = most(fastest, square);
+      fastest = most(square, fastest);  // What is no number counts for nothing.
       store(r + y, f[0]);
       store(u2 + y, f[2]);
       store(r + P + y, load(t1 + y)), store(t1 + y, f[1]);
@@ -147,21 +166,27 @@ __attribute__((noinline)) float advance(Lattice& l, const Rates& k) {
       r[3 * P] = before[3][last], t5[0] = before[5][last], u8[0] = before[8][last];
     }
   }
-  float *const top = l.populations, *const bottom = top + (H - 1) * S;
-  const int down[] = {1, 5, 7}, up[] = {2, 6, 8};
-  for (int i = 0; i < 3; i++) {
-    std::memcpy(top + down[i] * P, l.next_row + i * S, 4 * S);
-    std::memcpy(bottom + up[i] * P, l.last_row + i * S, 4 * S);
-  }
   Most found;
   found.add(0, fastest);
-  return root(found.total() + 1e-24f);
+  band.fastest = found.total();
 }
 
-// Velocity and 1 / density in the touched blocks, continued beyond the edge.
-inline __attribute__((noinline)) void moments(Lattice& l) {
-  for (int n = 0; n < l.touched_blocks; n++)
-    for (int o = l.block[n], end = o + BLOCK; o < end; o += LANES) {
+// Take what has streamed into a band from those beside it.
+inline void join(Lattice& l, const Band& before, const Band& band, const Band& after) {
+  const size_t P = l.plane, S = l.row;
+  float *const top = l.populations + band.from * S, *const bottom =
+                                                        l.populations + (band.to - 1) * S;
+  const int down[] = {1, 5, 7}, up[] = {2, 6, 8};
+  for (int i = 0; i < 3; i++) {
+    std::memcpy(top + down[i] * P, before.next_row + i * S, 4 * S);
+    std::memcpy(bottom + up[i] * P, after.last_row + i * S, 4 * S);
+  }
+}
+
+// Velocity and 1 / density in the touched blocks of a band, continued beyond the edge.
+inline __attribute__((noinline)) void moments(Lattice& l, const Band& band) {
+  for (int n = 0; n < band.touched_blocks; n++)
+    for (int o = band.block[n], end = o + BLOCK; o < end; o += LANES) {
       const size_t x = o / l.wide, y = o % l.wide;
       const float* r = l.populations + x * l.row + y;
       Vec f[9];
@@ -175,8 +200,9 @@ inline __attribute__((noinline)) void moments(Lattice& l) {
       store(l.velocity + 2 * size_t(o) + LANES, zip_high(ux, uy));
       store(l.volume + o, volume);
     }
-  for (int n = 0; n < l.beyond_rows; n++) {
-    float *u = l.velocity + 2 * l.wide * l.beyond[n], *v = l.volume + l.wide * l.beyond[n];
+  for (int n = 0; n < band.beyond_rows; n++) {
+    float* u = l.velocity + 2 * l.wide * band.beyond[n];
+    float* v = l.volume + l.wide * band.beyond[n];
     for (int i = 0; i < 6; i++) u[2 * l.width + i] = u[i];
     for (int i = 0; i < 3; i++) v[l.width + i] = v[i];
   }

@@ -14,32 +14,35 @@ struct Forcing {
   Floats beta;
   Floats held;  // Of each body: 1 where the limit acted.
 
-  Forcing(const Points& p, int bodies) {
+  Forcing(const Points& p, int bodies) : frames_(bodies) {
     for (Floats* one :
          {&velocity_x, &velocity_y, &target_x, &target_y, &x, &y, &beta, &reached_x_, &reached_y_})
       *one = Floats(p.slots + BLOCK);
     held = Floats(bodies);
   }
 
-  void find(const Bodies& b, Points& p, Lattice& l, const Rollout& r) {
+  void find(const Bodies& b, Points& p, Lattice& l, const Rollout& r, const Member& me) {
     const float limit = r.parameters[FORCE_LIMIT], *lengths = r.parameters + STEP_LENGTHS;
-    cover(p, l);
-    relaxation(p, l, beta);
-    std::vector<Frame>& frames = frames_;
-    frames.resize(b.bodies.size());
-    for (size_t n = 0; n < frames.size(); n++) frames[n] = frame(b, b.bodies[n], p, r);
-    each(0, p.slots, [&](int i, int) __attribute__((always_inline)) {
+    cover(p, l, me);
+    me.wait();
+    relaxation(p, l, beta, me);
+    const Range bodies = me.share.bodies;
+    for (int body = bodies.from; body < bodies.to; body++)
+      frames_[body] = frame(b, b.bodies[body], p, r);
+    each_point(b, me.share.nodes, r, [&](int i, int) __attribute__((always_inline)) {
       for (float* one : {x + i, y + i, reached_x_ + i, reached_y_ + i}) store(one, Vec{});
     });
     for (int n = 0; n < r.iterations; n++) {
       if (n) {
-        spread(p, l, x, y);
-        interpolate<true>(p, l, l.force, reached_x_, reached_y_);
+        me.wait();
+        spread(p, l, x, y, me);
+        me.wait();
+        interpolate<true>(p, l, l.force, reached_x_, reached_y_, me);
       }
-      for (size_t body = 0; body < frames.size(); body++)
-        improve(b, b.bodies[body], frames[body], p, r, lengths[n]);
+      for (int body = bodies.from; body < bodies.to; body++)
+        improve(b, b.bodies[body], frames_[body], p, r, lengths[n]);
     }
-    for (size_t body = 0; body < frames.size(); body++) {
+    for (int body = bodies.from; body < bodies.to; body++) {
       Most largest;
       each_point(b, b.bodies[body], r, [&](int i, int part) __attribute__((always_inline)) {
         const Vec fx = load(x + i), fy = load(y + i);

@@ -20,8 +20,8 @@ struct Nodes {
 };
 
 // Move edge angles to those of the geometry, on the nearest branch, by the share `feedback`.
-inline void follow_geometry(const Bodies& b, Nodes& n, float feedback) {
-  each(0, b.edge_slots, [&](int i, int) __attribute__((always_inline)) {
+inline void follow_geometry(const Bodies& b, Nodes& n, float feedback, Range edges) {
+  each(edges.from, edges.to, [&](int i, int) __attribute__((always_inline)) {
     const bool adjacent = b.edges.adjacent[i / BLOCK];
     const int32_t *one = &b.edges.first[i], *other = &b.edges.second[i];
     const Vec vx = gather(n.new_x, other, adjacent) - gather(n.new_x, one, adjacent);

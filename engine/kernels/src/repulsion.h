@@ -1,8 +1,8 @@
-// Repulsion between nodes, down the gradient of their density, as in `world.nodes` and
-// `fields.steric`: smoothed by binomial weights, or by a Fourier transform.
+// Repulsion between nodes, down the gradient of their smoothed density, as in `world.nodes` and
+// `fields.steric`.
 #pragma once
+#include "density.h"
 #include "nodes.h"
-#include "transformed.h"
 
 namespace microcosmos::ISA {
 
@@ -11,108 +11,46 @@ class Repulsion {
   Floats push_x, push_y;    // Displacements within bodies, without their rigid motion.
   Floats drift_x, drift_y;  // Rigid motion of bodies that touch each other.
 
-  Repulsion(const Bodies& b, const Rollout& r) : b_(b), r_(r), transformed_(r) {
+  Repulsion(const Bodies& b, const Rollout& r, const std::vector<Share>& shares)
+      : b_(b), r_(r), density_(r, int(shares.size())) {
     for (Floats* one : {&push_x, &push_y, &drift_x, &drift_y}) *one = Floats(b.node_slots + BLOCK);
     if (!r.repelled) return;
-    wide_ = size_t(r.width) + 2 * MARGIN;
-    density_ = Floats(r.height * wide_ + BLOCK);
-    for (int n = 0; n < r.nodes; n++)
-      if (r.present[n]) order_.push_back(b.node_slot[n]);
+    for (const Share& share : shares) {
+      const int from = int(order_.size());
+      for (int p = share.pieces.from; p < share.pieces.to; p++)
+        for (int node : b.pieces[p].node_of)
+          if (r.present[node]) order_.push_back(b.node_slot[node]);
+      parts_.push_back({from, int(order_.size())});
+    }
     places_.resize(order_.size());
   }
 
-  void find(const Nodes& n) {
-    place(n);
-    if (r_.transformed) {
-      transformed_.deposit(places_);
-      for (size_t i = 0; i < order_.size(); i++) read_transformed(order_[i], places_[i]);
-    } else {
-      for (const Place& p : places_)
-        each_cell(p, [](float* at, float weight) { *at = *at + weight; });
-      for (size_t i = 0; i < order_.size(); i++) read(order_[i], places_[i]);
-      for (const Place& p : places_) each_cell(p, [](float* at, float) { *at = 0; });
+  void find(const Nodes& n, const Member& me) {
+    const Range mine = parts_[me.number];
+    for (int i = mine.from; i < mine.to; i++)
+      places_[i] = density_.place(n.x[order_[i]], n.y[order_[i]]);
+    me.wait();
+    density_.deposit(places_, me);
+    me.wait();
+    density_.differentiate(me);
+    me.wait();
+    const float strength = -r_.parameters[REPULSION];
+    for (int i = mine.from; i < mine.to; i++) {
+      float gx, gy;
+      density_.read(places_[i], gx, gy);
+      push_x[order_[i]] = strength * gx, push_y[order_[i]] = strength * gy;
     }
-    for (const Range& body : b_.bodies) divide(body, n);
+    for (int body = me.share.bodies.from; body < me.share.bodies.to; body++)
+      divide(b_.bodies[body], n);
   }
 
  private:
-  static constexpr int MARGIN = 4;
-  // Binomial weights, and half the difference of those a cell behind and a cell ahead.
-  static constexpr float SMOOTH[9] = {0,         0,         1.0f / 16, 4.0f / 16, 6.0f / 16,
-                                      4.0f / 16, 1.0f / 16, 0,         0};
-  static constexpr float SLOPE[9] = {0,         -1.0f / 32, -4.0f / 32, -5.0f / 32, 0,
-                                     5.0f / 32, 4.0f / 32,  1.0f / 32,  0};
   struct Rigid {
     float x, y, spin;
   };
   struct Frame {
     float nodes, x, y, inertia;
   };
-
-  static int cell(float position, int size, float& share) {
-    constexpr float FAR = 4194304;  // Positions that are not finite stay within the box.
-    const float x = position > -FAR ? (position < FAR ? position : FAR) : -FAR;
-    int first = int(x);
-    first -= float(first) > x;
-    share = x - float(first);
-    first %= size;
-    return first < 0 ? first + size : first;
-  }
-
-  void place(const Nodes& n) {
-    for (size_t i = 0; i < order_.size(); i++) {
-      Place& p = places_[i];
-      p.x = cell(n.x[order_[i]], r_.height, p.dx), p.y = cell(n.y[order_[i]], r_.width, p.dy);
-    }
-  }
-
-  // The four cells around a node; columns near an edge also stand beyond the other.
-  template <class Work>
-  INLINE void each_cell(const Place& p, Work work) {
-    for (int i = 0; i < 2; i++) {
-      const int x = p.x + i < r_.height ? p.x + i : 0;
-      for (int j = 0; j < 2; j++) {
-        const int y = p.y + j < r_.width ? p.y + j : 0;
-        const float weight = (i ? p.dx : 1 - p.dx) * (j ? p.dy : 1 - p.dy);
-        float* at = density_ + x * wide_ + MARGIN + y;
-        work(at, weight);
-        if (y < MARGIN) work(at + r_.width, weight);
-        if (y >= r_.width - MARGIN) work(at - r_.width, weight);
-      }
-    }
-  }
-
-  // The displacement of a node. Interpolating the weighted sums at the four cells around it takes
-  // weights over 8 x 8 cells, products of those along both axes.
-  void read(int slot, const Place& p) {
-    auto between = [](const float* weights, float share) {
-      return (1.0f - share) * load<Vec8>(weights + 1) + share * load<Vec8>(weights);
-    };
-    const Vec8 smooth_x = between(SMOOTH, p.dx), slope_x = between(SLOPE, p.dx);
-    const Vec8 smooth_y = between(SMOOTH, p.dy), slope_y = between(SLOPE, p.dy);
-    Vec8 gx = {}, gy = {};
-    for (int i = 0; i < 8; i++) {
-      int x = p.x - 3 + i;
-      x = x < 0 ? x + r_.height : x >= r_.height ? x - r_.height : x;
-      const Vec8 row = load<Vec8>(density_ + x * wide_ + MARGIN + p.y - 3);
-      gx = gx + slope_x[i] * (row * smooth_y), gy = gy + smooth_x[i] * (row * slope_y);
-    }
-    const float strength = -r_.parameters[REPULSION];
-    push_x[slot] = strength * total(gx), push_y[slot] = strength * total(gy);
-  }
-
-  void read_transformed(int slot, const Place& p) {
-    float gx, gy;
-    transformed_.read(p, gx, gy);
-    const float strength = -r_.parameters[REPULSION];
-    push_x[slot] = strength * gx, push_y[slot] = strength * gy;
-  }
-
-  static float total(Vec8 v) {
-    const Vec4 t =
-        __builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 4, 5, 6, 7);
-    return (t[0] + t[2]) + (t[1] + t[3]);
-  }
 
   // Divide the displacements of a body into those within it and its rigid motion.
   void divide(Range body, const Nodes& n) {
@@ -205,10 +143,9 @@ class Repulsion {
 
   const Bodies& b_;
   const Rollout& r_;
-  Transformed transformed_;
-  size_t wide_ = 0;
-  Floats density_;
-  std::vector<int> order_;
+  Density density_;
+  std::vector<int32_t> order_;  // Slots of nodes that have grown, and the part of each share.
+  std::vector<Range> parts_;
   std::vector<Place> places_;
 };
 

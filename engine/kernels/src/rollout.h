@@ -45,18 +45,19 @@ struct Rollout {
   // The world, (height, width) cells; nodes, edges and joints of all bodies.
   int32_t height, width, steps, nodes, edges, joints, bodies;
   int32_t iterations, sweeps, layers;
+  int32_t threads;  // At most; results do not depend on them.
   Projection projection;
   Delta delta;
   bool fixed_magic;  // Lambda = 3/16 at every viscosity; otherwise capped.
   bool fluid;        // Without a fluid, only constraints move bodies.
   bool repelled;     // Nodes repel each other.
-  bool transformed;  // A Fourier transform smooths their density; otherwise binomial weights.
   bool energetic;    // There is energy.
   bool driven;       // A uniform force acts on the fluid.
   bool walled;       // There are walls.
   bool damped;       // There is a sponge.
   bool matched;      // Shape matching; otherwise sweeps.
   bool laid_out;     // There is a layout.
+  bool observed;     // Otherwise one rest shape is for all steps, and nothing is recorded of them.
   bool timed;        // Take the time of each part.
 
   const float* parameters;
@@ -66,7 +67,7 @@ struct Rollout {
   const float* energy;          // (height, width)
   const float* collected;       // (node)
 
-  // Weights of the transform along each axis: of smoothing, then of the slope.
+  // Weights along each axis that smooth the density of nodes: of smoothing, then of the slope.
   const float* smoothing_x;  // (2, height)
   const float* smoothing_y;  // (2, width)
 

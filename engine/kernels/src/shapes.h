@@ -28,9 +28,12 @@ class Shapes {
       if (!b.pieces[p].chain) transpose(b.pieces[p], factors_ + starts_[p]);
   }
 
-  // Lay out the nodes of all pieces.
+  // Lay out the nodes of all pieces, or of some.
   void lay_out(const float* rest_angle, const float* rest_length) {
-    for (size_t p = 0; p < b_.pieces.size(); p++) {
+    lay_out(rest_angle, rest_length, {0, int(b_.pieces.size())});
+  }
+  void lay_out(const float* rest_angle, const float* rest_length, Range pieces) {
+    for (int p = pieces.from; p < pieces.to; p++) {
       turn(p, rest_angle);
       place(p, rest_length);
     }

@@ -15,9 +15,9 @@ namespace microcosmos::ISA {
 // Adds the time since the last call to a part, if times are taken.
 class Stopwatch {
  public:
-  explicit Stopwatch(float* seconds) : seconds_(seconds) {
-    if (seconds_) last_ = Clock::now();
-  }
+  explicit Stopwatch(float* seconds) : seconds_(seconds) {}
+  // Start again, without counting the time until now.
+  void start() { last_ = Clock::now(); }
   INLINE void stop(Part part) {
     if (__builtin_expect(seconds_ != nullptr, 0)) {
       const auto now = Clock::now();
@@ -35,135 +35,170 @@ class Stopwatch {
 class World {
  public:
   explicit World(const Rollout& r)
-      : r_(r),
+      : team_(std::min(r.threads, r.height)),  // Each member has rows.
+        r_(r),
         b_(r),
-        l_(r.height, r.width),
+        shares_(b_.shares(r, team_.size())),
+        l_(r.height, r.width, team_.size()),
+        rates_(r.parameters[VISCOSITY], r.fixed_magic),
         surroundings_(r, l_),
-        p_(b_, r, r.layers),
-        at_nodes_(b_, r, 1),
+        p_(b_, r, shares_, r.layers),
+        at_nodes_(b_, r, shares_, 1),
         n_(b_, r),
         forcing_(p_, r.bodies),
         shapes_(b_, r),
         sweeps_(b_, r),
         controller_(r),
         actuators_(b_, r, n_),
-        repulsion_(b_, r),
+        repulsion_(b_, r, shares_),
         energy_(b_, r, l_),
         motion_(b_),
-        measuring_(b_, r) {
+        measuring_(b_, r),
+        watch_(r.timed ? r.seconds : nullptr) {
     if (r.layers == 2)
       normals_x_ = Floats(b_.node_slots + BLOCK), normals_y_ = Floats(b_.node_slots + BLOCK);
   }
 
   void run() {
-    Stopwatch watch(r_.timed ? r_.seconds : nullptr);
-    begin();
-    const bool closed = r_.commands != GIVEN;
-    const Rates rates(r_.parameters[VISCOSITY], r_.fixed_magic);
-    const auto flow = chosen_flow();
-    for (int t = 0; t < r_.steps; t++) {
-      const float* rest_angle = (closed ? r_.rest_angle : r_.given_angle) + size_t(t) * r_.joints;
-      const float* rest_length = (closed ? r_.rest_length : r_.given_length) + size_t(t) * r_.edges;
-      if (closed) {
-        command(t);
-        watch.stop(CONTROL);
-      }
-      if (r_.repelled) repulsion_.find(n_);
-      place_points();
-      if (r_.fluid || r_.energetic) find_windows(p_, l_, WEIGHTS[r_.delta]);
-      watch.stop(WINDOWS);
-      if (!r_.fluid) {
-        move(rest_angle, rest_length);
-        watch.stop(CONSTRAINTS);
-        if (r_.energetic) cover(p_, l_), energy_.collect(p_, l_);
-        carry();
-        measuring_.record(t, n_, forcing_, motion_);
-        r_.speed[t] = 0;
-        watch.stop(MEASURES);
-        continue;
-      }
-      moments(l_);
-      watch.stop(MOMENTS);
-      interpolate<false>(p_, l_, l_.velocity, forcing_.velocity_x, forcing_.velocity_y);
-      watch.stop(INTERPOLATION);
-      move(rest_angle, rest_length);
-      watch.stop(CONSTRAINTS);
-      forcing_.find(b_, p_, l_, r_);
-      watch.stop(FORCING);
-      spread(p_, l_, forcing_.x, forcing_.y);
-      watch.stop(SPREADING);
-      if (r_.energetic) energy_.collect(p_, l_);
-      carry();
-      measuring_.record(t, n_, forcing_, motion_);
-      watch.stop(MEASURES);
-      r_.speed[t] = flow(l_, rates);
-      surroundings_.act(l_);
-      watch.stop(FLUID);
-    }
-    end();
+    team_.run([](void* world, int member) { static_cast<World*>(world)->run(member); }, this);
   }
 
  private:
-  void begin() {
+  void run(int number) {
+    const Member me = {number, shares_[number], team_};
+    const auto flow = chosen_flow();
+    begin(me);
+    if (me.first()) watch_.start();
+    for (int t = 0; t < r_.steps; t++) {
+      if (r_.commands != GIVEN) {
+        command(t, me);
+        stop(CONTROL, me);
+      }
+      if (r_.repelled) repulsion_.find(n_, me);
+      place_points(me.share);
+      if (r_.fluid || r_.energetic) find_windows(p_, l_, WEIGHTS[r_.delta], me);
+      stop(WINDOWS, me);
+      if (r_.fluid) {
+        moments(l_, l_.bands[number]);
+        me.wait();
+        stop(MOMENTS, me);
+        interpolate<false>(p_, l_, l_.velocity, forcing_.velocity_x, forcing_.velocity_y, me);
+        stop(INTERPOLATION, me);
+      }
+      move(t, me.share);
+      stop(CONSTRAINTS, me);
+      if (r_.fluid) {
+        forcing_.find(b_, p_, l_, r_, me);
+        me.wait();
+        stop(FORCING, me);
+        spread(p_, l_, forcing_.x, forcing_.y, me);
+        stop(SPREADING, me);
+      } else if (r_.energetic)
+        cover(p_, l_, me);
+      if (r_.energetic) energy_.collect(p_, l_, me);
+      carry(me.share);
+      if (r_.observed) measuring_.record(t, n_, forcing_, motion_, me);
+      me.wait();
+      stop(MEASURES, me);
+      if (r_.fluid) {
+        flow(l_, l_.bands[number], rates_);
+        me.wait();
+        settle(t, me);
+        stop(FLUID, me);
+      } else if (r_.observed && me.first())
+        r_.speed[t] = 0;
+    }
+    me.wait();
+    end(me);
+  }
+
+  // Take what has streamed into a band, and let the surroundings act.
+  void settle(int t, const Member& me) {
+    const int count = int(l_.bands.size()), n = me.number;
+    join(l_, l_.bands[(n + count - 1) % count], l_.bands[n], l_.bands[(n + 1) % count]);
+    if (r_.observed && me.first()) {
+      float fastest = 0;
+      for (const Band& band : l_.bands) fastest = most(band.fastest, fastest);
+      r_.speed[t] = root(fastest + 1e-24f);
+    }
+    if (r_.walled) me.wait();
+    surroundings_.act(l_, me);
+  }
+
+  // The first member takes the time of a part.
+  INLINE void stop(Part part, const Member& me) {
+    if (me.first()) watch_.stop(part);
+  }
+
+  void begin(const Member& me) {
+    const Band& band = l_.bands[me.number];
     for (int i = 0; i < 9; i++)
-      for (int x = 0; x < r_.height; x++)
+      for (int x = band.from; x < band.to; x++)
         std::memcpy(l_.populations + i * l_.plane + x * l_.row,
                     r_.populations[i] + size_t(x) * r_.width, 4 * size_t(r_.width));
-    for (int n = 0; n < r_.nodes; n++) {
+    const Range nodes = me.part(r_.nodes), edges = me.part(r_.edges);
+    for (int n = nodes.from; n < nodes.to; n++) {
       n_.x[b_.node_slot[n]] = r_.positions[2 * n], n_.y[b_.node_slot[n]] = r_.positions[2 * n + 1];
     }
-    for (int e = 0; e < r_.edges; e++) n_.angle[b_.edge_slot[e]] = r_.angles[e];
+    for (int e = edges.from; e < edges.to; e++) n_.angle[b_.edge_slot[e]] = r_.angles[e];
+    me.wait();
   }
 
   // The collision and streaming of this world.
-  float (*chosen_flow() const)(Lattice&, const Rates&) {
+  void (*chosen_flow() const)(Lattice&, Band&, const Rates&) {
     const bool filled = r_.width % BLOCK == 0;
     if (r_.driven) return filled ? advance<true, true> : advance<false, true>;
     return filled ? advance<true, false> : advance<false, false>;
   }
 
   // The rest shape of a step, in closed loop.
-  void command(int t) {
-    float* angle = r_.rest_angle + size_t(t) * r_.joints;
-    float* length = r_.rest_length + size_t(t) * r_.edges;
-    sense();
-    controller_.command(t, 1, energy_.sensed, angle, length);
-    actuators_.closed_loop(angle, length);
+  void command(int t, const Member& me) {
+    if (r_.energetic) sense(me);
+    if (me.first()) {
+      float* angle = r_.rest_angle + size_t(t) * r_.joints;
+      float* length = r_.rest_length + size_t(t) * r_.edges;
+      controller_.command(t, 1, energy_.sensed, angle, length);
+      actuators_.closed_loop(angle, length);
+    }
+    me.wait();
   }
 
-  // The energy at the nodes; zero in a world without energy.
-  void sense() {
-    if (!r_.energetic) return;
-    std::memcpy(at_nodes_.x, n_.x, 4 * size_t(b_.node_slots));
-    std::memcpy(at_nodes_.y, n_.y, 4 * size_t(b_.node_slots));
-    find_windows(at_nodes_, l_, WEIGHTS[r_.delta]);
-    energy_.sense(at_nodes_);
+  // The energy at the nodes.
+  void sense(const Member& me) {
+    each(me.share.nodes, [&](int i, int) __attribute__((always_inline)) {
+      store(at_nodes_.x + i, load(n_.x + i)), store(at_nodes_.y + i, load(n_.y + i));
+    });
+    find_windows(at_nodes_, l_, WEIGHTS[r_.delta], me);
+    energy_.sense(at_nodes_, me);
+    me.wait();
   }
 
-  void end() {
+  void end(const Member& me) {
+    const Band& band = l_.bands[me.number];
     for (int i = 0; i < 9; i++)
-      for (int x = 0; x < r_.height; x++)
+      for (int x = band.from; x < band.to; x++)
         std::memcpy(r_.end_populations[i] + size_t(x) * r_.width,
                     l_.populations + i * l_.plane + x * l_.row, 4 * size_t(r_.width));
-    for (int n = 0; n < r_.nodes; n++) {
+    const Range nodes = me.part(r_.nodes), edges = me.part(r_.edges);
+    for (int n = nodes.from; n < nodes.to; n++) {
       r_.end_positions[2 * n] = n_.x[b_.node_slot[n]];
       r_.end_positions[2 * n + 1] = n_.y[b_.node_slot[n]];
     }
-    for (int e = 0; e < r_.edges; e++) r_.end_angles[e] = n_.angle[b_.edge_slot[e]];
-    energy_.end(l_);
+    for (int e = edges.from; e < edges.to; e++) r_.end_angles[e] = n_.angle[b_.edge_slot[e]];
+    if (me.first()) energy_.end(l_);
   }
 
   // The points of bodies: their nodes, or two half a cell to either side.
-  void place_points() {
+  void place_points(const Share& share) {
     constexpr float OFFSET = 0.5f;
     if (r_.layers == 1) {
-      each(0, b_.node_slots, [&](int i, int) __attribute__((always_inline)) {
+      each(share.nodes, [&](int i, int) __attribute__((always_inline)) {
         store(p_.x + i, load(n_.x + i)), store(p_.y + i, load(n_.y + i));
       });
       return;
     }
-    find_normals();
-    each(0, b_.node_slots, [&](int i, int) __attribute__((always_inline)) {
+    find_normals(share);
+    each(share.nodes, [&](int i, int) __attribute__((always_inline)) {
       const Vec x = load(n_.x + i), y = load(n_.y + i);
       const Vec ox = OFFSET * load(normals_x_ + i), oy = OFFSET * load(normals_y_ + i);
       store(p_.x + i, x + ox), store(p_.y + i, y + oy);
@@ -171,11 +206,11 @@ class World {
     });
   }
 
-  void find_normals() {
-    each(0, b_.node_slots, [&](int i, int) __attribute__((always_inline)) {
+  void find_normals(const Share& share) {
+    each(share.nodes, [&](int i, int) __attribute__((always_inline)) {
       store(normals_x_ + i, Vec{}), store(normals_y_ + i, Vec{});
     });
-    each(0, b_.edge_slots, [&](int i, int) __attribute__((always_inline)) {
+    each(share.edges, [&](int i, int) __attribute__((always_inline)) {
       Vec s, c;
       sine_cosine(load(n_.angle + i), s, c);
       const Vec here = load(measuring_.edge_here + i);
@@ -186,7 +221,7 @@ class World {
             normals_x_[node] = normals_x_[node] - s[l], normals_y_[node] = normals_y_[node] + c[l];
           }
     });
-    each(0, b_.node_slots, [&](int i, int) __attribute__((always_inline)) {
+    each(share.nodes, [&](int i, int) __attribute__((always_inline)) {
       const Vec x = load(normals_x_ + i), y = load(normals_y_ + i),
                 size = root(x * x + y * y + 1e-12f);
       store(normals_x_ + i, x / size), store(normals_y_ + i, y / size);
@@ -194,10 +229,14 @@ class World {
   }
 
   // Carry the bodies with the fluid, meet their constraints, limit their speed.
-  void move(const float* rest_angle, const float* rest_length) {
+  void move(int t, const Share& share) {
+    const size_t step = r_.observed ? t : 0;
+    const bool closed = r_.commands != GIVEN;
+    const float* rest_angle = (closed ? r_.rest_angle : r_.given_angle) + step * r_.joints;
+    const float* rest_length = (closed ? r_.rest_length : r_.given_length) + step * r_.edges;
     const float limit = r_.parameters[DISPLACEMENT_LIMIT];
     const int second = b_.node_slots;
-    each(0, b_.node_slots, [&](int i, int) __attribute__((always_inline)) {
+    each(share.nodes, [&](int i, int) __attribute__((always_inline)) {
       Vec ux = load(forcing_.velocity_x + i), uy = load(forcing_.velocity_y + i);
       if (r_.layers == 2) {
         ux = (ux + load(forcing_.velocity_x + second + i)) * 0.5f;
@@ -207,13 +246,13 @@ class World {
       store(n_.new_x + i, load(n_.x + i) + ux), store(n_.new_y + i, load(n_.y + i) + uy);
     });
     if (r_.matched) {
-      match(rest_angle, rest_length);
-      follow_geometry(b_, n_, 1);
+      match(rest_angle, rest_length, share.pieces);
+      follow_geometry(b_, n_, 1, share.edges);
     } else {
-      follow_geometry(b_, n_, r_.parameters[THETA_FEEDBACK]);
-      sweeps_.apply(n_, rest_angle, rest_length);
+      follow_geometry(b_, n_, r_.parameters[THETA_FEEDBACK], share.edges);
+      sweeps_.apply(n_, rest_angle, rest_length, share);
     }
-    each(0, b_.node_slots, [&](int i, int) __attribute__((always_inline)) {
+    each(share.nodes, [&](int i, int) __attribute__((always_inline)) {
       Vec x = load(n_.new_x + i) - load(n_.x + i), y = load(n_.new_y + i) - load(n_.y + i);
       const Vec shortened = least(all(1), limit / root(x * x + y * y + 1e-24f));
       x = x * shortened, y = y * shortened;
@@ -228,18 +267,18 @@ class World {
 
   // Replace new positions by the rest shapes, moved and turned to be nearest to them: Mueller et
   // al., ACM Trans. Graph. 24, 471 (2005).
-  void match(const float* rest_angle, const float* rest_length) {
-    shapes_.lay_out(rest_angle, rest_length);
-    for (const Piece& piece : b_.pieces)
-      fit(piece, shapes_, n_.here, n_.new_x, n_.new_y,
+  void match(const float* rest_angle, const float* rest_length, Range pieces) {
+    shapes_.lay_out(rest_angle, rest_length, pieces);
+    for (int p = pieces.from; p < pieces.to; p++)
+      fit(b_.pieces[p], shapes_, n_.here, n_.new_x, n_.new_y,
           [&](int i, Vec x, Vec y)
               __attribute__((always_inline)) { store(n_.new_x + i, x), store(n_.new_y + i, y); });
   }
 
   // Move the nodes that have grown by the target without its rigid part.
-  void carry() {
+  void carry(const Share& share) {
     const int second = b_.node_slots;
-    each(0, b_.node_slots, [&](int i, int) __attribute__((always_inline)) {
+    each(share.nodes, [&](int i, int) __attribute__((always_inline)) {
       Vec x = load(forcing_.target_x + i), y = load(forcing_.target_y + i);
       if (r_.layers == 2) {
         x = (x + load(forcing_.target_x + second + i)) * 0.5f,
@@ -252,9 +291,12 @@ class World {
     });
   }
 
+  Team team_;
   const Rollout& r_;
   Bodies b_;
+  std::vector<Share> shares_;
   Lattice l_;
+  Rates rates_;
   Surroundings surroundings_;
   Points p_, at_nodes_;
   Nodes n_;
@@ -267,6 +309,7 @@ class World {
   Energy energy_;
   Motion motion_;
   Measuring measuring_;
+  Stopwatch watch_;
   Floats normals_x_, normals_y_;
 };
 

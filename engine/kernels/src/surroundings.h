@@ -17,18 +17,24 @@ class Surroundings {
   }
 
   // Bounce back at walls, then relax the sponge, after the fluid has streamed.
-  void act(Lattice& l) const {
-    for (const Link& one : links_) l.populations[one.fluid] = l.populations[one.wall];
-    for (size_t cell : walls_)
-      for (int i = 0; i < 9; i++) l.populations[i * l.plane + cell] = 0;
-    each(0, int(blocks_.size()) * BLOCK, [&](int i, int part) __attribute__((always_inline)) {
-      const Vec strength = load(strength_ + i);
-      float* at = l.populations + blocks_[i / BLOCK] + part * LANES;
-      for (int direction = 0; direction < 9; direction++, at += l.plane) {
-        const Vec f = load(at);
-        store(at, f + strength * (free_[direction] - f));
-      }
-    });
+  void act(Lattice& l, const Member& me) const {
+    const Range links = me.part(links_.size());
+    for (int i = links.from; i < links.to; i++)
+      l.populations[links_[i].fluid] = l.populations[links_[i].wall];
+    if (!links_.empty()) me.wait();
+    const Band& band = l.bands[me.number];
+    const Range walls = within(walls_, l, band), blocks = within(blocks_, l, band);
+    for (int n = walls.from; n < walls.to; n++)
+      for (int i = 0; i < 9; i++) l.populations[i * l.plane + walls_[n]] = 0;
+    each(blocks.from * BLOCK, blocks.to * BLOCK,
+         [&](int i, int part) __attribute__((always_inline)) {
+           const Vec strength = load(strength_ + i);
+           float* at = l.populations + blocks_[i / BLOCK] + part * LANES;
+           for (int direction = 0; direction < 9; direction++, at += l.plane) {
+             const Vec f = load(at);
+             store(at, f + strength * (free_[direction] - f));
+           }
+         });
   }
 
  private:
@@ -39,6 +45,14 @@ class Surroundings {
   struct Link {
     size_t fluid, wall;
   };
+
+  // The cells, in ascending order, that are in a band.
+  static Range within(const std::vector<size_t>& cells, const Lattice& l, const Band& band) {
+    auto before = [&](int row) {
+      return int(std::lower_bound(cells.begin(), cells.end(), row * l.row) - cells.begin());
+    };
+    return {before(band.from), before(band.to)};
+  }
 
   void find_walls(const Rollout& r, const Lattice& l) {
     auto solid = [&](int x, int y) { return r.walls[size_t(x) * r.width + y] != 0; };

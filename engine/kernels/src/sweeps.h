@@ -38,9 +38,9 @@ class Sweeps {
   }
 
   // Sweep bending, then stretching and shearing, `sweeps` times.
-  void apply(Nodes& n, const float* rest_angle, const float* rest_length) {
-    for (int p : b_.filaments) {
-      const Piece& piece = b_.pieces[p];
+  void apply(Nodes& n, const float* rest_angle, const float* rest_length, const Share& share) {
+    for (int f = share.filaments.from; f < share.filaments.to; f++) {
+      const Piece& piece = b_.pieces[b_.filaments[f]];
       place(piece.joint_of, piece, rest_angle, 1, rest_angle_);
       place(piece.edge_of, piece, rest_length, 1, rest_length_);
       switch ((piece.nodes.to - piece.nodes.from) / (2 * BLOCK)) {
@@ -57,7 +57,7 @@ class Sweeps {
           filament<4 * PARTS>(piece, n);
       }
     }
-    for (size_t t = 0; t < b_.tiles.size(); t++) {
+    for (int t = share.tiles.from; t < share.tiles.to; t++) {
       const Bodies::Tile& tile = b_.tiles[t];
       float* at = values_[t];
       for (const Pairs& pairs : tile.joint_colours) {

@@ -142,4 +142,12 @@ INLINE void each(int from, int to, Work work) {
     for (int part = 0; part < PARTS; part++) work(block + part * LANES, part);
 }
 
+struct Range {
+  int from = 0, to = 0;
+};
+template <class Work>
+INLINE void each(Range slots, Work work) {
+  each(slots.from, slots.to, work);
+}
+
 }  // namespace microcosmos::ISA

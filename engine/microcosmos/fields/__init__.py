@@ -2,4 +2,4 @@
 
 from .density import saturated, splat, unsaturated
 from .energy import Energy, Packets, collect, diffuse, packets, placements
-from .steric import Steric, binomial, capped, gaussian, gaussian_weights
+from .steric import WEIGHTS, Steric, binomial, capped, gaussian

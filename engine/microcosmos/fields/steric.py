@@ -46,17 +46,6 @@ def gaussian(density: Plane) -> Gradient:
     return jnp.stack([jnp.fft.irfft2(1j * k * smooth, size) for k in waves])
 
 
-def gaussian_weights(cells: int) -> np.ndarray:
-    """Return the weights along a periodic axis by which `gaussian` smooths, and differentiates.
-
-    In double precision: rounded to single, they do not show how a processor computes them.
-    """
-    k = 2 * np.pi * np.fft.fftfreq(cells)
-    smooth = np.exp(-0.5 * k * k)
-    slope = 1j * np.where(np.abs(k) > 3.14159, 0.0, k) * smooth
-    return np.stack([np.fft.ifft(smooth).real, np.fft.ifft(slope).real])
-
-
 def binomial(density: Plane) -> Gradient:
     """Smooth by binomial weights of the same variance and differentiate, without a transform.
 
@@ -70,6 +59,30 @@ def binomial(density: Plane) -> Gradient:
             _weighted(_weighted(wide, SMOOTH, 0), SLOPE, 1),
         ]
     )
+
+
+def gaussian_weights(cells: int) -> np.ndarray:
+    """Return the weights along a periodic axis by which `gaussian` smooths, and differentiates.
+
+    In double precision: rounded to single, they do not show how a processor computes them.
+    """
+    k = 2 * np.pi * np.fft.fftfreq(cells)
+    smooth = np.exp(-0.5 * k * k)
+    slope = 1j * np.where(np.abs(k) > 3.14159, 0.0, k) * smooth
+    return np.stack([np.fft.ifft(smooth).real, np.fft.ifft(slope).real])
+
+
+def binomial_weights(cells: int) -> np.ndarray:
+    """Return the weights along a periodic axis by which `binomial` smooths and differentiates."""
+    found = np.zeros((2, cells))
+    for row, weights in zip(found, (SMOOTH, SLOPE), strict=True):
+        for place, weight in enumerate(weights, -(len(weights) // 2)):
+            row[-place % cells] += weight
+    return found
+
+
+WEIGHTS = {gaussian: gaussian_weights, binomial: binomial_weights}
+"""The weights of each gradient along an axis of a number of cells, by distance."""
 
 
 def capped(displacement: Vectors, limit: Float[Array, ""]) -> Vectors:

@@ -19,7 +19,14 @@ from jaxtyping import Array, Float
 from .. import coupling, device, fields, filaments, fluid
 from .controller import Controller
 from .model import Measures, State, World
-from .operands import body_of, controller_of, smoothing_of, stiffness_of, surroundings_of
+from .operands import (
+    Numbers,
+    body_of,
+    controller_of,
+    smoothing_of,
+    stiffness_of,
+    surroundings_of,
+)
 
 LOG = logging.getLogger(__name__)
 PARTS = (
@@ -46,6 +53,8 @@ OBSERVED = (
     "force",
 )
 """Measures in the order of the kernel's results."""
+ALONE: Numbers = {"threads": 1, "observed": True, "timed": False}
+"""How a rollout is carried out, unless something else is chosen."""
 PROJECTIONS = (coupling.unprojected, coupling.force_free, coupling.torque_free)
 DELTAS = (coupling.PESKIN, coupling.ROMA, coupling.HAT)
 MAGIC = (fluid.capped_magic, fluid.fixed_magic)
@@ -95,8 +104,7 @@ def uncovered(world: World, state: State) -> str | None:
 
 
 def _known_repulsion(world: World) -> bool:
-    known = (fields.gaussian, fields.binomial)
-    return world.steric is None or world.steric.gradient in known
+    return world.steric is None or world.steric.gradient in fields.WEIGHTS
 
 
 def develop(
@@ -118,43 +126,58 @@ def rollout(
     state: State,
     given: filaments.Rest | Controller,
     instruction_set: str | None = None,
+    threads: int = 1,
 ) -> tuple[State, Measures]:
     """Return the state after all steps of rest shapes (time first), or of a controller in
     closed loop, and the measures of each step.
 
-    The memory of the controller stays. Raises `ValueError` for a world the kernel lacks.
+    The memory of the controller stays. `threads` share the world; results do not depend on
+    them. Raises `ValueError` for a world the kernel lacks.
     """
-    return _rollout(world, state, given, instruction_set)[:2]
+    end, found = _rollout(world, state, given, instruction_set, {"threads": threads})
+    rest = filaments.Rest(*found[:2]) if isinstance(given, Controller) else given
+    observed = dict(zip(OBSERVED, found[2:], strict=False))
+    measures = jax.vmap(lambda rest, step: Measures(rest=rest, **step))(rest, observed)
+    return end, measures
+
+
+def advance(
+    world: World, state: State, rest: filaments.Rest, steps: int, threads: int = 1
+) -> tuple[State, Float[Array, "part"]]:
+    """Return the state after some steps of one rest shape, nothing of which is recorded, and
+    the time that they spent in each of `PARTS`, in seconds."""
+    still = jax.tree.map(lambda x: x[None], rest)
+    options = {"steps": steps, "threads": threads, "observed": False, "timed": True}
+    end, found = _rollout(world, state, still, None, options)
+    return end, found[-1]
 
 
 def part_seconds(world: World, state: State, rest: filaments.Rest) -> Float[Array, "part"]:
     """Return the time that a rollout spends in each of `PARTS`, in seconds."""
-    return _rollout(world, state, rest, timed=True)[2]
+    return _rollout(world, state, rest, None, {"timed": True})[1][-1]
 
 
 def _rollout(
     world: World,
     state: State,
     given: filaments.Rest | Controller,
-    instruction_set: str | None = None,
-    timed: bool = False,
-) -> tuple[State, Measures, Float[Array, "part"]]:
+    instruction_set: str | None,
+    chosen: Numbers,
+) -> tuple[State, list[Array]]:
+    """Return the end, and the results after it."""
     reason = uncovered(world, state)
     if reason:
         raise ValueError(f"the native kernel does not cover {reason}")
     closed = isinstance(given, Controller)
     steps = len(given.ramp) if closed else len(given.angle)
     operands, sizes = _operands(world, state, given)
-    options = {**sizes, **_form(world), "steps": steps, "timed": timed}
-    shapes = _results(world, state, steps, closed)
+    options = {**sizes, **_form(world), "steps": steps, **ALONE, **chosen}
+    shapes = _results(world, state, steps if options["observed"] else 0, closed)
     found = call(register("rollout", instruction_set), shapes, operands, options)
     end = replace(state, populations=tuple(found[:9]), positions=found[9], angles=found[10])
     if state.energy is not None:
         end = replace(end, energy=found[11], collected=found[12])
-    rest = filaments.Rest(found[13], found[14]) if closed else given
-    observed = dict(zip(OBSERVED, found[15:-1], strict=True))
-    measures = jax.vmap(lambda rest, step: Measures(rest=rest, **step))(rest, observed)
-    return end, measures, found[-1]
+    return end, found[13:]
 
 
 def _operands(
@@ -163,7 +186,6 @@ def _operands(
     controller = given if isinstance(given, Controller) else None
     body, sizes = body_of(world, state, controller)
     commands, numbers = controller_of(controller)
-    smoothing, transformed = smoothing_of(world)
     around, features = surroundings_of(world)
     joints, edges = _counts(world)
     nothing = jnp.zeros((0, joints), jnp.float32), jnp.zeros((0, edges), jnp.float32)
@@ -176,12 +198,12 @@ def _operands(
         _parameters(world),
         field,
         _collected(state),
-        *smoothing,
+        *smoothing_of(world),
         *around,
         *rest,
         *commands,
     ]
-    options = {**sizes, **numbers, **transformed, **features}
+    options = {**sizes, **numbers, **features}
     return operands, {**options, "energetic": state.energy is not None}
 
 

@@ -63,13 +63,12 @@ def stiffness_of(world: World) -> list[Array]:
     return [*colours, *stiffness]
 
 
-def smoothing_of(world: World) -> tuple[list[Array], Numbers]:
-    """Return the weights along both axes of repulsion smoothed by a Fourier transform."""
-    transformed = world.steric is not None and world.steric.gradient is fields.gaussian
-    if not transformed:
-        return [_nothing(0, cells) for cells in world.size], {"transformed": False}
-    weights = [fields.gaussian_weights(cells) for cells in world.size]
-    return [jnp.asarray(one, jnp.float32) for one in weights], {"transformed": True}
+def smoothing_of(world: World) -> list[Array]:
+    """Return the weights along both axes that smooth the density of nodes that repel."""
+    if world.steric is None:
+        return [_nothing(0, cells) for cells in world.size]
+    weights = fields.WEIGHTS[world.steric.gradient]
+    return [jnp.asarray(weights(cells), jnp.float32) for cells in world.size]
 
 
 def surroundings_of(world: World) -> tuple[list[Array], Numbers]:

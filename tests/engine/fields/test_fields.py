@@ -195,7 +195,9 @@ def test_repulsion_can_be_differentiated(gradient, require_slope, float64):
 
 @pytest.mark.parametrize("size", [(8, 9), (24, 37)])
 def test_a_transform_smooths_by_products_of_its_weights(size, float64):
-    smooth, slope = zip(*(fields.gaussian_weights(cells) for cells in size), strict=True)
+    smooth, slope = zip(
+        *(fields.WEIGHTS[fields.gaussian](cells) for cells in size), strict=True
+    )
     density = jnp.zeros(size).at[2, 3].set(1.0)
     rolled = [
         np.roll(np.outer(*pair), (2, 3), (0, 1))
