@@ -5,6 +5,7 @@ the shear: G. B. Jeffery, Proc. R. Soc. A 102, 161 (1922).
 """
 
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import jax
@@ -14,6 +15,7 @@ import numpy as np
 from microcosmos import bodies, fluid, world
 
 from . import scenes
+from .paths import JAX, Path, roll
 from .rows import Result, Row, at_least, at_most, close
 
 JEFFERY = "Jeffery 1922"
@@ -38,6 +40,7 @@ def turn_and_shear(
     steps: int = 500,
     viscosity: float = 0.05,
     speed: float = 0.02,
+    path: Path = JAX,
     **options: Any,
 ) -> tuple[float, float]:
     """Return a body's turn in a decaying sine flow, and the shear integrated over time.
@@ -49,16 +52,16 @@ def turn_and_shear(
     wave = np.tile(speed * np.sin(k * (np.arange(SIZE[1]) - SIZE[1] / 2)), (SIZE[0], 1))
     u = jnp.asarray(np.stack([wave, np.zeros(SIZE)]), dtype)
     start = replace(start, populations=fluid.equilibrium(jnp.ones(SIZE, dtype), u))
-    positions = scenes.recorded(box, start, scenes.held(body, steps, dtype))
+    positions = scenes.recorded(box, start, scenes.held(body, steps, dtype), path)
     decay = np.exp(-viscosity * k**2 * np.arange(steps))
     return rotation(positions), float(speed * k * np.sum(decay))
 
 
-def check_passive(dtype: Any = "float32") -> Result:
+def check_passive(dtype: Any = "float32", path: Path = JAX) -> Result:
     """A ring, and a rod that starts across the flow."""
-    ring, ring_shear = turn_and_shear(bodies.ring(28, 1.0), dtype)
+    ring, ring_shear = turn_and_shear(bodies.ring(28, 1.0), dtype, path=path)
     across = bodies.placed(bodies.chain(12, 1.0), (0.0, 0.0), turned=np.pi / 2)
-    rod, rod_shear = turn_and_shear(across, dtype)
+    rod, rod_shear = turn_and_shear(across, dtype, path=path)
     rate, angle = -ring / (0.5 * ring_shear), -rod / np.arctan(rod_shear)
     what, bar = "passive ring: rate over half of the shear", "0.95 to 1.02"
     rows = [
@@ -68,14 +71,13 @@ def check_passive(dtype: Any = "float32") -> Result:
     return Result(rows)
 
 
-def check_repulsion(steps: int = 300, dtype: Any = "float32") -> Result:
+def check_repulsion(steps: int = 300, dtype: Any = "float32", path: Path = JAX) -> Result:
     """The final gap between two parallel chains, and the largest net force on either."""
     pair, limits = scenes.parallel_chains(20, 1.0), scenes.limits(0.3, dtype)
     steric = scenes.steric(4.0, dtype)
     box, start = scenes.immersed(pair, 0.3, dtype, steric=steric, limits=limits)
     rest = scenes.held(pair, steps, dtype)
-    run = jax.jit(lambda: world.rollout(box, start, rest, lambda _, measures: measures.force))
-    end, forces = run()
+    end, forces = roll(path, box, start, rest, scenes.force)
     y = np.asarray(end.positions, float)[:, 1]
     gap, force = y[20:].mean() - y[:20].mean(), np.max(np.abs(np.asarray(forces, float)))
     what = f"two bodies a cell apart, after {steps} steps"
@@ -86,12 +88,12 @@ def check_repulsion(steps: int = 300, dtype: Any = "float32") -> Result:
     return Result(rows)
 
 
-@jax.jit
-def _survive(box, start, rests):
+@partial(jax.jit, static_argnames="path")
+def _survive(path, box, start, rests):
     """Return for each rest shape if all numbers stay finite and all speeds subsonic."""
 
     def survives(rest):
-        end, _ = world.rollout(box, start, rest)
+        end, _ = roll(path, box, start, rest)
         speed = jnp.sqrt(jnp.max(jnp.sum(world.flow(box, end) ** 2, 0)))
         finite = [jnp.all(jnp.isfinite(leaf)) for leaf in jax.tree.leaves(end)]
         return jnp.all(jnp.stack(finite)) & (speed < SOUND)
@@ -100,14 +102,18 @@ def _survive(box, start, rests):
 
 
 def check_stability(
-    viscosities: tuple[float, ...] = VISCOSITIES, seeds: int = 10, steps: int = 3000
+    viscosities: tuple[float, ...] = VISCOSITIES,
+    seeds: int = 10,
+    steps: int = 3000,
+    path: Path = JAX,
 ) -> Result:
     rows, body, dtype = [], bodies.chain(32, 1.0), "float32"
     for viscosity in viscosities:
         limits = scenes.limits(viscosity, dtype)
         box, start = scenes.immersed(body, viscosity, dtype, limits=limits)
         rests = [scenes.erratic(body, steps, dtype, seed) for seed in range(seeds)]
-        count = np.sum(_survive(box, start, jax.tree.map(lambda *x: jnp.stack(x), *rests)))
+        together = jax.tree.map(lambda *x: jnp.stack(x), *rests)
+        count = np.sum(_survive(path, box, start, together))
         what = f"random controllers finite over {steps:,} steps, ν {viscosity:g}"
         rows.append(at_least(what, count, seeds, seeds, f"all {seeds} seeds"))
     return Result(rows)

@@ -8,15 +8,17 @@ four-point delta makes the cylinder thicker than the circle of its nodes, in slo
 cells at this size; all numbers here use 0.8.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 
-from microcosmos import coupling, fluid
+from microcosmos import bodies, coupling, fluid, world
 
-from . import immersed
+from . import scenes
+from .paths import JAX, Path, roll
 from .rows import Line, Plot, Result, at_most, close, holds
 
 SANGANI = "Sangani and Acrivos 1982"
@@ -52,27 +54,52 @@ class Case:
         return round(self.times * self.diameter / self.speed)
 
 
-def forces(case: Case):
+def forces(case: Case, path: Path = JAX):
     """Drag and lift coefficients after every step, and the fluid at the end."""
     dtype = jnp.dtype("float32")
     viscosity = case.speed * case.thickness / case.reynolds
-    rates = fluid.rates(jnp.asarray(viscosity, dtype), fluid.capped_magic)
-    nodes = immersed.circle(case.diameter / 2, _centre(case), dtype)
-    surroundings = fluid.Surroundings(sponge=_sponge(case, dtype))
-    f, received = _held(_start(case, dtype), nodes, rates, surroundings, case.steps)
-    return f, -np.asarray(received, float).T / (0.5 * case.speed**2 * case.thickness)
+    nodes = circle(case.diameter / 2, _centre(case))
+    around = fluid.Surroundings(sponge=_sponge(case, dtype))
+    world_of = {"size": case.size, "magic": fluid.capped_magic, "surroundings": around}
+    f, received = held(nodes, viscosity, _start(case, dtype), case.steps, path, **world_of)
+    return f, -received.T / (0.5 * case.speed**2 * case.thickness)
 
 
-def _held(f, nodes, rates, surroundings, steps: int):
-    """Return the fluid after `steps` around held nodes, and the momentum received in each."""
-    free = {"surroundings": surroundings, "projection": coupling.unprojected}
-    options = {**free, "kernel": coupling.PESKIN}
+def circle(radius: float, centre: tuple[float, float]) -> np.ndarray:
+    """Nodes on a circle, at most a cell apart."""
+    nodes = int(np.ceil(2 * np.pi * radius))
+    turn = 2 * np.pi * np.arange(nodes) / nodes
+    return radius * np.stack([np.cos(turn), np.sin(turn)], 1) + np.array(centre)
 
-    def step(f, _):
-        f, _, momentum = immersed.step(f, nodes, jnp.zeros_like(nodes), rates, **options)
-        return f, momentum
 
-    return jax.jit(lambda f: jax.lax.scan(step, f, None, length=steps))(f)
+def held(
+    nodes: np.ndarray,
+    viscosity: float,
+    f: fluid.Populations | None,
+    steps: int,
+    path: Path,
+    *,
+    magic: Callable,
+    **options: Any,
+) -> tuple[fluid.Populations, np.ndarray]:
+    """Return the fluid after `steps` around held nodes, and the momentum received in each.
+
+    The limit of 0 cells a step holds the nodes. The fluid starts as `f`; None: at rest.
+    """
+    dtype, number = jnp.dtype("float32"), np.arange(len(nodes))
+    body = bodies.graph(nodes, np.stack([number, np.roll(number, -1)], 1))
+    form = world.Form(
+        projection=coupling.unprojected,
+        forcing_iterations=5,
+        kernel=coupling.PESKIN,
+        magic=magic,
+    )
+    limits = world.Limits(displacement=jnp.zeros((), dtype))
+    box, start = scenes.immersed(body, viscosity, dtype, form=form, limits=limits, **options)
+    start = world.at_rest(box, jnp.asarray(nodes, dtype))
+    start = start if f is None else replace(start, populations=f)
+    end, force = roll(path, box, start, scenes.held(body, steps, dtype), scenes.force)
+    return end.populations, np.asarray(force, float)[:, 0]
 
 
 def _centre(case: Case) -> tuple[float, float]:
@@ -112,10 +139,10 @@ def frequency(lift: np.ndarray) -> float:
 CASES = (Case(20), Case(40), Case(100, times=80.0))
 
 
-def check(cases: tuple[Case, ...] = CASES, share: float = 0.08) -> Result:
+def check(cases: tuple[Case, ...] = CASES, share: float = 0.08, path: Path = JAX) -> Result:
     rows, lines, plots = [], [], []
     for case in cases:
-        f, (drag, lift) = forces(case)
+        f, (drag, lift) = forces(case, path)
         name, sheds = f"cylinder, Re {case.reynolds}", case.reynolds in STROUHAL
         travel = np.arange(case.steps) * case.speed / case.diameter
         last = travel > travel[-1] - (25 if sheds else 5)
@@ -142,26 +169,25 @@ def series(share: float) -> float:
     return 4 * np.pi / (-0.5 * np.log(c) - 0.738 + c - 0.887 * c**2 + 2.038 * c**3)
 
 
-def array_drag(radius: float, cell: int) -> float:
+def array_drag(radius: float, cell: int, path: Path = JAX) -> float:
     """Measure drag over viscosity and mean velocity of held nodes in a box of `cell` cells.
 
     A uniform force drives the flow; in the steady state it equals the cylinder's drag.
     """
-    dtype, force, viscosity, steps = jnp.dtype("float32"), 1e-6, 0.5, 6000
-    surroundings = fluid.Surroundings(force=jnp.asarray([force, 0.0], dtype))
-    rates = fluid.rates(jnp.asarray(viscosity, dtype), fluid.fixed_magic)
-    nodes = immersed.circle(radius, (cell / 2 + 0.3, cell / 2 + 0.1), dtype)
-    still = tuple(jnp.zeros((cell, cell), dtype) for _ in range(9))
-    f, received = _held(still, nodes, rates, surroundings, steps)
+    force, viscosity, steps = 1e-6, 0.5, 6000
+    around = fluid.Surroundings(force=jnp.asarray([force, 0.0], jnp.float32))
+    nodes = circle(radius, (cell / 2 + 0.3, cell / 2 + 0.1))
+    world_of = {"size": (cell, cell), "magic": fluid.fixed_magic, "surroundings": around}
+    f, received = held(nodes, viscosity, None, steps, path, **world_of)
     mean_velocity = np.mean(np.asarray(fluid.momentum(f)[0], float)) + force / 2
     return float(-received[-1, 0] / (viscosity * mean_velocity))
 
 
-def check_array() -> Result:
+def check_array(path: Path = JAX) -> Result:
     """Check that the error falls with the radius; the largest has the lowest bar."""
     radii, cell = (3, 5, 8), 64
     shares = [np.pi * radius**2 / cell**2 for radius in radii]
-    drags = [array_drag(radius, cell) for radius in radii]
+    drags = [array_drag(radius, cell, path) for radius in radii]
     errors = [drag / series(share) - 1 for drag, share in zip(drags, shares, strict=True)]
     what = "drag of a cylinder in an array, R = {:g}: relative error"
     rows = [

@@ -10,6 +10,8 @@ from microcosmos import bodies, coupling, fields, filaments, groups, world
 from microcosmos.bodies import swimmers
 from microcosmos.build import build_matching, build_rods
 
+from .paths import JAX, Path, roll
+
 LITERAL = world.Form(
     projection=coupling.unprojected,
     theta_feedback=0.0,
@@ -90,14 +92,19 @@ def erratic(body: bodies.Body, steps: int, dtype: Any, seed: int) -> filaments.R
     return jax.tree.map(lambda x: jnp.repeat(x, 20, 0)[:steps], shapes)
 
 
-@jax.jit
-def _positions(box, start, shapes):
-    return world.rollout(box, start, shapes, lambda state, _: state.positions)[1]
+def force(measures: world.Measures):
+    return measures.force
 
 
-def recorded(box: world.World, start: world.State, shapes: filaments.Rest) -> np.ndarray:
+def _positions(measures: world.Measures):
+    return measures.positions
+
+
+def recorded(
+    box: world.World, start: world.State, shapes: filaments.Rest, path: Path = JAX
+) -> np.ndarray:
     """Positions at the start and after every step, in float64."""
-    later = _positions(box, start, shapes)
+    later = roll(path, box, start, shapes, _positions)[1]
     return np.concatenate([np.asarray(start.positions)[None], later]).astype(float)
 
 

@@ -7,26 +7,35 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from microcosmos import bodies, filaments
+from microcosmos import bodies, world
 from microcosmos.bodies import swimmers
-from microcosmos.build import build_layout, build_rods
 
+from . import scenes
+from .paths import JAX, Path, roll
 from .rows import Result, at_most
 
 REST = "rest shape"
 
 
-def projected(
-    body: bodies.Body, positions: np.ndarray, iterations: int, dtype: Any
+def taken(
+    body: bodies.Body,
+    positions: np.ndarray,
+    dtype: Any,
+    path: Path,
+    *,
+    turn: np.ndarray | float = 0.0,
+    sweeps: int | None = None,
 ) -> np.ndarray:
-    """Return the positions after some sweeps towards the rest shape."""
-    rods = build_rods(body, dtype)
-    shape = (body.rest_angle, body.rest_length)
-    rest = filaments.Rest(*(jnp.asarray(values, dtype) for values in shape))
-    start = jnp.asarray(positions, dtype)
-    project = jax.jit(filaments.project, static_argnames="iterations")
-    angles = filaments.edge_angles(start, rods)
-    return np.asarray(project(start, angles, rods, rest, iterations=iterations)[0], float)
+    """Return the positions after one step without a fluid, with `turn` added to rest angles.
+
+    The body takes its rest shape by sweeps over the constraints; None: by shape matching.
+    """
+    form = world.Form(fluid=False, constraint_iterations=sweeps or 1)
+    box, _ = scenes.immersed(body, 1.0, dtype, form=form)
+    box = box if sweeps is None else replace(box, layout=None)
+    start = world.at_rest(box, jnp.asarray(positions, dtype))
+    shape = scenes.rest(body, np.zeros((1, len(body.joints))) + turn, dtype)
+    return np.asarray(roll(path, box, start, shape)[0].positions, float)
 
 
 def errors(body: bodies.Body, positions: np.ndarray) -> tuple[float, float]:
@@ -39,18 +48,24 @@ def errors(body: bodies.Body, positions: np.ndarray) -> tuple[float, float]:
     return float(np.sqrt(np.mean(bend**2))), float(np.sqrt(np.mean(length**2)))
 
 
-def circle(nodes: int, iterations: int, dtype: Any) -> tuple[float, float]:
+def circle(nodes: int, iterations: int, dtype: Any, path: Path = JAX) -> tuple[float, float]:
     """Errors of a straight chain whose rest shape is a circle."""
     straight = bodies.chain(nodes, 1.0)
     round_body = replace(straight, rest_angle=np.full(nodes - 2, 2 * np.pi / nodes))
-    return errors(round_body, projected(round_body, straight.positions, iterations, dtype))
+    return errors(
+        round_body, taken(round_body, straight.positions, dtype, path, sweeps=iterations)
+    )
 
 
-def branched(noise: float, iterations: int, dtype: Any, seed: int = 0) -> tuple[float, float]:
+def branched(
+    noise: float, iterations: int, dtype: Any, seed: int = 0, path: Path = JAX
+) -> tuple[float, float]:
     """Errors of a ring with hairs whose nodes start displaced by `noise` cells."""
     body = swimmers.cilia().body
     moved = np.random.default_rng(seed).normal(size=body.positions.shape)
-    return errors(body, projected(body, body.positions + noise * moved, iterations, dtype))
+    return errors(
+        body, taken(body, body.positions + noise * moved, dtype, path, sweeps=iterations)
+    )
 
 
 LENGTH, BEND = 30.0, 0.15
@@ -81,40 +96,41 @@ def curve(points: int, time: float, fine: int = 20_000) -> np.ndarray:
     return found - found.mean(0)
 
 
-def shape_error(spacing: float, times: int = 8) -> float:
+def shape_error(spacing: float, times: int = 8, path: Path = JAX) -> float:
     """Largest distance of the matched worm from its curve, turned to fit, over its length."""
     swimmer, largest = worm(spacing), 0.0
-    layout = build_layout(swimmer.body, "float64")
     angle, _ = swimmer.gait(np.arange(times) / times)
     for number in range(times):
         points = curve(len(swimmer.body.positions), number / times)
-        turned = swimmer.body.rest_angle + angle[number]
-        rest = filaments.Rest(*map(jnp.asarray, (turned, swimmer.body.rest_length)))
-        away = filaments.matched(jnp.asarray(points), rest, layout) - points
-        largest = max(largest, float(jnp.max(jnp.hypot(*away.T))) / LENGTH)
+        found = taken(swimmer.body, points, "float32", path, turn=angle[number])
+        largest = max(largest, float(np.max(np.hypot(*(found - points).T))) / LENGTH)
     return largest
 
 
-def check_matching() -> Result:
+def check_matching(path: Path = JAX) -> Result:
     """Shape matching at three node spacings, against the curve that the nodes stand for."""
-    with jax.enable_x64(True):
-        return Result(
-            [
-                at_most(f"worm, spacing {spacing:g}: distance / length", shape_error(spacing),
-                        0.01, "the curve of the same curvature")
-                for spacing in SPACINGS
-            ]
-        )  # fmt: skip
+    return Result(
+        [
+            at_most(f"worm, spacing {spacing:g}: distance / length",
+                    shape_error(spacing, path=path), 0.01, "the curve of the same curvature")
+            for spacing in SPACINGS
+        ]
+    )  # fmt: skip
 
 
-def check(nodes: int = 32, iterations: int = 1000) -> Result:
-    bend, _ = circle(nodes, iterations, "float32")
-    with jax.enable_x64(True):
-        angles, lengths = branched(0.3, iterations, "float64")
-    sweeps = f"after {iterations:,} sweeps"
-    rows = [
-        at_most(f"chain to circle, {sweeps}: joint error (rad)", bend, 2e-3, REST),
-        at_most(f"ring with branches, {sweeps}: angles (rad)", angles, 1e-5, REST),
-        at_most(f"ring with branches, {sweeps}: lengths", lengths, 1e-5, REST),
-    ]
-    return Result(rows)
+def check_circle(nodes: int = 32, iterations: int = 1000, path: Path = JAX) -> Result:
+    bend, _ = circle(nodes, iterations, "float32", path)
+    what = f"chain to circle, after {iterations:,} sweeps: joint error (rad)"
+    return Result([at_most(what, bend, 2e-3, REST)])
+
+
+def check_branches(iterations: int = 1000, dtype: Any = "float64", path: Path = JAX) -> Result:
+    with jax.enable_x64(dtype == "float64"):
+        angles, lengths = branched(0.3, iterations, dtype, path=path)
+    what = f"ring with branches, {dtype}, after {iterations:,} sweeps"
+    return Result(
+        [
+            at_most(f"{what}: angles (rad)", angles, 1e-5, REST),
+            at_most(f"{what}: lengths", lengths, 1e-5, REST),
+        ]
+    )

@@ -1,8 +1,12 @@
 """The five known swimmers at every viscosity, against the Microcosmos paper."""
 
-from microcosmos import build
+import os
+from unittest.mock import patch
+
+from microcosmos import build, device
 from microcosmos.spec import Gaits
 
+from .paths import JAX, Path
 from .rows import Line, Plot, Result, Row, at_most, holds
 
 PAPER = "Microcosmos paper 2026, Hand-designed Locomotion"
@@ -11,12 +15,13 @@ Curves = dict[str, dict[float, float]]
 """Cells a cycle by swimmer and viscosity."""
 
 
-def swim(chosen: Gaits) -> dict[str, Curves]:
+def swim(chosen: Gaits, path: Path = JAX) -> dict[str, Curves]:
     """Carry out a sweep and return the curves of every form."""
-    experiment = build.build_gaits(chosen)
-    state = experiment.init()
-    while not experiment.done(state):
-        state, _ = experiment.advance(state)
+    with patch.dict(os.environ, {device.KERNEL_VARIABLE: path.choice}):
+        experiment = build.build_gaits(chosen)
+        state = experiment.init()
+        while not experiment.done(state):
+            state, _ = experiment.advance(state)
     forms: dict[str, Curves] = {}
     for values in (row.values for row in state.rows):
         far = values["displacement"]
@@ -26,14 +31,20 @@ def swim(chosen: Gaits) -> dict[str, Curves]:
     return forms
 
 
-def check(chosen: Gaits | None = None, *, creeping: float = 0.05, rest: float = 0.1) -> Result:
+def check(
+    chosen: Gaits | None = None,
+    *,
+    creeping: float = 0.05,
+    rest: float = 0.1,
+    path: Path = JAX,
+) -> Result:
     """Rows for each force-free form, and a plot for each form.
 
     Inertia is negligible from the viscosity `creeping` on. At the highest viscosity a
     reciprocal swimmer may reach at most the share `rest` of its best.
     """
     rows, plots = [], []
-    for form, curves in swim(chosen or Gaits()).items():
+    for form, curves in swim(chosen or Gaits(), path).items():
         if form != "paper":
             rows += _rows(form, curves, creeping, rest)
         lines = [Line(name, list(c), list(c.values()), "o-") for name, c in curves.items()]

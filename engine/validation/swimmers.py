@@ -5,6 +5,7 @@ through the same delta. Neither viscosity nor time matters: the sequence of shap
 determines the motion.
 """
 
+from functools import partial
 from typing import Any
 
 import jax
@@ -15,6 +16,7 @@ from microcosmos import coupling, filaments, fluid, world
 from microcosmos.bodies import swimmers
 
 from . import scenes, shapes
+from .paths import JAX, Path, roll
 from .rows import Result, at_most, close
 
 PURCELL = "scallop theorem, Purcell 1977"
@@ -22,33 +24,44 @@ SIZE = (64, 64)
 
 
 def second_cycle(
-    swimmer: swimmers.Swimmer, viscosity: float, period: int, dtype: Any, **options: Any
+    swimmer: swimmers.Swimmer,
+    viscosity: float,
+    period: int,
+    dtype: Any,
+    path: Path = JAX,
+    **options: Any,
 ) -> np.ndarray:
     """Positions from the start of a swimmer's second cycle to its end."""
     box, start = scenes.immersed(swimmer.body, viscosity, dtype, **options)
     gait = scenes.stroke(swimmer, period, 2, dtype)
-    return scenes.recorded(box, start, gait)[-period - 1 :]
+    return scenes.recorded(box, start, gait, path)[-period - 1 :]
 
 
-def scallop_share(dtype: Any, **options: Any) -> float:
+def scallop_share(dtype: Any, path: Path = JAX, **options: Any) -> float:
     """Displacement over path in the second cycle of a reciprocal swimmer at ν = 2."""
-    cycle = second_cycle(swimmers.ray(), 2.0, 400, dtype, **options)
+    cycle = second_cycle(swimmers.ray(), 2.0, 400, dtype, path, **options)
     moves = np.diff(cycle, axis=0)
     path = np.mean(np.sum(np.hypot(moves[..., 0], moves[..., 1]), 0))
     return float(np.hypot(*scenes.displacement(cycle)) / path)
 
 
-@jax.jit
-def _momenta(box, start, shapes):
-    def momentum(state, _):
-        return jnp.stack([jnp.sum(m) for m in fluid.momentum(state.populations)])
+@partial(jax.jit, static_argnames="path")
+def _momenta(path, box, start, shapes):
+    """The end, and the fluid's momentum after every step: after rollouts of one step each."""
 
-    return world.rollout(box, start, shapes, momentum)
+    def advance(state, rest):
+        one = jax.tree.map(lambda x: x[None], rest)
+        state, _ = roll(path, box, state, one)
+        return state, jnp.stack([jnp.sum(m) for m in fluid.momentum(state.populations)])
+
+    return jax.lax.scan(advance, start, shapes)
 
 
-def largest_impulse(box: world.World, start: world.State, shapes: filaments.Rest) -> float:
+def largest_impulse(
+    box: world.World, start: world.State, shapes: filaments.Rest, path: Path = JAX
+) -> float:
     """The largest impulse that bodies give the fluid; NaN if they do not stay finite."""
-    end, impulses = _momenta(box, start, shapes)
+    end, impulses = _momenta(path, box, start, shapes)
     largest = np.sqrt(np.max(np.sum(np.asarray(impulses, float) ** 2, 1)))
     return float(largest) if np.all(np.isfinite(end.positions)) else float("nan")
 
@@ -56,11 +69,12 @@ def largest_impulse(box: world.World, start: world.State, shapes: filaments.Rest
 def check_worm(
     cases: tuple[tuple[float, int, float], ...] = ((0.5, 2000, 0.05), (2.0, 2000, 0.08)),
     samples: int = 50,
+    path: Path = JAX,
 ) -> Result:
     """The worm's second cycle against Stokes flow; cases are viscosity, period and bar."""
     rows = []
     for viscosity, period, share in cases:
-        cycle = second_cycle(swimmers.worm(), viscosity, period, "float32", size=SIZE)
+        cycle = second_cycle(swimmers.worm(), viscosity, period, "float32", path, size=SIZE)
         far, expected = scenes.displacement(cycle)[0], stokes_displacement(cycle, samples)[0]
         what = f"worm, ν {viscosity:g}, {period} steps a cycle: cells a cycle"
         rows.append(close(what, far, expected, share, "spectral Stokes flow, same shapes"))
@@ -68,12 +82,16 @@ def check_worm(
 
 
 def check_spacing(
-    spacings: tuple[float, ...] = (0.5, 1.5), viscosity: float = 0.5, period: int = 500
+    spacings: tuple[float, ...] = (0.5, 1.5),
+    viscosity: float = 0.5,
+    period: int = 500,
+    path: Path = JAX,
 ) -> Result:
     """The same worm at other node spacings, in cells a cycle."""
 
     def cells(spacing: float) -> float:
-        cycle = second_cycle(shapes.worm(spacing), viscosity, period, "float32", size=SIZE)
+        swimmer = shapes.worm(spacing)
+        cycle = second_cycle(swimmer, viscosity, period, "float32", path, size=SIZE)
         return float(np.hypot(*scenes.displacement(cycle)))
 
     expected = cells(1.0)
@@ -86,9 +104,9 @@ def check_spacing(
     )  # fmt: skip
 
 
-def check_scallop(dtype: Any = "float32") -> Result:
+def check_scallop(dtype: Any = "float32", path: Path = JAX) -> Result:
     what = "reciprocal swimmer, ν 2: displacement / path"
-    return Result([at_most(what, scallop_share(dtype), 0.015, PURCELL)])
+    return Result([at_most(what, scallop_share(dtype, path), 0.015, PURCELL)])
 
 
 def check_impulse(
@@ -97,6 +115,7 @@ def check_impulse(
     period: int = 600,
     dtype: Any = "float32",
     limits: bool = True,
+    path: Path = JAX,
 ) -> Result:
     """Check the impulse over two cycles, with or without the limits of evaluations."""
     rows = []
@@ -104,7 +123,8 @@ def check_impulse(
         for viscosity in viscosities:
             limit = scenes.limits(viscosity, dtype) if limits else world.Limits()
             box, start = scenes.immersed(swimmer.body, viscosity, dtype, limits=limit)
-            impulse = largest_impulse(box, start, scenes.stroke(swimmer, period, 2, dtype))
+            gait = scenes.stroke(swimmer, period, 2, dtype)
+            impulse = largest_impulse(box, start, gait, path)
             what = f"{swimmer.name}, ν {viscosity:g}: largest net impulse"
             rows.append(at_most(what, impulse, 1e-4, "Newton's third law"))
     return Result(rows)
