@@ -10,7 +10,6 @@ cells at this size; all numbers here use 0.8.
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
@@ -59,9 +58,12 @@ def forces(case: Case, path: Path = JAX):
     dtype = jnp.dtype("float32")
     viscosity = case.speed * case.thickness / case.reynolds
     nodes = circle(case.diameter / 2, _centre(case))
-    around = fluid.Surroundings(sponge=_sponge(case, dtype))
-    world_of = {"size": case.size, "magic": fluid.capped_magic, "surroundings": around}
-    f, received = held(nodes, viscosity, _start(case, dtype), case.steps, path, **world_of)
+    options = {
+        "magic": fluid.capped_magic,
+        "surroundings": fluid.Surroundings(sponge=_sponge(case, dtype)),
+    }
+    start = _start(case, dtype)
+    f, received = around_held(nodes, viscosity, start, case.steps, path, **options)
     return f, -received.T / (0.5 * case.speed**2 * case.thickness)
 
 
@@ -72,32 +74,35 @@ def circle(radius: float, centre: tuple[float, float]) -> np.ndarray:
     return radius * np.stack([np.cos(turn), np.sin(turn)], 1) + np.array(centre)
 
 
-def held(
+def around_held(
     nodes: np.ndarray,
     viscosity: float,
-    f: fluid.Populations | None,
+    f: fluid.Populations,
     steps: int,
     path: Path,
     *,
     magic: Callable,
-    **options: Any,
+    surroundings: fluid.Surroundings,
 ) -> tuple[fluid.Populations, np.ndarray]:
     """Return the fluid after `steps` around held nodes, and the momentum received in each.
 
-    The limit of 0 cells a step holds the nodes. The fluid starts as `f`; None: at rest.
+    The limit of 0 cells a step holds the nodes.
     """
-    dtype, number = jnp.dtype("float32"), np.arange(len(nodes))
-    body = bodies.graph(nodes, np.stack([number, np.roll(number, -1)], 1))
-    form = world.Form(
-        projection=coupling.unprojected,
-        forcing_iterations=5,
-        kernel=coupling.PESKIN,
-        magic=magic,
-    )
-    limits = world.Limits(displacement=jnp.zeros((), dtype))
-    box, start = scenes.immersed(body, viscosity, dtype, form=form, limits=limits, **options)
-    start = world.at_rest(box, jnp.asarray(nodes, dtype))
-    start = start if f is None else replace(start, populations=f)
+    dtype, number = f[0].dtype, np.arange(len(nodes))
+    body = bodies.from_edges(nodes, np.stack([number, np.roll(number, -1)], 1))
+    options = {
+        "size": f[0].shape,
+        "surroundings": surroundings,
+        "limits": world.Limits(displacement=jnp.zeros((), dtype)),
+        "form": world.Form(
+            projection=coupling.unprojected,
+            forcing_iterations=5,
+            kernel=coupling.PESKIN,
+            magic=magic,
+        ),
+    }
+    box, _ = scenes.immersed(body, viscosity, dtype, **options)
+    start = replace(world.at_rest(box, jnp.asarray(nodes, dtype)), populations=f)
     end, force = roll(path, box, start, scenes.held(body, steps, dtype), scenes.force)
     return end.populations, np.asarray(force, float)[:, 0]
 
@@ -175,10 +180,13 @@ def array_drag(radius: float, cell: int, path: Path = JAX) -> float:
     A uniform force drives the flow; in the steady state it equals the cylinder's drag.
     """
     force, viscosity, steps = 1e-6, 0.5, 6000
-    around = fluid.Surroundings(force=jnp.asarray([force, 0.0], jnp.float32))
     nodes = circle(radius, (cell / 2 + 0.3, cell / 2 + 0.1))
-    world_of = {"size": (cell, cell), "magic": fluid.fixed_magic, "surroundings": around}
-    f, received = held(nodes, viscosity, None, steps, path, **world_of)
+    still = tuple(jnp.zeros((cell, cell), jnp.float32) for _ in range(9))
+    options = {
+        "magic": fluid.fixed_magic,
+        "surroundings": fluid.Surroundings(force=jnp.asarray([force, 0.0], jnp.float32)),
+    }
+    f, received = around_held(nodes, viscosity, still, steps, path, **options)
     mean_velocity = np.mean(np.asarray(fluid.momentum(f)[0], float)) + force / 2
     return float(-received[-1, 0] / (viscosity * mean_velocity))
 

@@ -7,25 +7,37 @@ import jax
 import numpy as np
 from matplotlib.figure import Figure
 
-from .rows import Plot, Result, Row
+from microcosmos import device
+
+from .rows import Findings, Pair, Plot
 from .suite import Section
 
 HEAD = """# Validation
 
 `make validate` writes this page; `tests/engine/validation` runs the same checks, the longest of
-them reduced. All values are in lattice units, and in float32 unless stated. A line passes if
-*here* is within its bar.
+them reduced. All values are in lattice units, and in float32 unless stated.
+
+The checks run twice: in pure JAX, the reference, and in the native kernel, which the column
+*kernel* shows. Bars are the same. A line passes if each of its values is within its bar.
+Pictures show the results of JAX.
 """
+ALONE = "The native kernel is not installed or not chosen here: its column has dashes.\n"
+DASH = "–"
 
 
-def document(results: list[tuple[Section, Result]], pictures: str) -> str:
+def document(results: list[tuple[Section, Findings]], pictures: str) -> str:
     """Return the whole text; `pictures` is the figures' folder relative to it."""
-    rows = [row for _, result in results for row in result.rows]
-    failed = sum(not row.passed for row in rows)
+    lines = [pair for _, found in results for pair in found.pairs]
+    failed = sum(not pair.passed for pair in lines)
     verdict = f"**{failed} FAIL**" if failed else "all pass"
+    covered = sum(pair.kernel is not None for pair in lines)
     machine = f"jax {jax.__version__}, {jax.default_backend()}"
-    parts = [HEAD, f"{len(rows)} lines, {verdict}. {machine}.\n"]
-    parts += [_section(section, result, pictures) for section, result in results]
+    kernel = device.kernel_version()
+    machine += f", microcosmos-kernels {kernel}" if kernel else ""
+    counts = f"{len(lines)} lines, {covered} of them in the kernel too, {verdict}."
+    parts = [HEAD, f"{counts} {machine}.\n"]
+    parts += [] if kernel else [ALONE]
+    parts += [_section(section, found, pictures) for section, found in results]
     return "\n".join(parts)
 
 
@@ -33,22 +45,29 @@ def figure_name(plot: str) -> str:
     return f"validation-{plot}.png"
 
 
-def _section(section: Section, result: Result, pictures: str) -> str:
-    lines = [f"## {section.title}\n", textwrap.fill(section.text, 100), ""]
-    lines += ["| quantity | reference | here | bar | |", "|---|---|---|---|---|"]
-    lines += [_line(row) for row in result.rows]
-    for plot in result.plots:
+def _section(section: Section, found: Findings, pictures: str) -> str:
+    text = " ".join(
+        [section.text, *(check.lacking for check in section.checks if check.lacking)]
+    )
+    lines = [f"## {section.title}\n", textwrap.fill(text, 100), ""]
+    lines += ["| quantity | reference | JAX | kernel | bar | |", "|---|---|---|---|---|---|"]
+    lines += [_line(pair) for pair in found.pairs]
+    for plot in found.plots:
         path = Path(pictures) / figure_name(plot.name)
         lines.append(f"\n![{section.title}: {plot.y} against {plot.x}]({path.as_posix()})")
     return "\n".join(lines) + "\n"
 
 
-def _line(row: Row) -> str:
-    reference = row.source
-    if row.reference is not None:
-        reference = f"{row.reference:.4g} ({row.source})"
-    verdict = "pass" if row.passed else "**FAIL**"
-    return f"| {row.quantity} | {reference} | {row.value:.4g} | {row.bar} | {verdict} |"
+def _line(pair: Pair) -> str:
+    row, rows = pair.jax, pair.rows.values()
+    # A reference can be calculated from the result itself, and so differ.
+    references = dict.fromkeys(f"{x.reference:.4g}" for x in rows if x.reference is not None)
+    reference = f"{' / '.join(references)} ({row.source})" if references else row.source
+    values = [f"{x.value:.4g}" for x in rows]
+    values = " | ".join([*values, DASH][:2])
+    missed = [name for name, x in pair.rows.items() if not x.passed]
+    verdict = f"**FAIL** {', '.join(missed)}" if missed else "pass"
+    return f"| {row.quantity} | {reference} | {values} | {row.bar} | {verdict} |"
 
 
 def save(plot: Plot, path: Path) -> None:

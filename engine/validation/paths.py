@@ -30,9 +30,9 @@ JAX = Path("JAX", "jax", _in_jax)
 KERNEL = Path("kernel", "native", world.native.rollout)
 
 
-def kernel_version() -> str | None:
-    """Return the version of the kernel that checks run; None where they run JAX alone."""
-    return device.kernel_version()
+def paths() -> tuple[Path, ...]:
+    """Return the paths that this machine has."""
+    return (JAX,) if device.kernel_version() is None else (JAX, KERNEL)
 
 
 def nothing(measures: world.Measures) -> None:

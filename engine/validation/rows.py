@@ -71,7 +71,7 @@ class Plot:
 
 @dataclass(frozen=True)
 class Result:
-    """The rows and plots of a check."""
+    """The rows and plots of a check on one path."""
 
     rows: list[Row]
     plots: list[Plot] = field(default_factory=list)
@@ -79,3 +79,37 @@ class Result:
     @property
     def failed(self) -> list[Row]:
         return [row for row in self.rows if not row.passed]
+
+
+@dataclass(frozen=True)
+class Pair:
+    """One quantity on both paths; `kernel` is None where only JAX has it."""
+
+    jax: Row
+    kernel: Row | None = None
+
+    @property
+    def rows(self) -> dict[str, Row]:
+        """The rows by the names of their paths."""
+        return {"JAX": self.jax} | ({} if self.kernel is None else {"kernel": self.kernel})
+
+    @property
+    def passed(self) -> bool:
+        return all(row.passed for row in self.rows.values())
+
+
+@dataclass(frozen=True)
+class Findings:
+    """The results of a section: a pair of rows for each line, and the plots of JAX."""
+
+    pairs: list[Pair]
+    plots: list[Plot] = field(default_factory=list)
+
+
+def paired(results: Sequence[Result]) -> Findings:
+    """Pair the rows of a check in JAX with those in the kernel, if it ran there."""
+    jax, *others = results
+    if not others:
+        return Findings([Pair(row) for row in jax.rows], jax.plots)
+    rows = zip(jax.rows, others[0].rows, strict=True)
+    return Findings([Pair(one, other) for one, other in rows], jax.plots)

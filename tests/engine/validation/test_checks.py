@@ -1,7 +1,9 @@
-"""The checks of the validation document, at reduced size."""
+"""The checks of the validation document, at reduced size, in JAX and in the native kernel."""
 
 from functools import partial
 
+import jax
+import jax.numpy as jnp
 import pytest
 
 from microcosmos import coupling, world
@@ -18,13 +20,13 @@ from validation import (
     sweep,
     swimmers,
 )
+from validation.paths import JAX, KERNEL, paths
 
 GHOST = world.Form(projection=coupling.unprojected, theta_feedback=0.0)
 """Edge angles that ignore the geometry exert a torque of their own."""
 
 IN_BOTH_PRECISIONS = {
     "two bodies push each other away and not the fluid": bodies.check_repulsion,
-    "Kolmogorov flow is exact to a thousandth at any viscosity": flows.check_kolmogorov,
     "Taylor-Green vortices decay at the viscous rate and converge": flows.check_taylor_green,
     "mass and momentum are kept for 10,000 steps": partial(flows.check_conservation, (24, 16)),
     "rings and rods turn with a shear flow": bodies.check_passive,
@@ -39,8 +41,12 @@ WAKE = [cylinder.Case(100, diameter=8, length=25, height=15, speed=0.1, times=90
 SHORT = Gaits(forms=("ours",), viscosities=(0.05, 0.5, 2.0), period=600, block=3)
 
 CHECKS = {
-    "chains close and branches find their shape": shapes.check,
-    "gradients agree with differences": partial(gradients.check, 200, (gradients.FIELDS,)),
+    "chains close": shapes.check_circle,
+    "branches find their shape": partial(shapes.check_branches, dtype="float32"),
+    "bodies take the shape of their curve": shapes.check_matching,
+    "walls stand halfway but for rounding": partial(
+        flows.check_poiseuille, (0.6, 2.0), (0.6,), "float32"
+    ),
     "random controllers stay finite": partial(
         bodies.check_stability, (0.001, 0.01, 2.0), 2, 1500
     ),
@@ -55,25 +61,60 @@ CHECKS = {
 }
 
 
-def test_shear_waves_decay_at_the_viscous_rate(dtype):
-    assert not flows.check_shear_wave((0.53, 0.8, 2.0), dtype).failed
+def on(path):
+    """The path, unless this machine lacks it."""
+    if path not in paths():
+        pytest.skip("microcosmos-kernels is not installed, or JAX is chosen")
+    return path
+
+
+@pytest.fixture(params=[JAX, KERNEL], ids=lambda path: path.name)
+def path(request):
+    return on(request.param)
+
+
+@pytest.fixture(params=["JAX float32", "JAX float64", "kernel float32"])
+def way(request):
+    """A path, and a precision that it has."""
+    name, precision = request.param.split()
+    with jax.enable_x64(precision == "float64"):
+        yield {"path": on(JAX if name == JAX.name else KERNEL), "dtype": jnp.dtype(precision)}
+
+
+def test_shear_waves_decay_at_the_viscous_rate(way):
+    assert not flows.check_shear_wave((0.53, 0.8, 2.0), **way).failed
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("claim", IN_BOTH_PRECISIONS)
-def test_a_check_passes_in_both_precisions(claim, dtype):
-    assert not IN_BOTH_PRECISIONS[claim](dtype=dtype).failed
+def test_a_check_passes_in_both_precisions(claim, way):
+    assert not IN_BOTH_PRECISIONS[claim](**way).failed
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("claim", CHECKS)
-def test_a_check_passes(claim):
-    assert not CHECKS[claim]().failed
+def test_a_check_passes(claim, path):
+    assert not CHECKS[claim](path=path).failed
 
 
 @pytest.mark.long
-def test_walls_stand_exactly_halfway(float64):
+def test_kolmogorov_flow_is_exact_to_a_thousandth_at_any_viscosity(dtype):
+    assert not flows.check_kolmogorov(dtype).failed
+
+
+@pytest.mark.long
+def test_gradients_agree_with_differences():
+    assert not gradients.check(200, (gradients.FIELDS,)).failed
+
+
+@pytest.mark.long
+def test_walls_stand_exactly_halfway():
     assert not flows.check_poiseuille((0.6, 2.0), (0.6,)).failed
+
+
+@pytest.mark.long
+def test_branches_find_their_shape_exactly():
+    assert not shapes.check_branches().failed
 
 
 @pytest.mark.long

@@ -4,12 +4,25 @@ import numpy as np
 import pytest
 
 from validation import __main__ as program
+from validation.paths import JAX, KERNEL
 from validation.rows import Line, Plot, Result, Row, at_least, at_most, close, holds
-from validation.suite import SECTIONS, Section
+from validation.suite import SECTIONS, Check, Section
 
 
 def section(found):
-    return Section("A subject", "What is measured.", (lambda: found,))
+    check = Check(lambda: found, "The kernel has no eyes.")
+    return Section("A subject", "What is measured.", (check,))
+
+
+def drag(in_jax, in_kernel):
+    """A section with a drag coefficient on both paths."""
+    values = {JAX: in_jax, KERNEL: in_kernel}
+
+    def measure(path):
+        value = values[path]
+        return Result([close("drag", value, 2.05 + 1e-3 * (path == KERNEL), 0.08, "Dennis")])
+
+    return Section("A cylinder", "What resists.", (Check(measure),))
 
 
 @pytest.mark.fast
@@ -44,10 +57,11 @@ def test_a_missed_bar_is_written_and_fails_the_program(tmp_path, capsys):
     ]
     assert program.main((section(Result(rows, plots)),), tmp_path) == 1
     text = (tmp_path / "validation.md").read_text(encoding="utf-8")
-    assert "| a small error | 0 (Somebody 1900) | 2 | ≤ 1 | **FAIL** |" in text
-    assert "| drag | 2.05 (Somebody 1970) | 2.06 | ± 8 % | pass |" in text
+    assert "| a small error | 0 (Somebody 1900) | 2 | – | ≤ 1 | **FAIL** JAX |" in text
+    assert "| drag | 2.05 (Somebody 1970) | 2.06 | – | ± 8 % | pass |" in text
     assert "**1 FAIL**" in text
-    assert "FAIL a small error" in capsys.readouterr().out
+    assert "What is measured. The kernel has no eyes." in text
+    assert "FAIL a small error, JAX" in capsys.readouterr().out
     for plot in plots:
         picture = f"pictures/validation-{plot.name}.png"
         assert f"({picture})" in text
@@ -57,6 +71,27 @@ def test_a_missed_bar_is_written_and_fails_the_program(tmp_path, capsys):
 def test_the_program_succeeds_if_every_line_passes(tmp_path):
     assert program.main((section(Result([holds("a fact", True, "logic")])),), tmp_path) == 0
     assert "FAIL" not in (tmp_path / "validation.md").read_text(encoding="utf-8")
+
+
+def test_a_bar_that_only_the_kernel_misses_fails_the_program(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("microcosmos.device.kernel_version", lambda: "7.1")
+    assert program.main((drag(2.06, 2.1),), tmp_path) == 0
+    text = (tmp_path / "validation.md").read_text(encoding="utf-8")
+    assert "| drag | 2.05 / 2.051 (Dennis) | 2.06 | 2.1 | ± 8 % | pass |" in text
+    assert "1 lines, 1 of them in the kernel too, all pass." in text
+    assert "microcosmos-kernels 7.1" in text
+    assert program.main((drag(2.06, 3.0),), tmp_path) == 1
+    text = (tmp_path / "validation.md").read_text(encoding="utf-8")
+    assert "| 2.06 | 3 | ± 8 % | **FAIL** kernel |" in text
+    assert "FAIL drag, kernel: 3" in capsys.readouterr().out
+
+
+def test_without_the_kernel_its_column_has_dashes(tmp_path, monkeypatch):
+    monkeypatch.setenv("MICROCOSMOS_KERNEL", "jax")
+    assert program.main((drag(2.06, 3.0),), tmp_path) == 0
+    text = (tmp_path / "validation.md").read_text(encoding="utf-8")
+    assert "The native kernel is not installed or not chosen here" in text
+    assert "| drag | 2.05 (Dennis) | 2.06 | – | ± 8 % | pass |" in text
 
 
 def test_every_subject_of_the_document_has_its_own_title_and_checks():
