@@ -18,8 +18,9 @@ HEAD = """# Validation
 them reduced. All values are in lattice units, and in float32 unless stated.
 
 The checks run twice: in pure JAX, the reference, and in the native kernel, which the column
-*kernel* shows. Bars are the same. A line passes if each of its values is within its bar.
-Pictures show the results of JAX.
+*kernel* shows. Bars are the same. A line passes if each of its values is within its bar. Where
+a reference follows from the result itself, that of JAX comes first. Pictures show the results
+of JAX.
 """
 ALONE = "The native kernel is not installed or not chosen here: its column has dashes.\n"
 DASH = "–"

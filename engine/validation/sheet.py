@@ -54,8 +54,8 @@ SAMPLES = 8
 def speed(sheet: Sheet, periods: int, path: Path = JAX) -> float:
     """Measure the speed of a force-free sheet of nodes over the last period.
 
-    The wave is prescribed in the sheet's own frame. A second sheet in the next box, its mirror
-    image, keeps the first one's direction: both are one body, by an edge between their ends.
+    The wave is prescribed in the sheet's own frame. A second sheet above, its mirror image,
+    keeps it from turning: both are one body, by an edge between their ends.
     """
     part = round(2 * np.pi / sheet.frequency / SAMPLES)
     nodes = waves(sheet, np.arange(periods * SAMPLES * part + 1) / (SAMPLES * part))

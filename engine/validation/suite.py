@@ -26,7 +26,7 @@ class Section:
     checks: tuple[Check, ...]
 
 
-FLOAT64 = "Lines in float64 have no value of the kernel, which calculates in float32."
+FLOAT64 = "The kernel does not run the lines in float64: it calculates in float32."
 
 SECTIONS = (
     Section(
@@ -41,8 +41,8 @@ SECTIONS = (
             Check(flows.check_shear_wave),
             Check(
                 flows.check_kolmogorov,
-                "Kolmogorov flow has no value of the kernel: its force varies from cell to "
-                "cell, and a world knows a uniform force alone.",
+                "The kernel does not run Kolmogorov flow: its force varies from cell to cell, "
+                "and a world has only a uniform force.",
             ),
             Check(flows.check_taylor_green),
         ),
@@ -92,9 +92,9 @@ SECTIONS = (
         "Taylor's swimming sheet",
         "A prescribed transverse wave along a sheet that spans the box, free of net force; "
         "its speed against the fluid half a box away. The body is this sheet and its mirror "
-        "image in the next box, which keeps its direction. Theory is the fourth order of "
-        "Taylor with Tuck's factor for inertia (R = 0.4). The delta makes the sheet thicker: "
-        "an error of first order in cells over wavelength.",
+        "image in a second box above, which keeps it from turning. Theory is the fourth order "
+        "of Taylor with Tuck's factor for inertia (R = 0.4). The delta makes the sheet "
+        "thicker: an error of first order in cells over wavelength.",
         (Check(sheet.check),),
     ),
     Section(
@@ -135,7 +135,7 @@ SECTIONS = (
         "Two chains of 16 nodes two cells apart, by the amplitudes of their joints and by"
         " viscosity, in float64 with the limits off. With limits that act the outcome has"
         " kinks, so gradients only have to be finite.",
-        (Check(gradients.check, "The kernel has no derivatives, and so no values here."),),
+        (Check(gradients.check, "The kernel does not run these: it has no derivatives."),),
     ),
     Section(
         "The five known swimmers",
