@@ -66,10 +66,12 @@ class Shapes {
     const Piece& p = b_.pieces[number];
     if (p.chain) {
       const int count = int(p.edge_of.size());
-      float angle = count ? r_.layout_angle[p.edge_of[0]] : 0;
+      float turned = 0;  // Layout angles are within half a turn; what is added to them may not be.
       for (int k = 0; k < count; k++) {
-        direction_[b_.edge_slot[p.edge_of[k]]] = angle;
-        if (k + 1 < count) angle = angle + rest_angle[p.joint_of[k]];
+        direction_[b_.edge_slot[p.edge_of[k]]] = r_.layout_angle[p.edge_of[k]] + turned;
+        if (k + 1 == count) break;
+        const int joint = p.joint_of[k];
+        turned = turned + (rest_angle[joint] - r_.layout_rest_angle[joint]);
       }
       return;
     }

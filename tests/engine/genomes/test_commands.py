@@ -35,6 +35,9 @@ OPEN = {
     "series": {"control": {"encoding": "direct"}, **VECTORS},
     "table": {"control": {"encoding": "direct", "waveform": "table"}, **VECTORS},
     "a star": {"body": {"builder": "star", "arms": 3, "arm_nodes": 5}},
+    "an arc, whose edges turn by more than half a circle": {
+        "body": {"builder": "arc", "nodes": 14, "gap": 0.2}
+    },
 }
 ENERGY = {"packets": 5, "width": 3.0}
 CLOSED = {
