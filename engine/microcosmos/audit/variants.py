@@ -19,8 +19,7 @@ def body_of(scene: spec.Scene, driven: Drive) -> tuple[bodies.Body, np.ndarray, 
     Raises `ValueError` if it is no valid body.
     """
     body, start, rods = spec.shape(scene.body), driven.start, driven.world.rods
-    there = driven.world.present
-    nodes = np.ones(len(body.positions), bool) if there is None else np.asarray(there)
+    nodes = np.asarray(world.grown_nodes(driven.world))
     edges, joints = present_parts(scene, nodes)
     edge_pairs, joint_pairs = graph_among(scene, nodes)
     return (

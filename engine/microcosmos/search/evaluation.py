@@ -12,7 +12,7 @@ from jaxtyping import Array, Float, Int
 
 from .. import units
 from ..genomes import Drive, Genotype
-from ..world import Measures, State, World, centre, flow
+from ..world import Measures, State, World, centre, flow, grown_nodes
 from .kinematics import kinematics
 from .measures import (
     MEASURES,
@@ -153,7 +153,7 @@ def poses_of(task: Task, driven: Drive, observed: Measures) -> Poses:
     """Return the pose stream of a simulation."""
     length = _length(task, driven)
     last = window(strokes(driven, task.period, len(observed.centre)))
-    begun, present = centre(driven.world, driven.start), driven.world.present
+    begun, present = centre(driven.world, driven.start), grown_nodes(driven.world)
     return poses(begun, observed.centre, observed.positions, present, last, length)
 
 

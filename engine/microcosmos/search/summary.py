@@ -7,7 +7,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
 from ..archive.poses import FRAMES, MOMENTS
-from ..world import Measures, State, World, native
+from ..world import Measures, State, World, grown_nodes, native
 from .measures import MEASURES
 from .window import Poses, Window
 
@@ -51,7 +51,7 @@ def summarise(
         scale=shown[2],
         window=Window(begun, stop, strokes),
         length=jnp.asarray(length, jnp.float32),
-        present=_present(world, start),
+        present=grown_nodes(world),
     )
     return dict(zip(SUMMARISED, measures, strict=True)), found, status
 
@@ -60,17 +60,12 @@ def _results(nodes: int) -> Sequence[tuple[int, ...]]:
     return [(MOMENTS, 2), (FRAMES, nodes, 2), (SHOWN,), (len(SUMMARISED),)]
 
 
-def _present(world: World, start: State) -> Array:
-    present = world.present
-    return jnp.ones(len(start.positions), bool) if present is None else present
-
-
 def _operands(
     world: World, start: State, end: State, observed: Measures
 ) -> tuple[list[Any], dict[str, int]]:
     rods, (height, width) = world.rods, world.size
     collected = end.collected
-    graph = (rods.edges, rods.joints, _present(world, start))
+    graph = (rods.edges, rods.joints, grown_nodes(world))
     operands = [
         *end.populations,
         start.positions,

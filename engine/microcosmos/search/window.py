@@ -61,15 +61,14 @@ def poses(
     start: Float[Array, "2"],
     centre: Float[Array, "time 2"],
     positions: Float[Array, "time node 2"],
-    present: Bool[Array, "node"] | None,
+    present: Bool[Array, "node"],
     window: Window,
     length: Scalar | float,
 ) -> Poses:
     """Record the poses of a simulation whose centre was at `start` before the first step."""
     dtype = positions.dtype
-    kept = jnp.ones(positions.shape[1], bool) if present is None else present
     shown = positions[window.places()]
-    there = kept[None, :, None]
+    there = present[None, :, None]
     low = jnp.min(jnp.where(there, shown, jnp.inf), (0, 1))
     high = jnp.max(jnp.where(there, shown, -jnp.inf), (0, 1))
     origin = (low + high) / 2
@@ -84,5 +83,5 @@ def poses(
         scale=scale,
         window=window,
         length=jnp.asarray(length, dtype),
-        present=kept,
+        present=present,
     )

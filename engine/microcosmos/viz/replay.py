@@ -247,9 +247,7 @@ def _filmed(
         energy = jnp.zeros((0, *task.world.size)) if start is None else start[None]
     before = np.maximum(np.arange(frames + 1) * every - 1, 0)
     rest = jax.tree.map(lambda x: x[before], seen.rest)
-    present = driven.world.present
-    if present is None:
-        present = jnp.ones(positions.shape[1], bool)
+    present = world.grown_nodes(driven.world)
     return Recording(positions, curl, velocity, energy, rest, present), end, seen
 
 

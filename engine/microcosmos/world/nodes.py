@@ -8,6 +8,7 @@ from jaxtyping import Array, Float
 from .. import coupling, fields
 from ..groups import Groups
 from .model import State, World
+from .present import grown_nodes
 
 Vectors = Float[Array, "node 2"]
 Scalars = Float[Array, "node"]
@@ -82,6 +83,4 @@ def _turned(
 
 def _weights(world: World, positions: Vectors) -> Scalars:
     """Return 1 for nodes that are present, else 0."""
-    if world.present is None:
-        return jnp.ones_like(positions[:, 0])
-    return world.present.astype(positions.dtype)
+    return grown_nodes(world).astype(positions.dtype)

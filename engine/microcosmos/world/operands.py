@@ -8,6 +8,7 @@ from jaxtyping import Array, Int
 from .. import fields, filaments
 from .controller import Actuators, Controller, Network, Series
 from .model import State, World
+from .present import grown_nodes
 
 Numbers = dict[str, int]
 GIVEN, NETWORK, SERIES = range(3)
@@ -24,9 +25,8 @@ def body_of(
     if layout is None and actuators is not None:
         layout = actuators.layout
     pieces = world.groups.member if layout is None else layout.pieces.member
-    present = jnp.ones(nodes, bool) if world.present is None else world.present
     assert rods.joints is not None
-    graph = (rods.edges, rods.joints, world.groups.member, pieces, present)
+    graph = (rods.edges, rods.joints, world.groups.member, pieces, grown_nodes(world))
     arrays = [state.positions, state.angles, *(jnp.asarray(one, jnp.int32) for one in graph)]
     if layout is None:
         edges, joints = len(rods.edges), len(rods.bend)

@@ -9,6 +9,12 @@ from .. import filaments
 from .model import State, World
 
 
+def grown_nodes(world: World) -> Bool[Array, "node"]:
+    """Return the mask of all nodes that have grown."""
+    present = world.present
+    return jnp.ones(len(world.groups.member), bool) if present is None else present
+
+
 def there(world: World, layers: int = 1) -> Bool[Array, "point"] | None:
     """Return the mask of points of present nodes; None: all."""
     if world.present is None or layers == 1:
