@@ -52,9 +52,10 @@ CHECKED = [f"microcosmos.{name}" for name in SHAPED.split()]
 install_import_hook(CHECKED, "beartype.beartype")
 jax.config.update("jax_numpy_rank_promotion", "raise")
 
+import genotypes  # noqa: E402
 from typer.testing import CliRunner  # noqa: E402
 
-from microcosmos import cli, genomes, spec, world  # noqa: E402
+from microcosmos import cli, spec, world  # noqa: E402
 from microcosmos.archive import creature  # noqa: E402
 from microcosmos.build import build, build_world  # noqa: E402
 
@@ -114,22 +115,7 @@ def require_slope():
 @pytest.fixture(scope="session")
 def network_of():
     """A function that makes a CPPN from its links, activations and biases."""
-
-    def make(links, inputs, activations, biases, *, dtype="float32", room=(12, 16)):
-        genes, names = genomes.empty(*room), list(genomes.ACTIVATIONS)
-        used, count = inputs + len(activations), len(links)
-        genes.node_used[:used], genes.node_id[:used] = True, np.arange(used)
-        genes.activation[inputs:used] = [names.index(name) for name in activations]
-        genes.bias[inputs:used] = biases
-        genes.connection_used[:count] = genes.enabled[:count] = True
-        genes.innovation[:count] = np.arange(count)
-        genes.source[:count], genes.target[:count] = np.transpose(list(links))
-        genes.weight[:count] = list(links.values())
-        return jax.tree.map(
-            lambda x: jnp.asarray(x, dtype if x.dtype == np.float32 else None), genes
-        )
-
-    return make
+    return genotypes.network_of
 
 
 @pytest.fixture(scope="session")

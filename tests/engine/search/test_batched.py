@@ -9,8 +9,9 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 import spec_cases
+from genotypes import any_genotype
 
-from microcosmos import filaments, genomes, plugins, search, spec, world
+from microcosmos import filaments, plugins, search, spec, world
 from microcosmos.build import build_stroke, build_task
 from microcosmos.plugins import registry
 from microcosmos.spec.control import NetworkInputs
@@ -44,33 +45,10 @@ def cases(kept=lambda document: True):
     ]
 
 
-@pytest.fixture
-def block_of(network_of):
-    """A function that draws the genotypes of a block, with hidden nodes in networks."""
-
-    def network(control, rng):
-        inputs, outputs = len(control.inputs), len(control.outputs)
-        first = inputs + outputs
-        links = {(i, o): rng.normal() for i in range(inputs) for o in range(inputs, first)}
-        for hidden in range(first, first + 3):
-            before = int(rng.integers(inputs)) if hidden == first else hidden - 1
-            after = inputs + int(rng.integers(outputs))
-            links |= {(before, hidden): rng.normal(), (hidden, after): rng.normal()}
-        if getattr(control, "recurrent", False):
-            links |= {(first, first): 0.5, (first + 2, first): -0.7}
-        kinds = rng.choice(list(genomes.ACTIVATIONS), outputs + 3)
-        biases = rng.normal(size=outputs + 3)
-        return network_of(links, inputs, kinds, biases, room=(first + 4, len(links) + 2))
-
-    def block(scene, encoding):
-        rng = np.random.default_rng(0)
-        if isinstance(scene.control, spec.Control | spec.Grown):
-            return stacked([network(scene.control, rng) for _ in range(COUNT)])
-        genes = encoding.newcomer(key=jax.random.key(0)).values.shape
-        scale = 0.1 if isinstance(scene.control, spec.Fold) else 1.0
-        return genomes.Vector(jnp.float32(rng.uniform(-scale, scale, (COUNT, *genes))))
-
-    return block
+def block_of(scene, encoding):
+    """Draw the genotypes of a block."""
+    rng = np.random.default_rng(0)
+    return stacked([any_genotype(scene, encoding, rng) for _ in range(COUNT)])
 
 
 def stroke_of(scene, dtype):
@@ -113,9 +91,7 @@ def headed(found):
 
 
 @pytest.mark.parametrize("name", cases())
-def test_a_batch_measures_what_one_creature_at_a_time_does(
-    name, block_of, float64, monkeypatch
-):
+def test_a_batch_measures_what_one_creature_at_a_time_does(name, float64, monkeypatch):
     scene = scene_of(name)
     if isinstance(scene.control, spec.Gait):
         function, block = stroke_of(scene, float64)
@@ -131,7 +107,7 @@ def test_a_batch_measures_what_one_creature_at_a_time_does(
     "name", [pytest.param("a network", marks=pytest.mark.long), "a network that senses"]
 )
 def test_a_batch_of_disturbed_creatures_measures_what_each_alone_does(
-    name, block_of, float64, monkeypatch
+    name, float64, monkeypatch
 ):
     scene = scene_of(name)
     task = build_task(scene, float64)
@@ -160,11 +136,11 @@ def carried_out(box, start, given):
 
 
 @pytest.mark.parametrize("name", [case for case in cases() if native_case(case.values[0])])
-def test_the_kernel_gives_a_batch_the_bits_of_each_creature(name, block_of):
+def test_the_kernel_gives_a_batch_the_bits_of_each_creature(name):
     pytest.importorskip(
         "microcosmos_kernels", reason="microcosmos-kernels is not installed: no compiler?"
     )
-    operands = operands_of(scene_of(name), block_of)
+    operands = operands_of(scene_of(name))
     one = jax.jit(lambda given: jax.lax.map(lambda row: carried_out(*row), given))(operands)
     # What is the same for all creatures has no axis of the batch, as in an evaluation.
     shared = jax.tree.map(lambda x: None if np.all(x == x[:1]) else 0, operands)
@@ -174,7 +150,7 @@ def test_the_kernel_gives_a_batch_the_bits_of_each_creature(name, block_of):
     assert all(np.all(np.isfinite(x)) for x in jax.tree.leaves(one))
 
 
-def operands_of(scene, block_of):
+def operands_of(scene):
     """Return worlds, starts and controllers of a block, each turned and delayed otherwise."""
     task = build_task(scene)
     if isinstance(scene.control, spec.Gait):
