@@ -8,7 +8,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float, Int
+from jaxtyping import Array, Bool, Float, Int, PyTree
 
 from .. import units
 from ..genomes import Drive, Genotype
@@ -100,9 +100,15 @@ def _evaluate(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
     values["hidden_nodes"], values["connections"] = task.encoding.size(genotype)
     dtype = observed.centre.dtype
     measures = jnp.stack([values[name].astype(dtype) for name in task.measures])
-    finite = jnp.all(jnp.isfinite(measures))
+    finite = all_finite(measures) & all_finite(genotype)
     valid = jnp.where(finite, valid, STATUSES.index("non-finite"))
     return Evaluation(fitness_of(task, values).astype(dtype), measures, valid, shown)
+
+
+def all_finite(tree: PyTree) -> Bool[Array, ""]:
+    """Return whether all numbers are finite; bounded outputs can hide that a gene is not."""
+    numbers = [x for x in jax.tree.leaves(tree) if jnp.issubdtype(x.dtype, jnp.floating)]
+    return jnp.all(jnp.stack([jnp.all(jnp.isfinite(one)) for one in numbers]))
 
 
 def _summary(
