@@ -52,8 +52,8 @@ class Arrays {
 
   void end() {
     if (operands_ != args_.size() || results_ != rets_.size())
-      fail("a rollout has " + std::to_string(operands_) + " operands and " +
-           std::to_string(results_) + " results");
+      fail("there are " + std::to_string(operands_) + " operands and " + std::to_string(results_) +
+           " results");
   }
 
   int64_t worlds() const {

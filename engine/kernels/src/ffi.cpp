@@ -45,6 +45,7 @@ std::string read_body(Rollout& r, Numbers number) {
   for (int32_t one : {r.steps, r.edges, r.joints, r.rows, r.links, r.timers, r.terms})
     if (one < 0) return "a count is negative";
   if (r.nodes < 1 || r.bodies < 1) return "a world has at least one node";
+  if (r.bodies > r.nodes) return "a body has at least one node";
   if ((r.actuated || r.matched) && !r.laid_out) return "there is no layout";
   if (r.timers > 2 || (r.waves && r.timers != 2)) return "a timer has one or two numbers";
   const int inputs = 1 + r.timers * (r.waves ? 2 : 1) + r.senses;

@@ -4,32 +4,129 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from kernel_scenes import SCENES
+from genotypes import any_genotype
+from kernel_scenes import SCENES, run
 
-from microcosmos import world
+from microcosmos import search, spec, world
+from microcosmos.build import build_task
+from microcosmos.search.summary import summarise
 
 pytest.importorskip(
     "microcosmos_kernels", reason="microcosmos-kernels is not installed: no compiler?"
 )
 native = world.native
 
+PLANES = ["a plane"] * 9
+BODY = ["positions", "angles", "edges", "joints", "member", "piece", "present"]
+LAYOUT = ["layout angles", "layout rest angles", "turned", "placed"]
+CONTROLLER = [
+    "bounds of the controller",
+    *["activations", "biases", "sources", "targets", "weights", "timer", "ramp"],
+    "positions along the body",
+    "lags",
+    "nodes of joints",
+    "rest angles of the body",
+    "rest lengths of the body",
+    "basis",
+    "genes",
+]
+OPERANDS = {
+    "rollout": [
+        *PLANES,
+        *BODY,
+        *LAYOUT,
+        "colours of edges",
+        "colours of joints",
+        *["stretch", "shear", "bend", "parameters", "energy", "collected"],
+        "smoothing across rows",
+        "smoothing along rows",
+        "uniform force",
+        "walls",
+        "strength of the sponge",
+        "velocity of the sponge",
+        "rest angles",
+        "rest lengths",
+        *CONTROLLER,
+    ],
+    "develop": [*BODY, *LAYOUT, *CONTROLLER],
+    "summarise": [
+        *PLANES,
+        *["positions", "angles", "edges", "joints", "present", "collected"],
+        "rest angles",
+        "rest lengths",
+        *("centre", "path", "speed", "node speed", "held", "heading", "curvature", "power"),
+        *("force", "clock", "scales"),
+    ],
+}
+"""Names of operands in errors, in their order."""
+
+
+def rollout():
+    native.rollout(*SCENES["energy that is taken and spreads"]())
+
+
+def closed_loop():
+    """A rollout of a network that senses, carried out by actuators."""
+    driven = developed(sense_energy=True)
+    native.rollout(driven.world, driven.start, driven.controller)
+
+
+def develop():
+    driven = developed()
+    native.develop(driven.world, driven.start, driven.controller)
+
+
+def develop_genes():
+    driven = developed(encoding="direct")
+    native.develop(driven.world, driven.start, driven.controller)
+
+
+def summary():
+    box, start, rest = SCENES["energy that is taken and spreads"]()
+    end, observed = run(native.rollout, (box, start, rest))
+    summarise(box, start, end, observed, jnp.arange(1.0, 101), 20.0, 20.0)
+
+
+def developed(**control):
+    scene = spec.Scene.model_validate(
+        {
+            "world": {"width": 24, "height": 24, "energy": {}},
+            "body": {"nodes": 8},
+            "control": {"period": 20} | control,
+            "task": {"steps": 30},
+        }
+    )
+    task = build_task(scene)
+    genotype = any_genotype(scene, task.encoding, np.random.default_rng(0))
+    return search.drive(task, genotype, differentiable=True)
+
+
+CALLS = {
+    "rollout": rollout,
+    "rollout in closed loop": closed_loop,
+    "develop": develop,
+    "develop genes": develop_genes,
+    "summarise": summary,
+}
+
+
+@pytest.fixture(params=["rollout", "develop", "summarise"])
+def name(request):
+    return request.param
+
 
 @pytest.fixture
-def call(monkeypatch):
-    """The target, results, operands and numbers of a correct call of a rollout."""
-    made = []
-    monkeypatch.setattr(native, "call", lambda *given: made.append(given) or stop())
-    with pytest.raises(Stop):
-        native.rollout(*SCENES["energy that is taken and spreads"]())
-    return made[0]
+def call(name, monkeypatch):
+    """The target, results, operands and numbers of a correct call."""
+    made, carry_out = [], native.call
 
+    def record(*given):
+        made.append(given)
+        return carry_out(*given)
 
-class Stop(Exception):
-    """The call was recorded."""
-
-
-def stop():
-    raise Stop
+    monkeypatch.setattr(native, "call", record)
+    CALLS[name]()
+    return made[-1]
 
 
 def carry_out(target, shapes, operands, numbers):
@@ -43,9 +140,9 @@ def test_the_recorded_call_is_carried_out(call):
 
 
 @pytest.mark.parametrize("change", ["longer", "deeper", "of integers"])
-def test_an_operand_of_another_shape_or_type_is_an_error(call, change):
+def test_an_operand_of_another_shape_or_type_is_an_error_that_names_it(name, call, change):
     target, shapes, operands, numbers = call
-    for place, operand in enumerate(operands):
+    for place, (label, operand) in enumerate(zip(OPERANDS[name], operands, strict=True)):
         if change == "longer":
             wrong = jnp.zeros((operand.shape[0] + 1, *operand.shape[1:]), operand.dtype)
         elif change == "deeper":
@@ -53,14 +150,16 @@ def test_an_operand_of_another_shape_or_type_is_an_error(call, change):
         else:
             wrong = operand.astype(jnp.int16)
         given = [*operands[:place], wrong, *operands[place + 1 :]]
-        with pytest.raises(Exception, match=r"must have the shape|must have two axes"):
+        with pytest.raises(
+            Exception, match=f"microcosmos-kernels: {label} must have the shape"
+        ):
             carry_out(target, shapes, given, numbers)
 
 
 def test_an_operand_too_few_or_too_many_is_an_error(call):
     target, shapes, operands, numbers = call
     for given in (operands[:-1], [*operands, operands[-1]], []):
-        with pytest.raises(Exception, match=r"there is no operand|a rollout has \d+ operands"):
+        with pytest.raises(Exception, match=r"there is no operand|there are \d+ operands"):
             carry_out(target, shapes, given, numbers)
 
 
@@ -72,26 +171,92 @@ def test_a_result_of_another_shape_is_an_error(call):
             carry_out(target, wrong, operands, numbers)
 
 
+def test_a_result_too_few_or_too_many_is_an_error(call):
+    target, shapes, operands, numbers = call
+    for wrong in (shapes[:-1], [*shapes, shapes[-1]]):
+        with pytest.raises(Exception, match=r"there is no result|\d+ results"):
+            carry_out(target, wrong, operands, numbers)
+
+
 def test_a_missing_number_is_an_error(call):
     target, shapes, operands, numbers = call
-    for name in numbers:
-        fewer = {key: value for key, value in numbers.items() if key != name}
-        with pytest.raises(Exception, match=f"there is no number {name}"):
+    for one in numbers:
+        fewer = {key: value for key, value in numbers.items() if key != one}
+        with pytest.raises(Exception, match=f"there is no number {one}"):
             carry_out(target, shapes, operands, fewer)
 
 
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        *((name, -1) for name in ("steps", "nodes", "edges", "joints", "rows", "links")),
-        *((name, -1) for name in ("height", "commands", "projection", "delta", "sweeps")),
-        *((name, 3) for name in ("commands", "projection", "delta", "layers", "timers")),
-        *((name, 0) for name in ("nodes", "bodies", "iterations", "layers")),
-        ("width", 3),
-        ("nodes", 2**31 - 1),
-    ],
-)
-def test_a_number_out_of_range_is_an_error(call, name, value):
+COUNTS = {
+    *("steps", "nodes", "edges", "joints", "bodies", "rows", "links", "timers", "terms"),
+    *("height", "width"),
+}
+CHOICES = {
+    "commands": (-1, 3),
+    "projection": (-1, 3),
+    "delta": (-1, 3),
+    "layers": (-1, 0, 3),
+    "iterations": (-1, 0),
+    "sweeps": (-1,),
+}
+
+
+@pytest.mark.parametrize("value", [-1, "one more", 2**31 - 1])
+def test_a_count_out_of_range_is_an_error(call, value):
     target, shapes, operands, numbers = call
-    with pytest.raises(Exception, match="microcosmos-kernels: "):
-        carry_out(target, shapes, operands, numbers | {name: value})
+    for one in COUNTS & set(numbers):
+        wrong = numbers[one] + 1 if value == "one more" else value
+        if one == "bodies" and "develop" in target and value == "one more":
+            continue  # One that has no nodes changes nothing there.
+        with pytest.raises(Exception, match="microcosmos-kernels: "):
+            carry_out(target, shapes, operands, numbers | {one: wrong})
+
+
+def test_a_choice_out_of_range_is_an_error(call):
+    target, shapes, operands, numbers = call
+    for one in set(CHOICES) & set(numbers):
+        for wrong in CHOICES[one]:
+            with pytest.raises(Exception, match="microcosmos-kernels: "):
+                carry_out(target, shapes, operands, numbers | {one: wrong})
+
+
+def test_a_world_has_a_node_a_body_and_some_cells(call):
+    target, shapes, operands, numbers = call
+    for one, wrong in {"nodes": 0, "bodies": 0, "width": 0, "height": 0}.items():
+        if one in numbers:
+            with pytest.raises(Exception, match="at least"):
+                carry_out(target, shapes, operands, numbers | {one: wrong})
+
+
+@pytest.mark.parametrize("name", CALLS)
+@pytest.mark.parametrize("value", [-2, 2**31 - 1])
+def test_a_reference_to_what_is_not_there_is_an_error(call, value):
+    target, shapes, operands, numbers = call
+    for place, operand in enumerate(operands):  # No world here has walls.
+        if operand.dtype != jnp.int32 or not operand.size:
+            continue
+        for at in (0, operand.size - 1):
+            wrong = operand.ravel().at[at].set(value).reshape(operand.shape)
+            given = [*operands[:place], wrong, *operands[place + 1 :]]
+            with pytest.raises(Exception, match="refers to what it lacks"):
+                carry_out(target, shapes, given, numbers)
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_other_numbers_in_operands_never_crash(call):
+    """What is drawn is within the counts, but no sensible body, network or motion."""
+    target, shapes, operands, numbers = call
+    rng = np.random.default_rng(0)
+    for _ in range(20):
+        given = [scrambled(operand, rng) for operand in operands]
+        carry_out(target, shapes, given, numbers)
+
+
+def scrambled(operand, rng):
+    """Return an operand with other references, or with numbers of any size and none."""
+    if not operand.size or jnp.min(operand) == -1:  # Inputs of a network have no activation.
+        return operand
+    if operand.dtype == jnp.int32:
+        return jnp.asarray(rng.permutation(np.ravel(operand)).reshape(operand.shape))
+    values = np.array(operand)
+    odd = rng.choice(np.float32([np.nan, np.inf, -np.inf, 1e30, -1e30, 0]), values.shape)
+    return jnp.asarray(np.where(rng.random(values.shape) < 0.02, odd, values))
