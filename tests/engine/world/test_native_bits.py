@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from small_spec import SMALL_RUN
 
 ROOT = Path(__file__).parents[3]
 SOURCE = ROOT / "engine" / "kernels" / "check" / "evaluations.cpp"
@@ -62,16 +63,8 @@ def test_compilers_and_processors_give_the_same_bits(tmp_path, zig):
 
 def test_a_run_goes_on_with_another_instruction_set(tmp_path):
     kernels = pytest.importorskip("microcosmos_kernels")
-    small = {
-        "experiment": "quality-diversity",
-        "world": {"width": 24, "height": 24},
-        "body": {"nodes": 8},
-        "control": {"period": 40},
-        "task": {"steps": 100},
-        "search": {"generations": 4, "batch": 8},
-    }
     spec = tmp_path / "spec.json"
-    spec.write_text(json.dumps(small))
+    spec.write_text(json.dumps(SMALL_RUN))
     fastest = kernels.instruction_sets()[-1]
 
     def evolve(out, instruction_set, generations):

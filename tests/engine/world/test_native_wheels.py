@@ -11,6 +11,7 @@ from pathlib import Path
 from zipfile import ZipFile
 
 import pytest
+from small_spec import SMALL_RUN
 
 ROOT = Path(__file__).parents[3]
 LIBRARIES = {"x86_64": {"basic", "avx2", "avx512"}, "aarch64": {"basic"}}
@@ -21,14 +22,6 @@ EXPORTED = {
 }
 FLAGS = {"avx2": {"avx2"}, "avx512": {"avx512f", "avx512vl", "avx512dq", "avx512bw"}}
 """What Linux calls the instructions that a library needs."""
-SPEC = {
-    "experiment": "quality-diversity",
-    "world": {"width": 24, "height": 24},
-    "body": {"nodes": 8},
-    "control": {"period": 40},
-    "task": {"steps": 100},
-    "search": {"generations": 2, "batch": 8},
-}
 PIP = ["-m", "pip", "-q", "--disable-pip-version-check"]
 
 pytestmark = pytest.mark.long
@@ -114,7 +107,7 @@ def installed(place, kernel):
 
 def evolved(commands, place, instruction_set):
     """Return the archive that an installation evolves with the kernel."""
-    (place / "spec.json").write_text(json.dumps(SPEC))
+    (place / "spec.json").write_text(json.dumps(SMALL_RUN))
     out = place / "archive.h5"
     environment = os.environ | {
         "JAX_PLATFORMS": "cpu",
