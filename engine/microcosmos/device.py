@@ -22,9 +22,15 @@ _STARTED = (
 KERNELS = ("auto", "native", "jax")
 """What may simulate worlds: the native kernel where it can, it alone, or JAX alone."""
 KERNEL_VARIABLE = "MICROCOSMOS_KERNEL"
-PORTABLE = "--xla_cpu_max_isa=AVX --xla_cpu_experimental_ynn_fusion_type="
-"""Without fused multiply-adds, wider vectors and sums by a library, XLA's programs give the
-same bits on every x86-64 processor, as the native kernel does. They are slower by a quarter."""
+PORTABLE = {
+    "x86_64": "--xla_cpu_max_isa=AVX --xla_cpu_experimental_ynn_fusion_type=",
+    "aarch64": "--xla_backend_extra_options=-aarch64-enable-mcr=false "
+    "--xla_cpu_experimental_ynn_fusion_type=",
+}
+"""Flags by processor. Without fused multiply-adds, wider vectors and sums by a library, XLA's
+programs give the same bits on all of these, as the native kernel does. On ARM only LLVM's
+machine combiner fuses at XLA's usual level of optimisation. Programs of x86-64 are slower by a
+quarter."""
 PORTABLE_JAXLIB = ("0.10.2",)
 """Versions with which that was tested; XLA ends a process for flags that it does not know."""
 GPU_FLAGS = "--xla_gpu_deterministic_ops=true --xla_gpu_autotune_level=0"
@@ -34,8 +40,8 @@ def prepare(devices: int | None = None, cache: str | os.PathLike | None = None) 
     """Configure JAX for repeatable results; call this before JAX is first used.
 
     On a CPU, one device per core (or `devices`) gives every core its own block; results do not
-    depend on the number, nor, with the native kernel, on the model of an x86-64 processor. If
-    JAX has started, it keeps its devices, with a warning. Compiled programs are cached in
+    depend on the number, nor, with the native kernel, on the processor. If JAX has started, it
+    keeps its devices, with a warning. Compiled programs are cached in
     JAX_COMPILATION_CACHE_DIR, or in `cache`.
     """
     jax.config.update("jax_default_matmul_precision", "highest")
@@ -59,10 +65,15 @@ def _started() -> bool:
     return getattr(bridge, "backends_are_initialized", lambda: False)()
 
 
-def _portable() -> bool:
-    """Return whether programs are to give the same bits on every x86-64 processor."""
-    known = platform.machine() in ("x86_64", "AMD64") and jaxlib_version in PORTABLE_JAXLIB
-    return known and kernel() != "jax" and _installed() is not None
+def _portable() -> str | None:
+    """Return the flags with which programs give the same bits on every processor, if wanted."""
+    wanted = kernel() != "jax" and _installed() is not None
+    return _portable_flags() if wanted else None
+
+
+def _portable_flags() -> str | None:
+    machine = platform.machine().replace("AMD64", "x86_64")
+    return PORTABLE.get(machine) if jaxlib_version in PORTABLE_JAXLIB else None
 
 
 def _add_flags(added: str) -> None:
@@ -104,20 +115,19 @@ def _installed() -> str | None:
 def device_kind(*, portable: bool = True) -> str:
     """Return platform, model and software, on which the bits of a result depend.
 
-    With the native kernel and `PORTABLE` flags, all x86-64 processors are one model, unless
-    programs use what these do not cover: then `portable` is false.
+    With the native kernel and `PORTABLE` flags, these are the versions alone, unless programs
+    use what the flags do not cover: then `portable` is false.
     """
     device = jax.local_devices()[0]
-    model = device.device_kind
+    model, flags = device.device_kind, set(os.environ.get("XLA_FLAGS", "").split())
     if device.platform == "cpu":
-        flags = os.environ.get("XLA_FLAGS", "").split()
-        alike = portable and set(PORTABLE.split()) <= set(flags) and kernel_version()
-        model = "x86-64" if alike else _processor()
+        needed = set((_portable_flags() or "").split())
+        alike = portable and kernel_version() and needed and needed <= flags
+        model, flags = ("", flags - needed) if alike else (_processor(), flags)
     software = f"microcosmos {VERSION}, jax {jax.__version__}, jaxlib {jaxlib_version}"
     if kernels := kernel_version():
         software += f", microcosmos-kernels {kernels}"
-    flags = " ".join(sorted(os.environ.get("XLA_FLAGS", "").split()))
-    parts = [device.platform, model, software, flags]
+    parts = [device.platform, model, software, " ".join(sorted(flags))]
     return ", ".join(part for part in parts if part)
 
 
@@ -142,5 +152,5 @@ def compiler_options() -> dict[str, object]:
 
 
 # On import, since evaluations must round alike whether or not a process calls `prepare`.
-if _portable() and not _started():
-    _add_flags(PORTABLE)
+if (_flags := _portable()) and not _started():
+    _add_flags(_flags)

@@ -6,6 +6,7 @@ from typing import Any, Unpack
 
 import numpy as np
 
+from .. import exact
 from .graph import Body
 from .shape import Stiffness, from_edges
 
@@ -44,7 +45,7 @@ def walk(
         raise ValueError(f"`deviation` must be finite and at least 0, got {deviation}.")
     turns = deviation * np.random.default_rng(seed).standard_normal(nodes - 2)
     angle = np.concatenate([[0.0], np.cumsum(turns)])
-    steps = spacing * np.stack([np.cos(angle), np.sin(angle)], 1)
+    steps = spacing * np.stack([exact.cosine(angle), exact.sine(angle)], 1)
     positions = np.concatenate([np.zeros((1, 2)), np.cumsum(steps, 0)])
     return replace(straight, positions=positions, rest_angle=turns, crossing=True)
 
@@ -71,8 +72,8 @@ def arc(nodes: int, spacing: float, gap: float, **stiffness: Unpack[Stiffness]) 
 
 def _on_circle(angle: np.ndarray, turn: float, spacing: float) -> np.ndarray:
     """Return positions at `angle` on the circle on which `turn` makes a chord of `spacing`."""
-    radius = 0.5 * spacing / np.sin(turn / 2)
-    return radius * np.stack([np.cos(angle), np.sin(angle)], 1)
+    radius = 0.5 * spacing / exact.sine(turn / 2)
+    return radius * np.stack([exact.cosine(angle), exact.sine(angle)], 1)
 
 
 def star(arms: int, arm_nodes: int, spacing: float, **stiffness: Unpack[Stiffness]) -> Body:
@@ -81,7 +82,9 @@ def star(arms: int, arm_nodes: int, spacing: float, **stiffness: Unpack[Stiffnes
     _refuse_fewer("arm_nodes", arm_nodes, 1)
     turn = 2 * np.pi * np.arange(arms) / arms
     along = spacing * np.arange(1, arm_nodes + 1)
-    arm_positions = np.stack([np.cos(turn), np.sin(turn)], 1)[:, None] * along[None, :, None]
+    arm_positions = (
+        np.stack([exact.cosine(turn), exact.sine(turn)], 1)[:, None] * along[None, :, None]
+    )
     outer = 1 + np.arange(arms * arm_nodes).reshape(arms, arm_nodes)
     inner = np.concatenate([np.zeros((arms, 1), int), outer[:, :-1]], 1)
     positions = np.concatenate([np.zeros((1, 2)), arm_positions.reshape(-1, 2)])
@@ -120,7 +123,7 @@ def _segment(
     positions: list, edges: list, start: int, heading: float, nodes: int, spacing: float
 ) -> tuple[int, float]:
     """Append a straight segment; return its tip and heading."""
-    step = spacing * np.array([np.cos(heading), np.sin(heading)])
+    step = spacing * np.array([exact.cosine(heading), exact.sine(heading)])
     origin, tip = positions[start], start
     for number in range(1, nodes + 1):
         edges.append((tip, len(positions)))

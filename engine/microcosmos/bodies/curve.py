@@ -5,6 +5,7 @@ from typing import Any, Unpack
 
 import numpy as np
 
+from .. import exact
 from ..optional import require
 from .graph import Body
 from .shape import Stiffness, from_edges
@@ -62,7 +63,7 @@ def _strand(corners: np.ndarray, spacing: float, closed: bool) -> tuple[np.ndarr
     if closed:
         corners = np.concatenate([corners, corners[:1]])
     steps = np.diff(corners, axis=0)
-    way = np.concatenate([[0], np.cumsum(np.hypot(steps[:, 0], steps[:, 1]))])
+    way = np.concatenate([[0], np.cumsum(exact.length(steps[:, 0], steps[:, 1]))])
     if way[-1] == 0:
         raise ValueError("`points` must not all be the same.")
     count = max(round(way[-1] / spacing), 3 if closed else 1)
@@ -101,7 +102,7 @@ def _join(places: np.ndarray, edges: np.ndarray, reach: float) -> tuple[np.ndarr
 
     degree = np.bincount(edges.reshape(-1), minlength=len(places))
     for end in np.flatnonzero(degree == 1).tolist():
-        gap = np.hypot(*(places - places[end]).T)
+        gap = exact.length(*(places - places[end]).T)
         gap[end] = np.inf
         nearest = int(np.argmin(gap))
         if gap[nearest] < reach and root(nearest) != end:

@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from .. import exact
 from .checks import refuse_malformed
 from .colouring import Colour, colour
 
@@ -66,9 +67,10 @@ INDEXED_BY = {"edges": "positions", "joints": "edges"}
 
 def placed(body: Body, centre: Sequence[int | float] | np.ndarray, turned: float = 0.0) -> Body:
     """Turn a body anticlockwise about its mean node position and move that to `centre`."""
-    c, s = np.cos(turned), np.sin(turned)
+    c, s = exact.cosine(turned), exact.sine(turned)
     arms = body.positions - body.positions.mean(0)
-    rotated = arms @ np.array([[c, s], [-s, c]]) if turned else arms
+    x, y = arms.T
+    rotated = np.stack([c * x - s * y, s * x + c * y], 1) if turned else arms
     return replace(body, positions=rotated + np.asarray(centre, float))
 
 

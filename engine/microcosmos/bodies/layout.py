@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .. import exact
 from .graph import Body
 
 MAX_NODES = 1024
@@ -39,22 +40,31 @@ def layout(body: Body) -> Layout:
         raise ValueError(f"a body to lay out must have at most {MAX_NODES} nodes, got {nodes}")
     x, y = (body.positions[body.edges[:, 1]] - body.positions[body.edges[:, 0]]).T
     return Layout(
-        angle=np.arctan2(y, x),
+        angle=exact.angle(y, x),
         rest_angle=body.rest_angle,
         joints=body.joints,
-        turned=np.linalg.pinv(_differences(body.joints, edges)),
-        placed=np.linalg.pinv(_differences(body.edges, nodes)),
+        turned=_inverse(body.joints, edges),
+        placed=_inverse(body.edges, nodes),
         piece=_pieces(body.edges, nodes),
     )
 
 
-def _differences(pairs: np.ndarray, count: int) -> np.ndarray:
-    """Return the matrix (pair, item) of differences, second item minus first."""
-    matrix = np.zeros((len(pairs), count))
-    rows = np.arange(len(pairs))
-    matrix[rows, pairs[:, 1]] += 1
-    matrix[rows, pairs[:, 0]] -= 1
-    return matrix
+def _inverse(pairs: np.ndarray, count: int) -> np.ndarray:
+    """Return the matrix (item, pair) from differences, second item minus first, to items.
+
+    It is the pseudoinverse: differences are met by least squares, and each connected piece has
+    mean 0. With D the matrix of differences and J that of means, D⁺ = (DᵀD + J)⁻¹ Dᵀ.
+    """
+    first, second = pairs.T
+    squares = np.zeros((count, count))  # Whole numbers, so that their order does not matter.
+    for one, other in ((first, first), (second, second)):
+        np.add.at(squares, (one, other), 1)
+    for one, other in ((first, second), (second, first)):
+        np.add.at(squares, (one, other), -1)
+    piece = _pieces(pairs, count)
+    together = piece[:, None] == piece[None]
+    found = exact.inverse(squares + together / together.sum(1))
+    return found[:, second] - found[:, first]
 
 
 def _pieces(edges: np.ndarray, nodes: int) -> np.ndarray:

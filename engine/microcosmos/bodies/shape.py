@@ -5,6 +5,7 @@ from typing import TypedDict
 
 import numpy as np
 
+from .. import exact
 from .graph import Body
 
 
@@ -35,8 +36,8 @@ def from_edges(
     positions, edges = np.asarray(positions, float), np.asarray(edges, int).reshape(-1, 2)
     joints = joints_of(positions, edges)
     v = positions[edges[:, 1]] - positions[edges[:, 0]]
-    angle = np.arctan2(v[:, 1], v[:, 0])
-    length = np.hypot(v[:, 0], v[:, 1])
+    angle = exact.angle(v[:, 1], v[:, 0])
+    length = exact.length(v[:, 0], v[:, 1])
     if rest_length is not None:
         length = np.where(np.isnan(rest_length), length, rest_length)
     return Body(
@@ -80,7 +81,7 @@ def _cyclic(node: int, met: list[int], positions: np.ndarray, edges: np.ndarray)
     """Return pairs of neighbours among a node's edges, anticlockwise."""
     far = np.sum(edges[met], 1) - node
     v = positions[far] - positions[node]
-    round_about = np.array(met)[np.argsort(np.arctan2(v[:, 1], v[:, 0]), kind="stable")]
+    round_about = np.array(met)[np.argsort(exact.angle(v[:, 1], v[:, 0]), kind="stable")]
     return np.stack([round_about, np.roll(round_about, -1)], 1).tolist()
 
 

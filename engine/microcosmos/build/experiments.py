@@ -104,15 +104,13 @@ def build_repeats(chosen: spec.Evolution, plan: Plan) -> reevaluation.Programs |
 
 def is_portable(chosen: spec.Evolution) -> bool:
     """Return whether a search does without derivatives, plug-ins and other libraries, which may
-    sum as a processor likes, and without weights that NumPy's exponentials give."""
-    steric = chosen.world.steric
-    transformed = steric is not None and steric.smoothing == "gaussian"
+    sum as a processor likes."""
     foreign = any(
         one.operator == "cma-me" or getattr(one, "backend", "microcosmos") != "microcosmos"
         for one in chosen.emitters
     )
     plugins = plugin_versions(chosen.scene)
-    return not (any(chosen.gradients) or transformed or foreign or plugins)
+    return not (any(chosen.gradients) or foreign or plugins)
 
 
 def build_plan(chosen: spec.Evolution) -> Plan:

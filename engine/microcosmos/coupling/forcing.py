@@ -15,6 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
+from .. import exact
 from ..groups import Groups
 from .delta import Windows, divided, interpolate, spread
 
@@ -110,7 +111,7 @@ def step_lengths(iterations: int) -> np.ndarray:
     step to step. The last step, of length 1, follows the last projection.
     """
     turns = np.pi * np.arange(1, iterations) / iterations
-    rising = np.sort(1 / np.sin(turns) ** 2)
+    rising = np.sort(1 / exact.sine(turns) ** 2)
     # Short and long ones alternate, so that rounding errors do not grow on the way.
     pairs = np.stack([rising, rising[::-1]], 1).reshape(-1)[: len(rising)]
     return np.append(pairs, 1.0)

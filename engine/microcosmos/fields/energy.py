@@ -11,6 +11,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from .. import exact
+
 Plane = Float[Array, "x y"]
 
 
@@ -43,8 +45,11 @@ def packets(size: tuple[int, int], chosen: Packets) -> np.ndarray:
         away = np.arange(size[axis])[None] - places[:, axis, None]
         boxes = 1 + int(np.ceil(8 * chosen.width / size[axis]))
         images = away[:, :, None] + size[axis] * np.arange(-boxes, boxes + 1)
-        planes.append(np.exp(-0.5 * (images / chosen.width) ** 2).sum(-1))
-    return chosen.amplitude * np.einsum("px,py->xy", *planes)
+        planes.append(exact.exponential(-0.5 * (images / chosen.width) ** 2).sum(-1))
+    total = np.zeros(size)
+    for x, y in zip(*planes, strict=True):
+        total += x[:, None] * y[None]
+    return chosen.amplitude * total
 
 
 def placements(size: tuple[int, int], count: int, seed: int) -> np.ndarray:

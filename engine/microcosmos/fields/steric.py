@@ -14,6 +14,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from .. import exact
+
 Plane = Float[Array, "x y"]
 Gradient = Float[Array, "2 x y"]
 Vectors = Float[Array, "node 2"]
@@ -64,12 +66,18 @@ def binomial(density: Plane) -> Gradient:
 def gaussian_weights(cells: int) -> np.ndarray:
     """Return the weights along a periodic axis by which `gaussian` smooths, and differentiates.
 
-    In double precision: rounded to single, they do not show how a processor computes them.
+    In double precision: the sums of an inverse Fourier transform, wave by wave.
     """
-    k = 2 * np.pi * np.fft.fftfreq(cells)
-    smooth = np.exp(-0.5 * k * k)
-    slope = 1j * np.where(np.abs(k) > 3.14159, 0.0, k) * smooth
-    return np.stack([np.fft.ifft(smooth).real, np.fft.ifft(slope).real])
+    number = np.arange(cells)
+    sine, cosine = (f(2 * np.pi * number / cells) for f in (exact.sine, exact.cosine))
+    smooth, slope = np.zeros(cells), np.zeros(cells)
+    for wave in range(-((cells - 1) // 2), cells // 2 + 1):
+        k, phase = 2 * np.pi * wave / cells, wave * number % cells
+        weight = exact.exponential(np.asarray(-0.5 * k * k)) / cells
+        smooth += weight * cosine[phase]
+        if 2 * wave != cells:
+            slope -= weight * k * sine[phase]
+    return np.stack([smooth, slope])
 
 
 def binomial_weights(cells: int) -> np.ndarray:

@@ -11,6 +11,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
+from ..portable import arctangent
 from .chunks import in_chunks
 
 Positions = Float[Array, "node 2"]
@@ -58,7 +59,7 @@ def wrap(angle: Float[Array, "*shape"]) -> Float[Array, "*shape"]:
 def edge_angles(positions: Positions, rods: Rods) -> Angles:
     """Return the direction of every edge, in radians."""
     v = positions[rods.edges[:, 1]] - positions[rods.edges[:, 0]]
-    return jnp.arctan2(v[:, 1], v[:, 0])
+    return arctangent(v[:, 1], v[:, 0])
 
 
 def normals(

@@ -13,6 +13,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 
+from ..portable import cosine, sine
+
 Points = Float[Array, "_ point"]
 
 BOUND = 1e6
@@ -24,8 +26,8 @@ ACTIVATIONS = {
     "sigmoid": jax.nn.sigmoid,
     "tanh": jnp.tanh,
     "relu": lambda z: jnp.maximum(z, 0),
-    "sin": jnp.sin,
-    "cos": jnp.cos,
+    "sin": sine,
+    "cos": cosine,
     "gaussian": lambda z: jnp.exp(-z * z),
     "abs": jnp.abs,
     "square": lambda z: z * z,

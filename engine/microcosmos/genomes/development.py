@@ -8,6 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from .. import exact
 from ..filaments import Rest
 from .cppn import CPPN, Points, evaluate
 
@@ -51,7 +52,7 @@ class Controls:
 def sine_cosine(steps: int, period: float) -> np.ndarray:
     """Return sine and cosine of the phase, (2, time)."""
     phase = 2 * np.pi * np.arange(steps) / period
-    return np.stack([np.sin(phase), np.cos(phase)])
+    return np.stack([exact.sine(phase), exact.cosine(phase)])
 
 
 def linear(steps: int, period: float) -> np.ndarray:
@@ -105,7 +106,7 @@ def network_inputs(
 
 def travelling(timer: Float[Array, "2 time"], lag: np.ndarray) -> Float[Array, "2 time node"]:
     """Return sine and cosine of the phase less the lag of each node, in rad."""
-    s, c = (jnp.asarray(f(lag), timer.dtype)[None] for f in (np.sin, np.cos))
+    s, c = (jnp.asarray(f(lag), timer.dtype)[None] for f in (exact.sine, exact.cosine))
     sine, cosine = timer[:, :, None]
     return jnp.stack([sine * c - cosine * s, cosine * c + sine * s])
 

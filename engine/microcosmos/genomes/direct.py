@@ -8,6 +8,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, PRNGKeyArray
 
 from ..bodies import Layout
+from ..portable import power
 from ..world import State, World
 from .commands import series_commands
 from .development import Controls, actuated
@@ -42,7 +43,7 @@ class Direct(Networkless):
         """Draw every gene uniformly, then reduce the control by random factors."""
         genes_key, factor_key = jax.random.split(key)
         genes = uniform_vector(sum(self.parts.values()), self.spread, key=genes_key)
-        factors = self.faintest ** jax.random.uniform(factor_key, (2,))
+        factors = power(self.faintest, jax.random.uniform(factor_key, (2,)))
         scale = jnp.concatenate(
             [
                 jnp.full(count, factors[CONTROL.index(name)] if name in CONTROL else 1.0)

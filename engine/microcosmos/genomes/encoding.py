@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float, PRNGKeyArray, PyTree
 
 from ..filaments import Rest
+from ..portable import cosine, sine
 from ..world import Controller, State, World, follow, keep_memory
 
 Scalar = Float[Array, ""]
@@ -70,6 +71,6 @@ def shifted(timer: np.ndarray | Array, phase: Scalar | None) -> Array | np.ndarr
     """Advance a sine and cosine (2, time) by a phase; a linear timer (1, time) has none."""
     if phase is None or len(timer) == 1:
         return timer
-    sine, cosine = jnp.asarray(timer, phase.dtype)
-    s, c = jnp.sin(phase), jnp.cos(phase)
-    return jnp.stack([sine * c + cosine * s, cosine * c - sine * s])
+    s, c = jnp.asarray(timer, phase.dtype)
+    ahead, across = cosine(phase), sine(phase)
+    return jnp.stack([s * ahead + c * across, c * ahead - s * across])

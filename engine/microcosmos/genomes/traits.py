@@ -7,7 +7,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
 from ..bodies import Layout
-from ..portable import product
+from ..portable import cosine, product, sine
 from ..world import State, World, at_rest, centre, grown_rods
 from .development import Controls
 
@@ -77,5 +77,5 @@ def cut(body: Shaped, present: Bool[Array, "node"]) -> Shaped:
 def _laid_out(layout: Layout, turned: Array, length: Array) -> Float[Array, "node 2"]:
     """Return node positions relative to their mean."""
     angle = jnp.asarray(layout.angle, turned.dtype) + turned
-    v = jnp.stack([jnp.cos(angle), jnp.sin(angle)], 1) * length[:, None]
+    v = jnp.stack([cosine(angle), sine(angle)], 1) * length[:, None]
     return product(jnp.asarray(layout.placed, turned.dtype), v)

@@ -6,6 +6,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from ..portable import arctangent, cosine, sine
+
 Phases = Float[Array, "time"]
 Basis = Callable[[Phases, int], Float[Array, "time weight"]]
 """From phases in rad and a number of terms to the functions that weights multiply."""
@@ -14,7 +16,7 @@ Basis = Callable[[Phases, int], Float[Array, "time weight"]]
 def fourier(phase: Phases, terms: int) -> Float[Array, "time weight"]:
     """Return sines of the first harmonics, then cosines, without a constant."""
     angle = phase[:, None] * jnp.arange(1, terms + 1, dtype=phase.dtype)[None]
-    return jnp.concatenate([jnp.sin(angle), jnp.cos(angle)], 1)
+    return jnp.concatenate([sine(angle), cosine(angle)], 1)
 
 
 def table(phase: Phases, terms: int) -> Float[Array, "time weight"]:
@@ -29,7 +31,7 @@ def phases(timer: Array | np.ndarray, dtype) -> Phases:
     timer = jnp.asarray(timer, dtype)
     if len(timer) == 1:
         return 2 * np.pi * timer[0]
-    return jnp.arctan2(timer[0], timer[1])
+    return arctangent(timer[0], timer[1])
 
 
 def wave(

@@ -8,6 +8,8 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 from scipy.spatial import KDTree
 
+from .. import exact
+
 Measures = Float[Array, "row measure"]
 Places = Float[Array, "row axis"]
 
@@ -29,7 +31,8 @@ class Axis(eqx.Module):
         low, high = self.low, self.high
         value = jnp.clip(value, low, high)
         if self.logarithmic:
-            low, high, value = np.log10(low), np.log10(high), jnp.log10(value)
+            low, high = (exact.logarithm(end) / exact.LN_10 for end in (low, high))
+            value = jnp.log10(value)
         return (value - low) / (high - low)
 
     def bin(self, value: Float[Array, "*batch"]) -> Int[Array, "*batch"]:

@@ -10,6 +10,7 @@ from jaxtyping import Array, Float, Int
 
 from ..filaments import Rest
 from ..genomes import Drive, carried_out
+from ..portable import cosine, sine
 from ..world import Measures, State, follow, keep_memory, native, rollout
 from .measures import observe
 from .task import Actuator, Task
@@ -49,7 +50,7 @@ def _developed(driven: Drive) -> Drive:
 
 def turned(state: State, turn: Float[Array, ""]) -> State:
     """Return the state with the bodies turned about the mean of all nodes, in rad."""
-    c, s = jnp.cos(turn), jnp.sin(turn)
+    c, s = cosine(turn), sine(turn)
     middle = jnp.mean(state.positions, 0)
     x, y = (state.positions - middle[None]).T
     positions = jnp.stack([c * x - s * y, s * x + c * y], 1) + middle[None]

@@ -14,6 +14,7 @@ from jaxtyping import Array, Bool, Float, PRNGKeyArray
 
 from ...genomes import Vector
 from ...neat import Counters
+from ...portable import power
 from ..insertion import Elites
 from . import matrix_adaptation as es
 from .elites import Newcomer, parentless
@@ -89,5 +90,5 @@ class CmaMae:
         none = jnp.zeros_like(thresholds)
         count = none.at[cell].add(1.0, mode="drop")
         mean = none.at[cell].add(fitness, mode="drop") / jnp.maximum(count, 1.0)
-        kept = (1.0 - self.learning_rate) ** count
+        kept = power(1.0 - self.learning_rate, count)
         return jnp.where(count > 0, kept * thresholds + (1 - kept) * mean, thresholds)

@@ -6,7 +6,7 @@ matrix whose M Mᵀ is the covariance, s the path, z what is drawn and d = M z.
 """
 
 from dataclasses import dataclass
-from math import log, sqrt
+from math import sqrt
 
 import equinox as eqx
 import jax
@@ -14,6 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int, Key
 
+from ...exact import logarithm
 from ...portable import product
 
 SMALLEST, LARGEST = 1e-10, 1e4
@@ -48,7 +49,7 @@ class Strategy:
 def strategy(genes: int, children: int) -> Strategy:
     """Return the weights and rates of Hansen, table 1."""
     half = max(1, children // 2)
-    raw = log((children + 1) / 2) - np.log(np.arange(1, half + 1))
+    raw = logarithm((children + 1) / 2) - logarithm(np.arange(1, half + 1))
     raw = np.maximum(raw, 0.0)
     weights = raw / raw.sum() if raw.sum() > 0 else np.ones(1)
     mu_eff = float(1 / np.sum(weights**2))

@@ -1,0 +1,98 @@
+"""Elementary functions in double precision whose bits are the same on every processor.
+
+They only add, multiply, divide and take square roots, element by element, as IEEE 754 rounds.
+NumPy's own differ with the processor's vectors and the C library, and its matrix products and
+decompositions with the library that carries them out.
+"""
+
+from math import factorial
+
+import numpy as np
+
+QUARTER = 1.57079632673412561417, 6.07710050630396597660e-11, 2.02226624871116645580e-21
+"""A quarter turn in three parts, of which multiples below 2²⁰ are exact."""
+LN_2 = 6.93147180369123816490e-01, 1.90821492927058770002e-10
+"""The logarithm of 2 in two parts."""
+LN_10 = 2.302585092994046
+
+
+def sine(x: np.ndarray | float) -> np.ndarray:
+    return _of_quarter(x, 0)
+
+
+def cosine(x: np.ndarray | float) -> np.ndarray:
+    return _of_quarter(x, 1)
+
+
+def angle(y: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Return the angle of (x, y) in rad, within ±π; 0 at the origin."""
+    wide, high = np.abs(x), np.abs(y)
+    longest = np.maximum(wide, high)
+    t = np.minimum(wide, high) / np.where(longest > 0, longest, 1.0)
+    for _ in range(2):  # The tangent of half the angle.
+        t = t / (1 + np.sqrt(1 + t * t))
+    series = [(-1) ** n / (2 * n + 1) for n in range(14)]
+    found = 4 * t * _polynomial(series, t * t)
+    found = np.where(high > wide, np.pi / 2 - found, found)
+    found = np.where(x < 0, np.pi - found, found)
+    return np.where(np.signbit(y), -found, found)
+
+
+def length(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    return np.sqrt(x * x + y * y)
+
+
+def exponential(x: np.ndarray) -> np.ndarray:
+    """Return the exponential; 0 below −700."""
+    x = np.asarray(x, float)
+    vanishes, x = x < -700, np.maximum(x, -700.0)
+    power = np.rint(x * 1.4426950408889634)
+    rest = (x - power * LN_2[0]) - power * LN_2[1]
+    series = [1 / factorial(n) for n in range(15)]
+    found = np.ldexp(_polynomial(series, rest), power.astype(int))
+    return np.where(vanishes, 0.0, found)
+
+
+def logarithm(x: np.ndarray | float) -> np.ndarray:
+    """Return the natural logarithm of positive numbers."""
+    part, power = np.frexp(np.asarray(x, float))
+    low = part < 0.7071067811865476
+    part, power = np.where(low, 2 * part, part), power - low
+    t = (part - 1) / (part + 1)
+    series = [2 / (2 * n + 1) for n in range(13)]
+    return power * LN_2[0] + (power * LN_2[1] + t * _polynomial(series, t * t))
+
+
+def inverse(matrix: np.ndarray) -> np.ndarray:
+    """Return the inverse of a symmetric positive definite matrix, without pivots."""
+    count = len(matrix)
+    found = np.concatenate([matrix, np.eye(count)], 1)
+    for row in range(count):
+        used = slice(row, count + row + 1)  # Columns before are done, columns behind are empty.
+        pivot = found[row, used] / found[row, row]
+        factor = found[:, row].copy()
+        found[:, used] -= factor[:, None] * pivot[None]
+        found[row, used] = pivot
+    return found[:, count:]
+
+
+def _polynomial(coefficients: list[float], x: np.ndarray) -> np.ndarray:
+    """Return a polynomial by Horner's rule, its constant first."""
+    total = np.full_like(x, coefficients[-1])
+    for coefficient in coefficients[-2::-1]:
+        total = total * x + coefficient
+    return total
+
+
+def _of_quarter(x: np.ndarray | float, ahead: int) -> np.ndarray:
+    """Return the sine of angles `ahead` by quarter turns."""
+    rest = np.asarray(x, float)
+    quarters = np.rint(rest * 0.6366197723675814)
+    for part in QUARTER:
+        rest = rest - quarters * part
+    z = rest * rest
+    s = rest * _polynomial([(-1) ** n / factorial(2 * n + 1) for n in range(10)], z)
+    c = _polynomial([(-1) ** n / factorial(2 * n) for n in range(11)], z)
+    quarter = quarters.astype(int) + ahead
+    found = np.where(quarter & 1, c, s)
+    return np.where(quarter & 2, -found, found)
