@@ -68,10 +68,11 @@ def _started() -> bool:
 def _portable() -> str | None:
     """Return the flags with which programs give the same bits on every processor, if wanted."""
     wanted = kernel() != "jax" and _installed() is not None
-    return _portable_flags() if wanted else None
+    return portable_flags() if wanted else None
 
 
-def _portable_flags() -> str | None:
+def portable_flags() -> str | None:
+    """Return the `PORTABLE` flags of this platform; None where they were not compared."""
     machine = platform.machine().replace("AMD64", "x86_64")
     return PORTABLE.get(machine) if jaxlib_version in PORTABLE_JAXLIB else None
 
@@ -121,7 +122,7 @@ def device_kind(*, portable: bool = True) -> str:
     device = jax.local_devices()[0]
     model, flags = device.device_kind, set(os.environ.get("XLA_FLAGS", "").split())
     if device.platform == "cpu":
-        needed = set((_portable_flags() or "").split())
+        needed = set((portable_flags() or "").split())
         alike = portable and kernel_version() and needed and needed <= flags
         model, flags = ("", flags - needed) if alike else (_processor(), flags)
     software = f"microcosmos {VERSION}, jax {jax.__version__}, jaxlib {jaxlib_version}"

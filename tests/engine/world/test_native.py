@@ -5,11 +5,13 @@ from dataclasses import replace
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import jaxlib.version
 import numpy as np
 import pytest
 from kernel_scenes import OBSERVED, SCENES, in_jax, run
 
 from microcosmos import device, fields, filaments, world
+from microcosmos.version import VERSION
 
 kernels = pytest.importorskip(
     "microcosmos_kernels", reason="microcosmos-kernels is not installed: no compiler?"
@@ -143,3 +145,20 @@ def test_what_the_kernel_lacks_is_left_to_jax(monkeypatch, float64):
     monkeypatch.setenv("MICROCOSMOS_KERNEL", "fast")
     with pytest.raises(ValueError, match="one of auto, native, jax, got 'fast'"):
         native.chosen(box, start)
+
+
+@pytest.mark.skipif(not device.portable_flags(), reason="not compared on this platform")
+def test_the_device_kind_of_the_kernel_names_no_processor(monkeypatch):
+    monkeypatch.setenv("XLA_FLAGS", str(device.portable_flags()))
+    versions = (
+        f"microcosmos {VERSION}, jax {jax.__version__}, jaxlib {jaxlib.version.__version__}"
+    )
+    alike = f"cpu, {versions}, microcosmos-kernels {kernels.__version__}"
+    assert device.device_kind() == alike
+    assert device.device_kind(portable=False) != alike
+    monkeypatch.setenv("XLA_FLAGS", f"{device.portable_flags()} --xla_cpu_ftz=true")
+    assert device.device_kind() == f"{alike}, --xla_cpu_ftz=true"
+    monkeypatch.setenv("XLA_FLAGS", "")
+    assert device.device_kind() not in (alike, "")
+    monkeypatch.setenv("MICROCOSMOS_KERNEL", "jax")
+    assert "kernels" not in device.device_kind()
