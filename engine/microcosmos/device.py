@@ -24,13 +24,14 @@ KERNELS = ("auto", "native", "jax")
 KERNEL_VARIABLE = "MICROCOSMOS_KERNEL"
 PORTABLE = {
     "x86_64": "--xla_cpu_max_isa=AVX --xla_cpu_experimental_ynn_fusion_type=",
-    "aarch64": "--xla_backend_extra_options=-aarch64-enable-mcr=false "
+    "aarch64": "--xla_backend_extra_options="
+    "-aarch64-enable-mcr=false,-scalable-vectorization=off "
     "--xla_cpu_experimental_ynn_fusion_type=",
 }
 """Flags by processor. Without fused multiply-adds, wider vectors and sums by a library, XLA's
 programs give the same bits on all of these, as the native kernel does. On ARM only LLVM's
-machine combiner fuses at XLA's usual level of optimisation. Programs of x86-64 are slower by a
-quarter."""
+machine combiner fuses at XLA's usual level of optimisation, except in vectors of scalable
+length (SVE). Programs of x86-64 are slower by a quarter."""
 PORTABLE_JAXLIB = ("0.10.2",)
 """Versions with which that was tested; XLA ends a process for flags that it does not know."""
 GPU_FLAGS = "--xla_gpu_deterministic_ops=true --xla_gpu_autotune_level=0"
