@@ -81,7 +81,7 @@ def gaussian_weights(cells: int) -> np.ndarray:
 
 
 def binomial_weights(cells: int) -> np.ndarray:
-    """Return the weights along a periodic axis by which `binomial` smooths and differentiates."""
+    """Return the weights along a periodic axis by which `binomial` smooths, and its slope."""
     found = np.zeros((2, cells))
     for row, weights in zip(found, (SMOOTH, SLOPE), strict=True):
         for place, weight in enumerate(weights, -(len(weights) // 2)):
@@ -89,7 +89,10 @@ def binomial_weights(cells: int) -> np.ndarray:
     return found
 
 
-WEIGHTS = {gaussian: gaussian_weights, binomial: binomial_weights}
+WEIGHTS: dict[Callable[[Plane], Gradient], Callable[[int], np.ndarray]] = {
+    gaussian: gaussian_weights,
+    binomial: binomial_weights,
+}
 """The weights of each gradient along an axis of a number of cells, by distance."""
 
 
