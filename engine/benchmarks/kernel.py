@@ -19,7 +19,8 @@ import timing
 from microcosmos import bodies, device, filaments, groups, search, world
 from microcosmos.build import build_rods, build_task
 from microcosmos.build.scene import build_layout
-from microcosmos.spec import EXPERIMENTS, QualityDiversity
+from microcosmos.build.tables import build_crowd
+from microcosmos.spec import EXPERIMENTS, QualityDiversity, Scaling
 
 REPEATS, CREATURES = 9, 8
 STIFF = {"stretch": 1.0, "shear": 1.0, "bend": 1.0}
@@ -50,6 +51,7 @@ def main() -> None:
     }
     rollouts(scenes)
     parts(scenes)
+    crowds()
     evaluations()
 
 
@@ -124,6 +126,29 @@ def parts(scenes: dict[str, Scene]) -> None:
         found = np.median([np.asarray(run()) for _ in range(REPEATS)], 0) / len(one.rest.angle)
         rows.append((name, *(f"{1e6 * part:.2f}" for part in found)))
     timing.print_table("µs a step, by part", ("", *world.native.PARTS), rows)
+
+
+def crowds() -> None:
+    """Print the time of a step of the scene of `scaling/paper` by one thread and by more."""
+    cores, steps, rows = os.cpu_count() or 1, 10, []
+    for nodes in (16_000, 128_000, 500_000):
+        crowd, start = build_crowd(Scaling(), nodes)
+
+        def advance(threads: int, crowd: Any = crowd, start: Any = start) -> Callable[[], Any]:
+            compiled = jax.jit(
+                lambda box, state, rest: world.native.advance(box, state, rest, steps, threads)
+            )
+            return lambda: compiled(crowd.box, start, crowd.rest)
+
+        programs = {str(threads): advance(threads) for threads in {1, cores}}
+        for run in programs.values():
+            timing.seconds(run)  # Compiles.
+        times = timing.interleaved(programs, 3)
+        ms = [1e3 * statistics.median(times[key]) / steps for key in sorted(programs, key=int)]
+        spent = 1e3 * np.asarray(programs[str(cores)]()[1]) / steps
+        rows.append((f"{nodes:,}", *(f"{one:.1f}" for one in (*ms, *spent))))
+    head = ("nodes", *(f"× {n}" for n in sorted({1, cores})), *world.native.PARTS)
+    timing.print_table("ms a step in 256 × 256 cells, and by part with all threads", head, rows)
 
 
 def evaluations() -> None:

@@ -1,6 +1,7 @@
 """The native kernel against JAX: the same steps, to rounding; the same bits on every CPU."""
 
 from dataclasses import replace
+from functools import partial
 
 import equinox as eqx
 import jax
@@ -162,3 +163,21 @@ def test_the_device_kind_of_the_kernel_names_no_processor(monkeypatch):
     assert device.device_kind() not in (alike, "")
     monkeypatch.setenv("MICROCOSMOS_KERNEL", "jax")
     assert "kernels" not in device.device_kind()
+
+
+@pytest.mark.parametrize("name", ["three bodies", "bodies that touch", "two layers"])
+def test_threads_that_share_a_world_change_no_bit(name):
+    box, start, rest = SCENES[name]()
+    alone, shared = (
+        run(partial(native.rollout, threads=threads), (box, start, rest)) for threads in (1, 3)
+    )
+    jax.tree.map(np.testing.assert_array_equal, shared, alone)
+
+
+def test_steps_of_one_rest_shape_need_not_be_recorded():
+    box, start, rest = SCENES["three bodies"]()
+    still = jax.tree.map(lambda x: x[50], rest)
+    end, seconds = native.advance(box, start, still, 20, threads=2)
+    held = jax.tree.map(lambda x: jnp.tile(x, (20, 1)), still)
+    jax.tree.map(np.testing.assert_array_equal, end, native.rollout(box, start, held)[0])
+    assert 0 < float(seconds.sum()) < 60
