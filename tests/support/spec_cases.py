@@ -1,6 +1,6 @@
 """Scenes of few cells and steps that together use every part and field of a spec's scene."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
@@ -210,4 +210,15 @@ def held_in(scenes: list[spec.Scene]) -> set[tuple[str, Any]]:
         for name, field in type(part).model_fields.items()
         for one in alternatives(field.annotation)
         if is_held(one, getattr(part, name), field.default)
+    }
+
+
+def lacking_in(scenes: list[spec.Scene], unused: Collection[str]) -> set[str]:
+    """Return the choices of fields that no scene holds, but for fields that are `unused`."""
+    choices = set(fields_of(spec.Scene))
+    assert set(unused) <= {field for field, _ in choices}
+    return {
+        f"{field}: {choice}"
+        for field, choice in choices - held_in(scenes)
+        if field not in unused
     }

@@ -39,7 +39,7 @@ class Fuzzed {
     r.layers = 1 + random_.below(2), r.projection = Projection(random_.below(3));
     r.delta = Delta(random_.below(3)), r.fixed_magic = coin(), r.fluid = !few();
     r.repelled = coin(), r.energetic = coin();
-    r.observed = true, r.threads = 1;
+    r.observed = true, r.threads = 1, r.timed = few();
     if (coin())
       filaments();
     else
@@ -48,6 +48,7 @@ class Fuzzed {
     controller();
     place();
     surround();
+    r.observed = r.commands != GIVEN || !few();
   }
 
   void run() {
@@ -80,7 +81,7 @@ class Fuzzed {
   }
 
   // Whether the status is that of a world that is not finite, where it is not.
-  bool reported() { return !r.steps || finite() || status() == NON_FINITE; }
+  bool reported() { return !r.steps || !r.observed || finite() || status() == NON_FINITE; }
 
  private:
   Rollout r = {};
@@ -91,9 +92,10 @@ class Fuzzed {
   std::vector<size_t> counts_;
   std::vector<std::unique_ptr<int32_t[]>> ints_;
 
-  // The bytes of all arrays.
-  std::string all_numbers() const {
+  // The bytes of all arrays but the times.
+  std::string all_numbers() {
     std::string found;
+    std::fill(r.seconds, r.seconds + PART_COUNT, 0.0f);
     for (size_t i = 0; i < counts_.size(); i++)
       found.append(reinterpret_cast<const char*>(floats_[i].get()), 4 * counts_[i]);
     return found;

@@ -140,7 +140,7 @@ __attribute__((noinline)) void advance(Lattice& l, Band& band, const Rates& k) {
         square = collide<true>(f, fx, fy, k);
       } else
         square = collide<DRIVEN>(f, push_x, push_y, k);
-      fastest = most(square, fastest);  // What is no number counts for nothing.
+      fastest = most(square, fastest);  // Ignores NaN.
       store(r + y, f[0]);
       store(u2 + y, f[2]);
       store(r + P + y, load(t1 + y)), store(t1 + y, f[1]);

@@ -136,7 +136,7 @@ def rollout(
     """
     end, found = _rollout(world, state, given, instruction_set, {"threads": threads})
     rest = filaments.Rest(*found[:2]) if isinstance(given, Controller) else given
-    observed = dict(zip(OBSERVED, found[2:], strict=False))
+    observed = dict(zip(OBSERVED, found[2:-1], strict=True))
     measures = jax.vmap(lambda rest, step: Measures(rest=rest, **step))(rest, observed)
     return end, measures
 
@@ -164,7 +164,7 @@ def _rollout(
     instruction_set: str | None,
     chosen: Numbers,
 ) -> tuple[State, list[Array]]:
-    """Return the end, and the results after it."""
+    """Return the end, then rest shapes of a controller, `OBSERVED`, and the parts' times."""
     reason = uncovered(world, state)
     if reason:
         raise ValueError(f"the native kernel does not cover {reason}")

@@ -224,14 +224,7 @@ def off(patch, function, place):
 @pytest.mark.fast
 def test_every_field_of_a_scene_is_drawn():
     scenes = [spec_draws.any_scene(seed) for seed in SEEDS]
-    held = spec_cases.held_in(scenes)
-    lacking = {
-        f"{field}: {choice}"
-        for field, choice in set(spec_cases.fields_of(spec.Scene)) - held
-        if field not in UNUSED
-    }
-    assert not lacking
-    assert set(UNUSED) <= {field for field, _ in spec_cases.fields_of(spec.Scene)}
+    assert not spec_cases.lacking_in(scenes, UNUSED)
 
 
 @pytest.mark.fast
