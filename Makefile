@@ -101,6 +101,7 @@ peers: install
 bench: peers web
 	$(BIN)/python engine/benchmarks/physics.py
 	$(BIN)/python engine/benchmarks/kernel.py
+	$(BIN)/python engine/benchmarks/budget.py
 	$(BIN)/python engine/benchmarks/gradients.py
 	$(BIN)/python engine/benchmarks/cma_mega.py
 	$(BIN)/python engine/benchmarks/archive.py
