@@ -3,7 +3,7 @@
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import singledispatch
+from functools import partial, singledispatch
 from typing import Any
 
 import jax
@@ -25,6 +25,9 @@ from .plugins import measures_of, plugin_versions
 from .refinement import build_refinement
 from .scene import build_encoding, build_task
 from .tables import build_gaits, build_scaling
+
+SMALL = 2**16
+"""Cells times offspring with which a search's own programs are short beside simulations."""
 
 
 @singledispatch
@@ -50,14 +53,16 @@ def build_evolution(
     plan = with_initial(build_plan(chosen), chosen, initial)
     emitters, key = plan.emitters, plan.key
     on_host = any(isinstance(emitter, TensorNeat) for emitter in emitters)
-    compiled = (lambda program: program) if on_host else jax.jit
+    small = plan.cell_count * plan.batch <= SMALL
+    jitted = partial(jax.jit, compiler_options=device.quick_options() if small else {})
+    compiled = (lambda program: program) if on_host else jitted
     # Each program is compiled for this run's sizes and seed.
     programs = Programs(
         emit=compiled(lambda *given: search.emitters.emit(emitters, *given, key=key)),
         evaluate_block=build_block(chosen.scene, room_of(chosen)),
         insert=search.insert_program(),
         tell=compiled(lambda states, outcome: search.emitters.tell(emitters, states, outcome)),
-        forget=jax.jit(search.reevaluation.forget),
+        forget=jitted(search.reevaluation.forget),
         lessons=build_lessons(chosen, emitters),
     )
     return Evolution(plan, programs, build_repeats(chosen, plan))

@@ -206,11 +206,11 @@ def prolonged(state: State) -> State:
 
 def start(plan: Plan) -> State:
     """Return the state before the first generation."""
-    none, names = np.zeros(0, np.int32), np.zeros((0, 32), np.uint8)
+    none, names, count = np.zeros(0, np.int32), np.zeros((0, 32), np.uint8), len(plan.emitters)
     descriptors = np.zeros((0, len(plan.axes)), np.float32)
     no_genotypes = jax.tree.map(lambda x: np.zeros((0, *x.shape), x.dtype), plan.genotype)
-    keys = jax.random.split(jax.random.fold_in(plan.key, BEFORE), len(plan.emitters))
-    pairs = zip(plan.emitters, keys, strict=True)
+    split = jax.jit(lambda key: tuple(jax.random.split(jax.random.fold_in(key, BEFORE), count)))
+    pairs = zip(plan.emitters, split(plan.key), strict=True)
     emitters = tuple(_founded(plan, e, e.init(key=key)) for e, key in pairs)
     return State(
         generation=0,

@@ -6,8 +6,10 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jax.typing import DTypeLike
 from jaxtyping import Array, Bool, Float, Int, UInt32
 
+from ..device import quick_options
 from ..genomes import Genotype, words
 from .cells import Cells
 
@@ -30,13 +32,18 @@ class Elites(eqx.Module):
 def no_elites(cells: int, measures: int, genotype: Genotype) -> Elites:
     """Return an archive without any elite, for genotypes shaped as the given one."""
     return Elites(
-        occupied=jnp.zeros(cells, bool),
-        fitness=jnp.zeros(cells, jnp.float32),
-        measures=jnp.zeros((cells, measures), jnp.float32),
-        generation=jnp.zeros(cells, jnp.int32),
-        slot=jnp.zeros(cells, jnp.int32),
-        genotypes=jax.tree.map(lambda x: jnp.zeros((cells, *x.shape), x.dtype), genotype),
+        occupied=zeros(bool, cells),
+        fitness=zeros(np.float32, cells),
+        measures=zeros(np.float32, cells, measures),
+        generation=zeros(np.int32, cells),
+        slot=zeros(np.int32, cells),
+        genotypes=jax.tree.map(lambda x: zeros(x.dtype, cells, *x.shape), genotype),
     )
+
+
+def zeros(dtype: DTypeLike, *shape: int) -> Array:
+    """Return zeros from the host: `jnp.zeros` compiles a program for each shape."""
+    return jnp.asarray(np.zeros(shape, dtype))
 
 
 def candidates(
@@ -104,7 +111,8 @@ def insert(archive: Elites, candidates: Elites, cells: Cells) -> tuple[Elites, I
 
 def insert_program(*, donate: bool = False) -> Callable[..., tuple[Elites, Inserted]]:
     """Compile `insert`; with `donate` it overwrites the old archive, which must not be used."""
-    return jax.jit(insert, donate_argnums=(0,) if donate else ())
+    given = (0,) if donate else ()
+    return jax.jit(insert, donate_argnums=given, compiler_options=quick_options())
 
 
 def digest(genotypes: Genotype) -> UInt32[Array, "row 2"]:

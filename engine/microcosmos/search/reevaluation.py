@@ -9,13 +9,14 @@ from dataclasses import replace
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 
 from ..genomes import Genotype
 from ..world import State
 from .cells import Cells
 from .evaluation import Evaluation, evaluate_drive
-from .insertion import Elites
+from .insertion import Elites, zeros
 from .simulation import drive, turned
 from .task import Task
 
@@ -64,9 +65,8 @@ class Repeats(eqx.Module):
 
 
 def no_repeats(cells: int, measures: int) -> Repeats:
-    none = jnp.zeros(cells, jnp.int32)
-    zeros = jnp.zeros(cells, jnp.float32)
-    return Repeats(none, none, none, zeros, zeros, jnp.zeros((cells, measures), jnp.float32))
+    none, zero = zeros(np.int32, cells), zeros(np.float32, cells)
+    return Repeats(none, none, none, zero, zero, zeros(np.float32, cells, measures))
 
 
 def disturbance(spread: Spread, size: tuple[int, int], *, key: PRNGKeyArray) -> Disturbance:
