@@ -83,21 +83,28 @@ def refuse_port_in_use(host: str, port: int) -> None:
 
 
 def start(data: DataFolder, tree: Tree) -> None:
-    """Start all processes, first those that others depend on."""
+    """Start the server and the workers, first what they depend on."""
     settings = start_redis(data, tree)
     if settings.needs_token:
         prepare_database(settings)  # The server refuses to start without a token.
     # The server migrates the database too; both may do it at once.
-    tree.children.append(Child("server", data.module("server", "server.main")))
+    start_child(data, tree, "server", "server.main")
     if not settings.needs_token:
         prepare_database(settings)
     for index in range(settings.workers):
-        name = f"worker-{index}"
-        tree.children.append(Child(name, data.module(name, "worker.supervisor", str(index))))
+        start_child(data, tree, f"worker-{index}", "worker.supervisor", str(index))
+
+
+def start_renderers(data: DataFolder, tree: Tree) -> None:
+    """Start what a new page does not wait for, so that it leaves the cores to the others."""
     for name in ("renderer", "auditor"):
-        tree.children.append(Child(name, data.module(name, "worker.renderer", name)))
-    for child in tree.children:
-        say(child.name, f"process {child.process.pid}, log in {data.log(child.name)}")
+        start_child(data, tree, name, "worker.renderer", name)
+
+
+def start_child(data: DataFolder, tree: Tree, name: str, *module: str) -> None:
+    child = Child(name, data.module(name, *module))
+    tree.children.append(child)
+    say(name, f"process {child.process.pid}, log in {data.log(name)}")
 
 
 def prepare_database(settings: Settings) -> None:
@@ -153,6 +160,7 @@ def main() -> None:
         start(data, tree)
         tree.watch(lambda: answers(settings.port, "/healthz", settings.host))
         if not tree.stop_requested:
+            start_renderers(data, tree)
             say("ready", f"{address} (Ctrl-C ends it)")
         tree.watch()
         say("ending", "runs are checkpointed and continue at the next start")
