@@ -108,6 +108,7 @@ bench: peers web
 	$(BIN)/python engine/benchmarks/networks.py
 	$(BIN)/python engine/benchmarks/xor.py
 	$(BIN)/python engine/benchmarks/generation.py
+	$(BIN)/python web/benchmarks/start.py
 	$(BIN)/python web/benchmarks/page.py
 
 # All parts, or some: make acceptance PARTS=databases

@@ -19,7 +19,6 @@ NICE = 10
 def main(run_id: str, worker: str, parent: str) -> None:
     die_with_parent(int(parent), signal.SIGKILL)
     process_setup.handle_signals()
-    os.nice(NICE)
     with claimed(
         connect(Settings()), UUID(run_id), worker, process_setup.stop_requested
     ) as attempt:
@@ -27,6 +26,7 @@ def main(run_id: str, worker: str, parent: str) -> None:
             # Imported here, so that errors of the engine or its device are recorded.
             from .evolution import carry_out
 
+            os.nice(NICE)
             carry_out(attempt)
 
 
