@@ -49,7 +49,7 @@ def prepare(devices: int | None = None, cache: str | os.PathLike | None = None) 
     """
     jax.config.update("jax_default_matmul_precision", "highest")
     try:
-        jax.config.update("jax_num_cpu_devices", devices or _cores())
+        jax.config.update("jax_num_cpu_devices", devices or cores())
     except RuntimeError:
         warnings.warn(_STARTED.format(jax.local_device_count()), stacklevel=2)
     else:
@@ -87,7 +87,8 @@ def _add_flags(added: str) -> None:
         os.environ["XLA_FLAGS"] = f"{flags} {added}".strip()
 
 
-def _cores() -> int:
+def cores() -> int:
+    """Return the number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

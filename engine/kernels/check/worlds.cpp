@@ -92,10 +92,10 @@ class Fuzzed {
   std::vector<size_t> counts_;
   std::vector<std::unique_ptr<int32_t[]>> ints_;
 
-  // The bytes of all arrays but the times.
+  // The bytes of all arrays but the times and the memory.
   std::string all_numbers() {
     std::string found;
-    std::fill(r.seconds, r.seconds + PART_COUNT, 0.0f);
+    std::fill(r.seconds, r.seconds + PART_COUNT, 0.0f), *r.memory = 0;
     for (size_t i = 0; i < counts_.size(); i++)
       found.append(reinterpret_cast<const char*>(floats_[i].get()), 4 * counts_[i]);
     return found;
@@ -259,7 +259,7 @@ class Fuzzed {
     r.end_energy = room(r.energetic * cells), r.end_collected = room(r.energetic * N);
     r.centre = room(2 * T), r.path = room(2 * T * N), r.speed = room(T), r.node_speed = room(T);
     r.held = room(T), r.heading = room(T), r.curvature = room(T * r.joints), r.power = room(T);
-    r.force = room(2 * T * r.bodies), r.seconds = room(PART_COUNT);
+    r.force = room(2 * T * r.bodies), r.seconds = room(PART_COUNT), r.memory = room(1);
   }
 };
 

@@ -6,7 +6,7 @@
 namespace microcosmos::ISA {
 
 struct Rest {
-  std::vector<float> angle, length;  // (joint), (edge)
+  List<float> angle, length;  // (joint), (edge)
 };
 
 class Actuators {
@@ -30,8 +30,8 @@ class Actuators {
     if (!r_.actuated) return;
     for (int t = 0; t < T; t++) bound(angle + size_t(t) * J);
     if (r_.control[MAX_SPEED] > 0) slow(angle, length, clock);
-    const std::vector<float> angles(angle, angle + size_t(T) * J);
-    const std::vector<float> lengths(length, length + size_t(T) * E);
+    const List<float> angles(angle, angle + size_t(T) * J);
+    const List<float> lengths(length, length + size_t(T) * E);
     Rest rest = start_;
     for (int t = 0; t < T; t++) {
       const float at = clock[t];
@@ -61,7 +61,7 @@ class Actuators {
       share = r_.control[MAX_SPEED] / fastest(angle, length);
       share = share < 1 ? share : 1;
     }
-    auto follow = [&](float* command, std::vector<float>& paced, std::vector<float>& rest) {
+    auto follow = [&](float* command, List<float>& paced, List<float>& rest) {
       for (size_t i = 0; i < paced.size(); i++) {
         paced[i] = paced[i] + share * (command[i] - paced[i]);
         command[i] = rest[i] = rest[i] + r_.control[LAG_SHARE] * (paced[i] - rest[i]);
@@ -141,7 +141,7 @@ class Actuators {
   // The clock that slows where commands are too fast: 1 a step or slower.
   void slow(const float* angle, const float* length, float* clock) {
     const int T = r_.steps, J = r_.joints, E = r_.edges;
-    std::vector<double> took(T + 1);  // Steps until the end of each command.
+    List<double> took(T + 1);  // Steps until the end of each command.
     lay_out_before(start_.angle.data(), start_.length.data());
     for (int t = 0; t < T; t++) {
       const float speed = fastest(angle + size_t(t) * J, length + size_t(t) * E);
@@ -163,7 +163,7 @@ class Actuators {
   Shapes shapes_;
   Rest start_, paced_, rest_;
   Floats before_x_, before_y_;
-  std::vector<uint8_t> edge_here_;
+  List<uint8_t> edge_here_;
 };
 
 }  // namespace microcosmos::ISA

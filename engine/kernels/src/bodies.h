@@ -9,7 +9,6 @@
 #include <array>
 #include <numeric>
 #include <tuple>
-#include <vector>
 
 #include "memory.h"
 #include "rollout.h"
@@ -20,10 +19,10 @@ namespace microcosmos::ISA {
 
 // Pairs of slots (the ends of edges, or the edges of joints) in blocks of 16.
 struct Pairs {
-  std::vector<int32_t> first, second;  // Slots; what fills up a block follows the last pair.
-  std::vector<int32_t> item;           // Edge or joint of each place; -1: none.
-  std::vector<int32_t> own;            // Slot of an edge, or of a joint's first edge.
-  std::vector<uint8_t> adjacent;       // Of each block: all lists of slots are consecutive.
+  List<int32_t> first, second;  // Slots; what fills up a block follows the last pair.
+  List<int32_t> item;           // Edge or joint of each place; -1: none.
+  List<int32_t> own;            // Slot of an edge, or of a joint's first edge.
+  List<uint8_t> adjacent;       // Of each block: all lists of slots are consecutive.
 
   int places() const { return int(first.size()); }
 
@@ -71,7 +70,7 @@ INLINE void scatter(float* values, const int32_t* slots, const int32_t* item, bo
 // A connected piece; `chain`: a single filament whose edges and joints stand in order.
 struct Piece {
   Range nodes, edges;  // Slots.
-  std::vector<int32_t> node_of, edge_of, joint_of;
+  List<int32_t> node_of, edge_of, joint_of;
   bool chain = false;
 };
 
@@ -95,24 +94,24 @@ struct Member {
 };
 
 struct Bodies {
-  std::vector<Piece> pieces;
-  std::vector<Range> bodies;  // Slots of nodes.
-  std::vector<int32_t> node_slot, edge_slot;
+  List<Piece> pieces;
+  List<Range> bodies;  // Slots of nodes.
+  List<int32_t> node_slot, edge_slot;
   int node_slots = 0, edge_slots = 0;
   Pairs edges;   // In the order of their slots.
   Pairs joints;  // In their order.
   // Of sweeps: constraints by tile (bodies that fit a near cache), then colour.
   struct Tile {
     Range pieces;
-    std::vector<Pairs> edge_colours, joint_colours;
+    List<Pairs> edge_colours, joint_colours;
   };
-  std::vector<Tile> tiles;
-  std::vector<int32_t> filaments;  // Pieces that are swept in registers instead.
+  List<Tile> tiles;
+  List<int32_t> filaments;  // Pieces that are swept in registers instead.
 
   explicit Bodies(const Rollout& r);
 
   // Whole bodies for each of `count` members of a team, with about as many nodes.
-  std::vector<Share> shares(const Rollout& r, int count) const;
+  List<Share> shares(const Rollout& r, int count) const;
 
  private:
   void place_nodes(const Rollout& r);
@@ -130,7 +129,7 @@ inline Bodies::Bodies(const Rollout& r) {
 }
 
 inline void Bodies::place_nodes(const Rollout& r) {
-  std::vector<int> order(r.nodes);
+  List<int> order(r.nodes);
   std::iota(order.begin(), order.end(), 0);
   auto key = [&](int n) { return std::make_tuple(r.member[n], r.piece[n], n); };
   std::sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
@@ -152,7 +151,7 @@ inline void Bodies::place_nodes(const Rollout& r) {
 }
 
 inline void Bodies::place_edges(const Rollout& r) {
-  std::vector<int> piece_of_slot(node_slots);
+  List<int> piece_of_slot(node_slots);
   for (int p = 0; p < int(pieces.size()); p++)
     std::fill(piece_of_slot.begin() + pieces[p].nodes.from,
               piece_of_slot.begin() + pieces[p].nodes.to, p);
@@ -178,7 +177,7 @@ inline void Bodies::place_edges(const Rollout& r) {
       piece.chain = r.pairs[2 * joints_of[k]] == edges_of[k] &&
                     r.pairs[2 * joints_of[k] + 1] == edges_of[k + 1];
   }
-  std::vector<int> edge_at(edge_slots, -1);
+  List<int> edge_at(edge_slots, -1);
   for (int e = 0; e < r.edges; e++) edge_at[edge_slot[e]] = e;
   int one = 0, other = 0;
   for (const Piece& piece : pieces)
@@ -208,7 +207,7 @@ inline void Bodies::colour(const Rollout& r) {
   if (r.matched) return;
   constexpr int TILE = 512;          // Slots.
   using Found = std::array<int, 5>;  // Colour, slots of the pair, number, own slot.
-  auto coloured = [](std::vector<Pairs>& colours, std::vector<Found>& found, int end, int own) {
+  auto coloured = [](List<Pairs>& colours, List<Found>& found, int end, int own) {
     std::sort(found.begin(), found.end());
     for (auto [colour, one, other, item, slot] : found) {
       if (colour >= int(colours.size())) colours.resize(colour + 1);
@@ -219,7 +218,7 @@ inline void Bodies::colour(const Rollout& r) {
   for (size_t p = 0; p < pieces.size();) {
     Tile tile;
     tile.pieces.from = int(p);
-    std::vector<Found> edges_found, joints_found;
+    List<Found> edges_found, joints_found;
     const int start = pieces[p].nodes.from;
     do {
       if (is_filament(r, pieces[p])) {
@@ -252,14 +251,14 @@ inline bool apart(const Rollout& r) {
   return found;
 }
 
-inline std::vector<Share> Bodies::shares(const Rollout& r, int count) const {
+inline List<Share> Bodies::shares(const Rollout& r, int count) const {
   // A share begins with a body and does not cut a tile.
   auto body = [&](int piece) { return r.member[pieces[piece].node_of[0]]; };
-  std::vector<uint8_t> begins(pieces.size(), apart(r));
+  List<uint8_t> begins(pieces.size(), apart(r));
   for (size_t p = 1; p < pieces.size(); p++) begins[p] = begins[p] && body(p) != body(p - 1);
   for (const Tile& tile : tiles)
     for (int p = tile.pieces.from + 1; p < tile.pieces.to; p++) begins[p] = 0;
-  std::vector<Share> found(count);
+  List<Share> found(count);
   const int end = int(pieces.size());
   for (int n = 0, piece = 0, tile = 0, filament = 0; n < count; n++) {
     Share& s = found[n];

@@ -93,7 +93,7 @@ class Controller {
   // Rest shapes from sums of functions of time, within -1 and 1; genes are (term, item).
   void add_up(int first, int count, float* angle, float* length) {
     const int items = r_.joints + r_.edges;
-    std::vector<float> sum(items);
+    List<float> sum(items);
     for (int t = 0; t < count; t++) {
       std::fill(sum.begin(), sum.end(), 0.0f);
       for (int k = 0; k < r_.terms; k++) {

@@ -5,7 +5,6 @@
 // only where nodes are.
 #pragma once
 #include <optional>
-#include <vector>
 
 #include "bodies.h"
 #include "memory.h"
@@ -58,7 +57,7 @@ class Density {
     for (Floats* one : {&smooth_, &slope_}) *one = Floats(height_ * wide_);
     for (Floats* one : {&gradient_x_, &gradient_y_}) *one = Floats(height_ * row_);
     near_.resize(members);
-    for (std::vector<Near>& one : near_) one.reserve(along_x_->count());
+    for (List<Near>& one : near_) one.reserve(along_x_->count());
   }
 
   Place place(float x, float y) const {
@@ -68,7 +67,7 @@ class Density {
   }
 
   // Take the density of all nodes in a member's rows, and smooth these.
-  void deposit(const std::vector<Place>& places, const Member& me) {
+  void deposit(const List<Place>& places, const Member& me) {
     const Range rows = me.part(height_);
     clear(rows);
     for (const Place& p : places)
@@ -90,7 +89,7 @@ class Density {
   // Smooth columns, in the blocks of a member's rows that nodes touch.
   void differentiate(const Member& me) {
     const Range rows = me.part(height_);
-    std::vector<Near>& near = near_[me.number];
+    List<Near>& near = near_[me.number];
     for (int x = rows.from; x < rows.to; x++) {
       if (!occupied_[x]) continue;
       find_near(x, near);
@@ -170,7 +169,7 @@ class Density {
     }
   }
 
-  void find_near(int x, std::vector<Near>& near) const {
+  void find_near(int x, List<Near>& near) const {
     const Smoothing& along = *along_x_;
     near.clear();
     for (int i = 0; i < along.count(); i++) {
@@ -185,8 +184,8 @@ class Density {
   size_t row_ = 0, wide_ = 0;  // Floats from a row to the next; with room for what is smoothed.
   std::optional<Smoothing> along_x_, along_y_;
   Floats density_, smooth_, slope_, gradient_x_, gradient_y_;
-  Array<uint8_t> touched_, occupied_;    // (row, block), (row)
-  std::vector<std::vector<Near>> near_;  // Of each member.
+  Array<uint8_t> touched_, occupied_;  // (row, block), (row)
+  List<List<Near>> near_;              // Of each member.
 };
 
 }  // namespace microcosmos::ISA

@@ -144,6 +144,7 @@ void name_rollout(Arrays& a, Rollout& r) {
   a.out("held", &r.held, {T}), a.out("heading", &r.heading, {T});
   a.out("curvature", &r.curvature, {T, J}), a.out("power", &r.power, {T});
   a.out("force", &r.force, {T, B, 2}), a.out("seconds", &r.seconds, {microcosmos::PART_COUNT});
+  a.out("memory", &r.memory, {1});
   a.end();
 }
 
@@ -232,7 +233,7 @@ ffi::Error rollout(ffi::RemainingArgs args, ffi::RemainingRets rets, ffi::Dictio
   Arrays arrays(args, rets);
   if (arrays.begin()) name_rollout(arrays, r);
   return each_world(arrays, r, [&] {
-    std::fill(r.seconds, r.seconds + microcosmos::PART_COUNT, 0.0f);
+    std::fill(r.seconds, r.seconds + microcosmos::PART_COUNT, 0.0f), *r.memory = 0;
     microcosmos::ISA::World(r).run();
   });
 }

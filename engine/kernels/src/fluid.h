@@ -1,6 +1,5 @@
 // The fluid: D2Q9 with two relaxation times and Guo's forcing, collided and streamed in place.
 #pragma once
-#include <vector>
 
 #include "memory.h"
 #include "vectors.h"
@@ -12,9 +11,9 @@ struct Band {
   int from, to;                  // Rows.
   Array<int32_t> block, beyond;  // Touched blocks; rows whose windows continue beyond the edge.
   int touched_blocks = 0, beyond_rows = 0;
-  std::vector<int32_t> points;  // Points whose windows reach these rows, in their order.
-  Floats next_row, last_row;    // Populations on their way to the band after, and before.
-  float fastest = 0;            // Square of the largest speed.
+  List<int32_t> points;       // Points whose windows reach these rows, in their order.
+  Floats next_row, last_row;  // Populations on their way to the band after, and before.
+  float fastest = 0;          // Square of the largest speed.
 
   Band(int from, int to, int blocks) : from(from), to(to) {
     const size_t rows = to - from, row = size_t(blocks) * BLOCK;
@@ -33,7 +32,7 @@ struct Lattice {
   Floats volume, coverage;       // 1 / density; nodes over a cell.
   Array<uint8_t> touched;        // (row, block)
   Array<uint8_t> crossing;       // Rows whose windows continue beyond the edge.
-  std::vector<Band> bands;       // Together all rows.
+  List<Band> bands;              // Together all rows.
   float push_x = 0, push_y = 0;  // The uniform force.
 
   Lattice(int height, int width, int parts)

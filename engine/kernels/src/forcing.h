@@ -122,7 +122,7 @@ struct Forcing {
   }
 
   Floats reached_x_, reached_y_;
-  std::vector<Frame> frames_;
+  List<Frame> frames_;
 };
 
 }  // namespace microcosmos::ISA

@@ -118,8 +118,8 @@ class Measuring {
 
   const Bodies& b_;
   const Rollout& r_;
-  std::vector<Range> edges_;  // Slots of each body.
-  Floats sums_[SUMS];         // (body)
+  List<Range> edges_;  // Slots of each body.
+  Floats sums_[SUMS];  // (body)
   Floats length_;
   float nodes_here_ = 0, edges_here_ = 0;
 };

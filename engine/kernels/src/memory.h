@@ -1,12 +1,19 @@
-// Arrays at the boundary of cache lines, filled with zeros.
+// Arrays at the boundary of cache lines, filled with zeros; lists; and how much memory they take.
 #pragma once
+#include <atomic>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <memory>
 #include <new>
+#include <vector>
 
 #include "vectors.h"
 
 namespace microcosmos::ISA {
+
+// Bytes of all arrays and lists of the process.
+inline std::atomic<int64_t> held{0};
 
 template <class T>
 class Array {
@@ -17,18 +24,44 @@ class Array {
     data_ = static_cast<T*>(std::aligned_alloc(64, bytes));
     if (!data_) throw std::bad_alloc();
     std::memset(data_, 0, bytes);
+    bytes_ = bytes, held += int64_t(bytes);
   }
-  Array(Array&& other) noexcept { std::swap(data_, other.data_); }
+  Array(Array&& other) noexcept { swap(other); }
   Array& operator=(Array&& other) noexcept {
-    std::swap(data_, other.data_);
+    swap(other);
     return *this;
   }
-  ~Array() { std::free(data_); }
+  ~Array() { std::free(data_), held -= int64_t(bytes_); }
   operator T*() const { return data_; }
 
  private:
+  void swap(Array& other) { std::swap(data_, other.data_), std::swap(bytes_, other.bytes_); }
+
   T* data_ = nullptr;
+  size_t bytes_ = 0;
 };
 using Floats = Array<float>;
+
+// Counts what lists take.
+template <class T>
+struct Counted {
+  using value_type = T;
+  Counted() = default;
+  template <class U>
+  Counted(const Counted<U>&) {}
+  T* allocate(size_t count) {
+    T* found = std::allocator<T>().allocate(count);
+    held += int64_t(count * sizeof(T));
+    return found;
+  }
+  void deallocate(T* data, size_t count) {
+    std::allocator<T>().deallocate(data, count);
+    held -= int64_t(count * sizeof(T));
+  }
+  bool operator==(const Counted&) const { return true; }
+  bool operator!=(const Counted&) const { return false; }
+};
+template <class T>
+using List = std::vector<T, Counted<T>>;
 
 }  // namespace microcosmos::ISA

@@ -1,7 +1,6 @@
 // Networks of NEAT genes, evaluated at many points at once.
 #pragma once
 #include <algorithm>
-#include <vector>
 
 #include "functions.h"
 #include "memory.h"
@@ -41,7 +40,7 @@ INLINE Vec activated(int function, Vec z) {
 class Network {
  public:
   explicit Network(const Rollout& r) : rows_(r.rows), recurrent_(r.recurrent) {
-    std::vector<std::vector<int>> into(rows_);
+    List<List<int>> into(rows_);
     for (int c = 0; c < r.links; c++)
       if (r.source[c] >= 0) into[r.target[c]].push_back(c);
     for (int row : order(r, into)) {
@@ -94,8 +93,8 @@ class Network {
   };
 
   // Rows by the length of the longest path to them; any order where all are computed together.
-  std::vector<int> order(const Rollout& r, const std::vector<std::vector<int>>& into) const {
-    std::vector<int> depth(rows_), found(rows_);
+  List<int> order(const Rollout& r, const List<List<int>>& into) const {
+    List<int> depth(rows_), found(rows_);
     bool changed = !recurrent_;
     for (int n = 0; n < rows_ && changed; n++) {
       changed = false;
@@ -110,9 +109,9 @@ class Network {
 
   int rows_, points_ = 0;
   bool recurrent_;
-  std::vector<Unit> units_;
-  std::vector<int> source_;
-  std::vector<float> weight_;
+  List<Unit> units_;
+  List<int> source_;
+  List<float> weight_;
   Floats next_;
 };
 

@@ -44,11 +44,11 @@ struct Points {
   Array<int32_t> rows;  // Four for each point: where its rows begin.
   // The order of transfers: neighbours, whose windows overlap, follow each other late, so that
   // loads need not wait for stores. And the part of each share.
-  std::vector<int32_t> order;
-  std::vector<Range> parts;
+  List<int32_t> order;
+  List<Range> parts;
   int layers, layer_slots;
 
-  Points(const Bodies& bodies, const Rollout& r, const std::vector<Share>& shares, int layers)
+  Points(const Bodies& bodies, const Rollout& r, const List<Share>& shares, int layers)
       : slots(layers * bodies.node_slots), layers(layers), layer_slots(bodies.node_slots) {
     const size_t room = slots + BLOCK;
     for (Floats* one : {&x, &y, &x_share, &y_share}) *one = Floats(room);

@@ -11,7 +11,7 @@ class Repulsion {
   Floats push_x, push_y;    // Displacements within bodies, without their rigid motion.
   Floats drift_x, drift_y;  // Rigid motion of bodies that touch each other.
 
-  Repulsion(const Bodies& b, const Rollout& r, const std::vector<Share>& shares)
+  Repulsion(const Bodies& b, const Rollout& r, const List<Share>& shares)
       : b_(b), r_(r), density_(r, int(shares.size())) {
     for (Floats* one : {&push_x, &push_y, &drift_x, &drift_y}) *one = Floats(b.node_slots + BLOCK);
     if (!r.repelled) return;
@@ -144,9 +144,9 @@ class Repulsion {
   const Bodies& b_;
   const Rollout& r_;
   Density density_;
-  std::vector<int32_t> order_;  // Slots of nodes that have grown, and the part of each share.
-  std::vector<Range> parts_;
-  std::vector<Place> places_;
+  List<int32_t> order_;  // Slots of nodes that have grown, and the part of each share.
+  List<Range> parts_;
+  List<Place> places_;
 };
 
 }  // namespace microcosmos::ISA

@@ -12,6 +12,7 @@ enum Commands { GIVEN, NETWORK, SERIES };
 // Parts of a step whose time can be taken.
 enum Part {
   CONTROL,
+  REPELLING,
   WINDOWS,
   MOMENTS,
   INTERPOLATION,
@@ -131,6 +132,7 @@ struct Rollout {
   float* force;       // (step, body, 2)
 
   float* seconds;  // (PART_COUNT) time spent, if `timed`
+  float* memory;   // Bytes of all worlds that the process simulates at the end, if `timed`
 };
 
 }  // namespace microcosmos

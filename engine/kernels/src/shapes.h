@@ -138,7 +138,7 @@ class Shapes {
   const Bodies& b_;
   const Rollout& r_;
   Floats direction_, along_x_, along_y_, factors_;
-  std::vector<size_t> starts_;
+  List<size_t> starts_;
 };
 
 // Move and turn a piece of a shape so that its nodes that are `here` come nearest to (x, y), and

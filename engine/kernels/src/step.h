@@ -74,7 +74,10 @@ class World {
         command(t, me);
         stop(CONTROL, me);
       }
-      if (r_.repelled) repulsion_.find(n_, me);
+      if (r_.repelled) {
+        repulsion_.find(n_, me);
+        stop(REPELLING, me);
+      }
       place_points(me.share);
       if (r_.fluid || r_.energetic) find_windows(p_, l_, WEIGHTS[r_.delta], me);
       stop(WINDOWS, me);
@@ -185,7 +188,10 @@ class World {
       r_.end_positions[2 * n + 1] = n_.y[b_.node_slot[n]];
     }
     for (int e = edges.from; e < edges.to; e++) r_.end_angles[e] = n_.angle[b_.edge_slot[e]];
-    if (me.first()) energy_.end(l_);
+    if (me.first()) {
+      energy_.end(l_);
+      if (r_.timed) *r_.memory = float(held);
+    }
   }
 
   // The points of bodies: their nodes, or two half a cell to either side.
@@ -294,7 +300,7 @@ class World {
   Team team_;
   const Rollout& r_;
   Bodies b_;
-  std::vector<Share> shares_;
+  List<Share> shares_;
   Lattice l_;
   Rates rates_;
   Surroundings surroundings_;

@@ -1,7 +1,6 @@
 // Surroundings of the fluid: walls, a uniform force and a sponge, as in `fluid.surroundings`.
 #pragma once
 #include <algorithm>
-#include <vector>
 
 #include "fluid.h"
 #include "rollout.h"
@@ -47,7 +46,7 @@ class Surroundings {
   };
 
   // The cells, in ascending order, that are in a band.
-  static Range within(const std::vector<size_t>& cells, const Lattice& l, const Band& band) {
+  static Range within(const List<size_t>& cells, const Lattice& l, const Band& band) {
     auto before = [&](int row) {
       return int(std::lower_bound(cells.begin(), cells.end(), row * l.row) - cells.begin());
     };
@@ -97,8 +96,8 @@ class Surroundings {
     }
   }
 
-  std::vector<Link> links_;
-  std::vector<size_t> walls_, blocks_;  // Wall cells, and blocks of the sponge, in a plane.
+  List<Link> links_;
+  List<size_t> walls_, blocks_;  // Wall cells, and blocks of the sponge, in a plane.
   Floats strength_;
   float free_[9] = {};
 };

@@ -84,8 +84,8 @@ class Sweeps {
 
  private:
   // The values of a filament's joints or edges by slots; a joint has that of its first edge.
-  void place(const std::vector<int32_t>& items, const Piece& piece, const float* values,
-             float factor, float* out) {
+  void place(const List<int32_t>& items, const Piece& piece, const float* values, float factor,
+             float* out) {
     for (size_t k = 0; k < items.size(); k++)
       out[b_.edge_slot[piece.edge_of[k]]] = factor * values[items[k]];
   }
@@ -197,7 +197,7 @@ class Sweeps {
   const Bodies& b_;
   const Rollout& r_;
   Floats rest_angle_, rest_length_, bend_, stretch_, shear_;  // Of filaments, by slots.
-  std::vector<Floats> values_;  // Of each tile: rest values and stiffnesses, colour by colour.
+  List<Floats> values_;  // Of each tile: rest values and stiffnesses, colour by colour.
 };
 
 }  // namespace microcosmos::ISA

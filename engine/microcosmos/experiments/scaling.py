@@ -11,7 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from .. import coupling, filaments, fluid, world
+from .. import coupling, device, filaments, fluid, world
 from ..archive.report import Report, Row, Value
 from ..search import Stopped
 from .table_file import Table
@@ -70,6 +70,17 @@ REPORTED = 1000
 CHUNK = 10
 """Steps of one call of a program; a run can stop between calls."""
 
+NATIVE_CHUNK = 100
+"""At most so many steps of one call of the native kernel, which begins with a new plan."""
+
+NATIVE_PARTS = {
+    "fluid": ("moments", "fluid"),
+    "coupling": ("windows", "interpolation", "forcing", "spreading"),
+    "constraints": ("constraints",),
+    "steric": ("repulsion",),
+}
+"""The kernel's parts of a step in each of ours."""
+
 REPEATS = 3
 """Repeats of each part; the median counts."""
 
@@ -82,6 +93,8 @@ class Scene(eqx.Module):
 
 
 Step = Callable[[Scene, world.State], world.State]
+Measured = tuple[dict[str, Value], world.State]
+"""Columns of a row, and the state at the end."""
 
 
 @dataclass(frozen=True)
@@ -95,22 +108,68 @@ class Timing:
 
 
 def step_row(scene: Scene, start: world.State, plan: Timing) -> dict[str, Value]:
-    """Measure one number of nodes; times are seconds for 1,000 steps."""
+    """Measure one number of nodes, with the native kernel or JAX, as `device.kernel` chooses.
+
+    Times are seconds for 1,000 steps. `memory_bytes` counts arguments, results and temporaries
+    of the compiled program, and with the kernel all arrays that it holds during the steps.
+    """
+    measured = _native if world.native.chosen(scene.box, start) else _jax
+    found, end = measured(scene, start, plan)
+    finite = all(bool(jnp.all(jnp.isfinite(x))) for x in jax.tree.leaves(end))
+    return {
+        "method": "microcosmos",
+        "nodes": len(start.positions),
+        **found,
+        "status": "ok" if finite else "non-finite",
+    }
+
+
+def _native(scene: Scene, start: world.State, plan: Timing) -> Measured:
+    """Measure the native kernel with a thread for each core; parts add up their own times."""
+    steps, threads = min(NATIVE_CHUNK, plan.steps), device.cores()
+    spent = []
+
+    def advance(scene: Scene, state: world.State) -> tuple:
+        return world.native.advance(scene.box, state, scene.rest, steps, threads)
+
+    program = (
+        jax.jit(advance, compiler_options=dict(plan.options)).lower(scene, start).compile()
+    )
+    *_, held = jax.block_until_ready(program(scene, start))
+
+    def kept(scene: Scene, state: world.State) -> world.State:
+        state, seconds, _ = jax.block_until_ready(program(scene, state))
+        spent.append(seconds)
+        return state
+
+    calls = max(1, plan.steps // steps)
+    seconds, end = _time(kept, scene, start, calls, plan)
+    times = dict(zip(world.native.PARTS, np.mean(spent, 0), strict=True))
+    parts = {part: sum(times[one] for one in ones) for part, ones in NATIVE_PARTS.items()}
+    memory = _memory(program)
+    return {
+        "kernel": "native",
+        "steps": steps * calls,
+        "seconds": seconds * REPORTED / steps,
+        **{name: float(one) * REPORTED / steps for name, one in parts.items()},
+        "memory_bytes": None if memory is None else memory + int(held),
+    }, end
+
+
+def _jax(scene: Scene, start: world.State, plan: Timing) -> Measured:
+    """Measure JAX, then each part by itself."""
     whole = _compile(_step, scene, start, CHUNK, plan)
     calls = max(1, plan.steps // CHUNK)
     seconds, end = _time(whole, scene, start, calls, plan)
     parts = (("fluid", _fluid), ("coupling", _couple))
     parts += (("constraints", _constrain), ("steric", _repel))
-    finite = all(bool(jnp.all(jnp.isfinite(x))) for x in jax.tree.leaves(end))
     return {
-        "method": "microcosmos",
-        "nodes": len(start.positions),
+        "kernel": "jax",
         "steps": CHUNK * calls,
         "seconds": seconds * REPORTED / CHUNK,
         **{name: _median(part, scene, start, plan) for name, part in parts},
         "memory_bytes": _memory(whole),
-        "status": "ok" if finite else "non-finite",
-    }
+    }, end
 
 
 def pairs_row(positions: Float[Array, "node 2"], size: tuple[int, int], plan: Timing) -> dict:
@@ -124,6 +183,7 @@ def pairs_row(positions: Float[Array, "node 2"], size: tuple[int, int], plan: Ti
     return {
         "method": "all-pairs",
         "nodes": len(positions),
+        "kernel": "jax",
         "steps": REPEATS,
         "seconds": seconds * REPORTED,
         "fluid": None,

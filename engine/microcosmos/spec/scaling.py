@@ -31,7 +31,7 @@ class Scaling(Part):
     steps: int = field(1000, ge=2, le=1_000_000, unit="steps", source=PAPER)
     """Measured steps; times are reported per 1,000."""
     part_steps: int = field(20, ge=2, le=10_000, unit="steps")
-    """Measured steps of each part, repeated three times."""
+    """With JAX: measured steps of each part, repeated three times."""
     steric: Steric = Steric()
     """Repulsion between nodes."""
     all_pairs: int = field(8_000, ge=0, le=100_000, unit="nodes")

@@ -31,6 +31,7 @@ from .operands import (
 LOG = logging.getLogger(__name__)
 PARTS = (
     "control",
+    "repulsion",
     "windows",
     "moments",
     "interpolation",
@@ -136,25 +137,28 @@ def rollout(
     """
     end, found = _rollout(world, state, given, instruction_set, {"threads": threads})
     rest = filaments.Rest(*found[:2]) if isinstance(given, Controller) else given
-    observed = dict(zip(OBSERVED, found[2:-1], strict=True))
+    observed = dict(zip(OBSERVED, found[2:-2], strict=True))
     measures = jax.vmap(lambda rest, step: Measures(rest=rest, **step))(rest, observed)
     return end, measures
 
 
 def advance(
     world: World, state: State, rest: filaments.Rest, steps: int, threads: int = 1
-) -> tuple[State, Float[Array, "part"]]:
-    """Return the state after some steps of one rest shape, nothing of which is recorded, and
-    the time that they spent in each of `PARTS`, in seconds."""
+) -> tuple[State, Float[Array, "part"], Float[Array, ""]]:
+    """Return the state after some steps of one rest shape, nothing of which is recorded, the
+    time that they spent in each of `PARTS`, in seconds, and the bytes of the kernel's arrays.
+
+    Worlds that other threads simulate at the same time count too.
+    """
     still = jax.tree.map(lambda x: x[None], rest)
     options = {"steps": steps, "threads": threads, "observed": False, "timed": True}
     end, found = _rollout(world, state, still, None, options)
-    return end, found[-1]
+    return end, found[-2], found[-1][0]
 
 
 def part_seconds(world: World, state: State, rest: filaments.Rest) -> Float[Array, "part"]:
     """Return the time that a rollout spends in each of `PARTS`, in seconds."""
-    return _rollout(world, state, rest, None, {"timed": True})[1][-1]
+    return _rollout(world, state, rest, None, {"timed": True})[1][-2]
 
 
 def _rollout(
@@ -164,7 +168,7 @@ def _rollout(
     instruction_set: str | None,
     chosen: Numbers,
 ) -> tuple[State, list[Array]]:
-    """Return the end, then rest shapes of a controller, `OBSERVED`, and the parts' times."""
+    """Return the end, then rest shapes of a controller, `OBSERVED`, times and bytes."""
     reason = uncovered(world, state)
     if reason:
         raise ValueError(f"the native kernel does not cover {reason}")
@@ -253,7 +257,7 @@ def _collected(state: State) -> Float[Array, "node"]:
 
 
 def _results(world: World, state: State, steps: int, closed: bool) -> list[tuple[int, ...]]:
-    """Return the shapes of the end, of rest shapes, of `OBSERVED` and of the parts' times."""
+    """Return the shapes of the end, of rest shapes, of `OBSERVED`, of times and of bytes."""
     joints, edges = _counts(world)
     nodes, bodies = len(state.positions), world.groups.count
     energetic, commanded = state.energy is not None, steps if closed else 0
@@ -262,7 +266,7 @@ def _results(world: World, state: State, steps: int, closed: bool) -> list[tuple
     rest = [(commanded, joints), (commanded, edges)]
     numbers = [(steps,)] * 4
     observed = [(steps, 2), (steps, nodes, 2), *numbers, (steps, joints), (steps,)]
-    return [*end, *rest, *observed, (steps, bodies, 2), (len(PARTS),)]
+    return [*end, *rest, *observed, (steps, bodies, 2), (len(PARTS),), (1,)]
 
 
 def _parameters(world: World) -> Array:

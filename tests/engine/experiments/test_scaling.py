@@ -4,10 +4,19 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from microcosmos import device
 from microcosmos.archive.report import Row
 from microcosmos.build.tables import build_crowd
-from microcosmos.experiments.scaling import LINEAR_FROM, _all_pairs, report, summary
+from microcosmos.experiments.scaling import (
+    LINEAR_FROM,
+    Timing,
+    _all_pairs,
+    report,
+    step_row,
+    summary,
+)
 from microcosmos.experiments.table_file import TableRun
+from microcosmos.search import Stopped
 from microcosmos.spec import parse
 from microcosmos.spec.scaling import SPACING
 
@@ -37,6 +46,32 @@ def test_rows_tell_the_whole_and_its_parts(course_of):
     assert more["memory_bytes"] > ours["memory_bytes"]
     assert report.summary["peak_memory_bytes"] == more["memory_bytes"]
     assert report.infeasible == 0
+
+
+@pytest.mark.parametrize("kernel", ["native", "jax"])
+def test_the_chosen_kernel_is_measured(specs, monkeypatch, kernel):
+    if kernel == "native" and device.kernel_version() is None:
+        pytest.skip("the native kernel is not installed")
+    monkeypatch.setenv(device.KERNEL_VARIABLE, kernel)
+    calls, plan = [], Timing(250, 2, {}, lambda: bool(calls.append(None)))
+    found = step_row(*build_crowd(parse(specs["scaling"]), 40), plan)
+    assert (found["kernel"], found["status"], found["nodes"]) == (kernel, "ok", 40)
+    assert all(found[part] > 0 for part in ("seconds", *PARTS))
+    assert found["memory_bytes"] >= 2 * 9 * 32 * 32 * 4
+    whole = {"native": 2, "jax": 25 + 4 * 3}  # Calls: JAX's parts have their own.
+    assert len(calls) == whole[kernel]
+    assert found["steps"] == {"native": 200, "jax": 250}[kernel]
+
+
+@pytest.mark.parametrize("kernel", ["native", "jax"])
+def test_a_measurement_stops_between_calls(specs, monkeypatch, kernel):
+    if kernel == "native" and device.kernel_version() is None:
+        pytest.skip("the native kernel is not installed")
+    monkeypatch.setenv(device.KERNEL_VARIABLE, kernel)
+    answers = iter([False, True])
+    plan = Timing(200, 2, {}, lambda: next(answers))
+    with pytest.raises(Stopped):
+        step_row(*build_crowd(parse(specs["scaling"]), 40), plan)
 
 
 @pytest.mark.fast

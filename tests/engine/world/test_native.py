@@ -177,7 +177,8 @@ def test_threads_that_share_a_world_change_no_bit(name):
 def test_steps_of_one_rest_shape_need_not_be_recorded():
     box, start, rest = SCENES["three bodies"]()
     still = jax.tree.map(lambda x: x[50], rest)
-    end, seconds = native.advance(box, start, still, 20, threads=2)
-    held = jax.tree.map(lambda x: jnp.tile(x, (20, 1)), still)
-    jax.tree.map(np.testing.assert_array_equal, end, native.rollout(box, start, held)[0])
+    end, seconds, held = native.advance(box, start, still, 20, threads=2)
+    tiled = jax.tree.map(lambda x: jnp.tile(x, (20, 1)), still)
+    jax.tree.map(np.testing.assert_array_equal, end, native.rollout(box, start, tiled)[0])
     assert 0 < float(seconds.sum()) < 60
+    assert 9 * 4 * box.size[0] * box.size[1] < float(held) < 1e7
