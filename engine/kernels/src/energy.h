@@ -21,11 +21,11 @@ class Energy {
   }
 
   // Read the energy at the nodes, whose windows are those of points in one layer.
-  void sense(const Points& p, const Member& me) {
+  void sense(const Points& p, const Lattice& l, const Member& me) {
     me.wait();
     const Range nodes = me.part(r_.nodes);
     for (int n = nodes.from; n < nodes.to; n++)
-      sensed[n] = r_.present[n] ? at(p, field_, b_.node_slot[n]) : 0;
+      sensed[n] = r_.present[n] ? at(p.window(b_.node_slot[n]), l, field_) : 0;
   }
 
   // Take energy at the points, then let the rest spread. The coverage of cells by points is known.
@@ -41,7 +41,8 @@ class Energy {
       if (!r_.present[n]) continue;
       float found = 0;
       for (int layer = 0; layer < r_.layers; layer++)
-        found += at(p, consumed ? taken_ : field_, layer * b_.node_slots + b_.node_slot[n]);
+        found +=
+            at(p.window(layer * b_.node_slots + b_.node_slot[n]), l, consumed ? taken_ : field_);
       collected[n] = collected[n] + found / float(r_.layers);
     }
     me.wait();
@@ -62,10 +63,10 @@ class Energy {
   }
 
  private:
-  static float at(const Points& p, const float* plane, int slot) {
-    const float* w = p.weights + 8 * size_t(slot);
+  static float at(const Window& window, const Lattice& l, const float* plane) {
+    const float* w = window.weights;
     Vec4 sum = {};
-    for (int i = 0; i < 4; i++) sum = sum + w[i] * load<Vec4>(plane + p.rows[4 * size_t(slot) + i]);
+    each_row(window, l, [&](int i, int32_t row) { sum = sum + w[i] * load<Vec4>(plane + row); });
     sum = sum * load<Vec4>(w + 4);
     return (sum[0] + sum[2]) + (sum[1] + sum[3]);
   }

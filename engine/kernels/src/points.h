@@ -35,16 +35,22 @@ constexpr Weights WEIGHTS[] = {
     {0, {1, 1, 0, 0}, {1, 1, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, 1},
 };
 
+// The window of a point: weights of its rows, then of its columns; where its first row begins.
+struct Window {
+  float weights[8];
+  int32_t first, slot;
+};
+
 struct Points {
   int slots;                // Layers x slots of nodes.
   Floats x, y;              // Positions.
   Floats x_share, y_share;  // Distance from the first cell of the window.
   Array<int32_t> x_first, y_first;
-  Floats weights;       // Eight for each point: of its rows, of its columns.
-  Array<int32_t> rows;  // Four for each point: where its rows begin.
-  // The order of transfers: neighbours, whose windows overlap, follow each other late, so that
-  // loads need not wait for stores. And the part of each share.
+  // Slots in the order of transfers: neighbours, whose windows overlap, follow each other late, so
+  // that loads need not wait for stores. Windows in that order. And the part of each share.
   List<int32_t> order;
+  Array<Window> windows;
+  Array<int32_t> number;  // Of each slot: the place of its window.
   List<Range> parts;
   int layers, layer_slots;
 
@@ -53,19 +59,22 @@ struct Points {
     const size_t room = slots + BLOCK;
     for (Floats* one : {&x, &y, &x_share, &y_share}) *one = Floats(room);
     x_first = Array<int32_t>(room), y_first = Array<int32_t>(room);
-    weights = Floats(8 * room), rows = Array<int32_t>(4 * room);
     order.reserve(size_t(layers) * r.nodes);
     for (const Share& share : shares) {
       const int from = int(order.size());
       for (int p = share.pieces.from; p < share.pieces.to; p++) place(bodies.pieces[p], bodies, r);
       parts.push_back({from, int(order.size())});
     }
+    windows = Array<Window>(order.size()), number = Array<int32_t>(room);
+    for (size_t n = 0; n < order.size(); n++) number[order[n]] = int32_t(n);
   }
 
-  // Call work(slot) for each point of a share.
+  const Window& window(int slot) const { return windows[number[slot]]; }
+
+  // Call work(window) for each point of a share.
   template <class Work>
   INLINE void each_of(int member, Work work) const {
-    for (int n = parts[member].from; n < parts[member].to; n++) work(order[n]);
+    for (int n = parts[member].from; n < parts[member].to; n++) work(windows[n]);
   }
 
  private:
@@ -119,18 +128,27 @@ inline __attribute__((noinline)) void weigh(Points& p, const Lattice& l, const W
   const Vec8 s0 = both(delta.s0), s1 = both(delta.s1), s2 = both(delta.s2);
   const Vec8 cell = {0, 1, 2, 3, 0, 1, 2, 3};
   typedef int32_t Ints8 __attribute__((vector_size(32)));
-  p.each_of(me.number, [&](int slot) __attribute__((always_inline)) {
+  for (int n = p.parts[me.number].from; n < p.parts[me.number].to; n++) {
+    const int slot = p.order[n];
+    Window& window = p.windows[n];
     const float fx = p.x_share[slot], fy = p.y_share[slot];
     const Vec8 r = Vec8{fx, fx, fx, fx, fy, fy, fy, fy} - cell;
     const Vec8 a = (Vec8)((Ints8)r & 0x7fffffff);
-    store(p.weights + 8 * size_t(slot),
-          (c0 - c1 * a + c2 * root(s0 + s1 * a + s2 * (a * a))) * delta.c3);
-    const int x = p.x_first[slot], y = p.y_first[slot];
-    for (int i = 0; i < 4; i++) {
-      const int row = x + i < l.height ? x + i : x + i - l.height;
-      p.rows[4 * size_t(slot) + i] = int32_t(row * l.wide + y);
-    }
-  });
+    store(window.weights, (c0 - c1 * a + c2 * root(s0 + s1 * a + s2 * (a * a))) * delta.c3);
+    window.first = int32_t(p.x_first[slot] * l.wide) + p.y_first[slot], window.slot = slot;
+  }
+}
+
+// Call work(number, place) for each row of a window, which begins at that place.
+template <class Work>
+INLINE void each_row(const Window& window, const Lattice& l, Work work) {
+  const int32_t wide = int32_t(l.wide), end = wide * l.height;
+  int32_t at = window.first;
+  for (int i = 0; i < 4; i++) {
+    work(i, at);
+    at += wide;
+    at -= at >= end ? end : 0;
+  }
 }
 
 // The points that reach a band, and the blocks of cells in it that they touch.
@@ -138,12 +156,13 @@ inline __attribute__((noinline)) void touch(const Points& p, Lattice& l, Band& b
   std::memset(l.touched + size_t(band.from) * l.blocks, 0, size_t(band.to - band.from) * l.blocks);
   std::memset(l.crossing + band.from, 0, band.to - band.from);
   band.points.clear();
-  for (int slot : p.order) {
+  for (int number = 0; number < int(p.order.size()); number++) {
+    const int slot = p.order[number];
     const int x = p.x_first[slot], y = p.y_first[slot];
     // Rows from the band's first to the window's, around the edge of the box.
     const int after = x - band.from + (x < band.from ? l.height : 0);
     if (after >= band.to - band.from && after + 3 < l.height) continue;
-    band.points.push_back(slot);
+    band.points.push_back(number);
     const bool crosses = y + 3 >= l.width;
     const int near = y / BLOCK, far = crosses ? 0 : (y + 3) / BLOCK;
     for (int i = 0; i < 4; i++) {
@@ -177,15 +196,15 @@ INLINE Vec8 twice(Vec4 a) { return __builtin_shufflevector(a, a, 0, 0, 1, 1, 2, 
 template <bool DIVIDED>
 __attribute__((noinline)) void interpolate(const Points& p, const Lattice& l, const float* pairs,
                                            float* x, float* y, const Member& me) {
-  p.each_of(me.number, [&](int slot) __attribute__((always_inline)) {
-    const float* w = p.weights + 8 * size_t(slot);
-    const int32_t* row = p.rows + 4 * size_t(slot);
+  p.each_of(me.number, [&](const Window& window) __attribute__((always_inline)) {
+    const float* w = window.weights;
+    const int slot = window.slot;
     Vec8 sum = {};
-    for (int i = 0; i < 4; i++) {
-      Vec8 found = load<Vec8>(pairs + 2 * size_t(row[i]));
-      if (DIVIDED) found = found * twice(load<Vec4>(l.volume + row[i]));
+    each_row(window, l, [&](int i, int32_t row) __attribute__((always_inline)) {
+      Vec8 found = load<Vec8>(pairs + 2 * size_t(row));
+      if (DIVIDED) found = found * twice(load<Vec4>(l.volume + row));
       sum = sum + w[i] * found;
-    }
+    });
     sum = sum * twice(load<Vec4>(w + 4));
     const Vec4 t = __builtin_shufflevector(sum, sum, 0, 1, 2, 3) +
                    __builtin_shufflevector(sum, sum, 4, 5, 6, 7);
@@ -212,15 +231,15 @@ inline __attribute__((noinline)) void spread(const Points& p, Lattice& l, const 
   for (int n = 0; n < band.beyond_rows; n++)
     std::memset(l.force + 2 * (l.wide * band.beyond[n] + l.width), 0, 32);
   const Inside inside(l, band);
-  for (int slot : band.points) {
-    const float *w = p.weights + 8 * size_t(slot), a = x[slot], b = y[slot];
-    const int32_t* row = p.rows + 4 * size_t(slot);
+  for (int number : band.points) {
+    const Window& window = p.windows[number];
+    const float *w = window.weights, a = x[window.slot], b = y[window.slot];
     const Vec8 value = Vec8{a, b, a, b, a, b, a, b} * twice(load<Vec4>(w + 4));
-    for (int i = 0; i < 4; i++) {
-      if (!inside(row[i])) continue;
-      float* g = l.force + 2 * size_t(row[i]);
+    each_row(window, l, [&](int i, int32_t row) __attribute__((always_inline)) {
+      if (!inside(row)) return;
+      float* g = l.force + 2 * size_t(row);
       store(g, load<Vec8>(g) + w[i] * value);
-    }
+    });
   }
   for (int n = 0; n < band.beyond_rows; n++) {
     float *g = l.force + 2 * l.wide * band.beyond[n], *beyond = g + 2 * l.width;
@@ -235,15 +254,15 @@ inline __attribute__((noinline)) void cover(const Points& p, Lattice& l, const M
   for (int n = 0; n < band.beyond_rows; n++)
     std::memset(l.coverage + l.wide * band.beyond[n] + l.width, 0, 16);
   const Inside inside(l, band);
-  for (int slot : band.points) {
-    const float* w = p.weights + 8 * size_t(slot);
-    const int32_t* row = p.rows + 4 * size_t(slot);
+  for (int number : band.points) {
+    const Window& window = p.windows[number];
+    const float* w = window.weights;
     const Vec4 columns = load<Vec4>(w + 4);
-    for (int i = 0; i < 4; i++) {
-      if (!inside(row[i])) continue;
-      float* c = l.coverage + row[i];
+    each_row(window, l, [&](int i, int32_t row) __attribute__((always_inline)) {
+      if (!inside(row)) return;
+      float* c = l.coverage + row;
       store(c, load<Vec4>(c) + w[i] * columns);
-    }
+    });
   }
   for (int n = 0; n < band.beyond_rows; n++) {
     float *c = l.coverage + l.wide * band.beyond[n], *beyond = c + l.width;
@@ -254,16 +273,15 @@ inline __attribute__((noinline)) void cover(const Points& p, Lattice& l, const M
 // The reciprocal of J S 1 / density at each point: the step of the forcing that always converges.
 inline __attribute__((noinline)) void relaxation(const Points& p, const Lattice& l, float* beta,
                                                  const Member& me) {
-  p.each_of(me.number, [&](int slot) __attribute__((always_inline)) {
-    const float* w = p.weights + 8 * size_t(slot);
-    const int32_t* row = p.rows + 4 * size_t(slot);
+  p.each_of(me.number, [&](const Window& window) __attribute__((always_inline)) {
+    const float* w = window.weights;
     Vec4 sum = {};
-    for (int i = 0; i < 4; i++)
-      sum = sum + w[i] * (load<Vec4>(l.coverage + row[i]) * load<Vec4>(l.volume + row[i]));
+    each_row(window, l, [&](int i, int32_t row) __attribute__((always_inline)) {
+      sum = sum + w[i] * (load<Vec4>(l.coverage + row) * load<Vec4>(l.volume + row));
+    });
     sum = sum * load<Vec4>(w + 4);
-    beta[slot] = (sum[0] + sum[2]) + (sum[1] + sum[3]);
+    beta[window.slot] = 1.0f / ((sum[0] + sum[2]) + (sum[1] + sum[3]));
   });
-  p.each_of(me.number, [&](int slot) { beta[slot] = 1.0f / beta[slot]; });
 }
 
 }  // namespace microcosmos::ISA

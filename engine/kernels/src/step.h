@@ -172,7 +172,7 @@ class World {
       store(at_nodes_.x + i, load(n_.x + i)), store(at_nodes_.y + i, load(n_.y + i));
     });
     find_windows(at_nodes_, l_, WEIGHTS[r_.delta], me);
-    energy_.sense(at_nodes_, me);
+    energy_.sense(at_nodes_, l_, me);
     me.wait();
   }
 
