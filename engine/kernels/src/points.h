@@ -151,6 +151,18 @@ INLINE void each_row(const Window& window, const Lattice& l, Work work) {
   }
 }
 
+// Call work(n) for each byte that is set. Most are not, so eight are looked at together.
+template <class Work>
+INLINE void each_set(const uint8_t* bytes, int from, int to, Work work) {
+  for (int start = from; start < to; start += 8) {
+    const int count = to - start < 8 ? to - start : 8;
+    uint64_t eight = 0;
+    std::memcpy(&eight, bytes + start, count);
+    for (int n = 0; eight && n < count; n++)
+      if (bytes[start + n]) work(start + n);
+  }
+}
+
 // The points that reach a band, and the blocks of cells in it that they touch.
 inline __attribute__((noinline)) void touch(const Points& p, Lattice& l, Band& band) {
   std::memset(l.touched + size_t(band.from) * l.blocks, 0, size_t(band.to - band.from) * l.blocks);
@@ -175,12 +187,11 @@ inline __attribute__((noinline)) void touch(const Points& p, Lattice& l, Band& b
     }
   }
   band.touched_blocks = band.beyond_rows = 0;
-  for (int x = band.from; x < band.to; x++) {
-    for (int n = 0; n < l.blocks; n++)
-      if (l.touched[size_t(x) * l.blocks + n])
-        band.block[band.touched_blocks++] = int32_t(x * l.wide + n * BLOCK);
-    if (l.crossing[x]) band.beyond[band.beyond_rows++] = x;
-  }
+  each_set(l.touched, band.from * l.blocks, band.to * l.blocks, [&](int n) {
+    const int x = n / l.blocks;
+    band.block[band.touched_blocks++] = int32_t(x * l.wide + (n - x * l.blocks) * BLOCK);
+  });
+  each_set(l.crossing, band.from, band.to, [&](int x) { band.beyond[band.beyond_rows++] = x; });
 }
 
 // Find windows and their weights, and the blocks of cells that they touch.

@@ -73,11 +73,18 @@ def variety(creatures: Sequence[PoseStream]) -> Variety:
     )
 
 
-def exemplars(creatures: Sequence[PoseStream]) -> list[int]:
-    """Return the index of a creature of each kind, given and counted from the fittest."""
-    chosen = sample(len(creatures))
-    found = distances(*_strokes([creatures[i] for i in chosen]))
-    return [int(chosen[i]) for i in kinds(found)]
+def exemplars(creatures: Sequence[PoseStream], most: int) -> list[int]:
+    """Return a creature of each kind, at most `most`, given and counted from the fittest."""
+    strokes, chains = _strokes(creatures)
+    chosen: list[int] = []
+    for i in range(len(creatures)):
+        if len(chosen) == most:
+            break
+        compared = [*chosen, i]
+        found = distances(strokes[compared], chains[compared])[-1, :-1]
+        if np.all(found > KIND):
+            chosen.append(i)
+    return chosen
 
 
 def _strokes(creatures: Sequence[PoseStream]) -> tuple[np.ndarray, np.ndarray]:

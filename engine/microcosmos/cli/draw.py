@@ -1,6 +1,6 @@
 """The command `figure`: pictures, films, and figures for print."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
@@ -39,6 +39,9 @@ figures = typer.Typer(
 app.add_typer(figures, name="figure")
 
 File = Annotated[Path, Argument(exists=True, dir_okay=False, help="The archive file of a run.")]
+Files = Annotated[
+    list[Path], Argument(metavar="FILE... OUT", help="Archive files, then the figure to write.")
+]
 Out = Annotated[
     Path | None, Argument(help="A .pdf, .svg or .png file; default: a PDF beside FILE.")
 ]
@@ -109,21 +112,14 @@ def archive(
 @with_options(_printed, omit="palette", width="double")
 def curves(
     options: drawing.Print,
-    files: Annotated[
-        list[Path],
-        Argument(metavar="FILE... OUT", help="Archive files, then the figure to write."),
-    ],
+    files: Files,
     shown: Annotated[
         str, Option(help="Some of qd_score, coverage, best, mean, evaluations …, with commas.")
     ] = "best,coverage,qd_score",
     against: Annotated[str, Option(help="evaluations or generations.")] = "evaluations",
 ) -> None:
     """Draw the curves of runs: the median and a band over the seeds of each spec."""
-    *given, out = files
-    if not given:
-        fail(f"FILE... OUT needs an archive file and a figure to write; got only {out}")
-    if missing := [str(file) for file in given if not file.is_file()]:
-        fail(f"FILE must exist; not found: {', '.join(missing)}")
+    given, out = _split(files)
     _print(drawing.progress(given, out, options, _names(shown) or [], against))
 
 
@@ -165,13 +161,13 @@ def sheet(
 @with_options(_printed, width="double")
 def kinds(
     options: drawing.Print,
-    file: File,
-    out: Out = None,
+    files: Files,
     limit: Annotated[int, Option(min=1, max=100, help="Largest number of kinds.")] = 12,
     moments: Annotated[int, Option(min=2, max=32, help="Number of moments of a stroke.")] = 8,
 ) -> None:
-    """Draw film strips of the kinds of motion in an archive, the fittest first."""
-    _print(drawing.kinds(file, _beside(file, out, "kinds"), options, limit, moments))
+    """Draw film strips of the kinds of motion in runs of one spec, the fittest first."""
+    given, out = _split(files)
+    _print(drawing.kinds(given, out, options, limit, moments))
 
 
 @figures.command()
@@ -187,6 +183,16 @@ def lineage(
 ) -> None:
     """Draw the pedigree of an archive's elites, and the ancestors of one of them."""
     _print(drawing.tree(file, _beside(file, out, "lineage"), options, cell))
+
+
+def _split(files: Sequence[Path]) -> tuple[list[Path], Path]:
+    """Return the files to read, and the one to write."""
+    *given, out = files
+    if not given:
+        fail(f"FILE... OUT needs an archive file and a figure to write; got only {out}")
+    if missing := [str(file) for file in given if not file.is_file()]:
+        fail(f"FILE must exist; not found: {', '.join(missing)}")
+    return given, out
 
 
 def _print(written: list[Path]) -> None:

@@ -64,16 +64,18 @@ def of_sheet(found: Archive, plan: Layout, motions: Sequence[Motion], moments: i
     return " ".join([first, run(found)])
 
 
-def of_strips(found: Archive, shown: Sequence[Strip], moments: int) -> str:
+def of_strips(runs: Group, shown: Sequence[Strip], moments: int) -> str:
     """Return the caption of film strips of kinds of motion."""
+    elites = sum(len(one.cells) for one in runs.runs)
+    of_runs = f" of {len(runs.runs)} runs" if len(runs.runs) > 1 else ""
     first = (
-        f"{len(shown)} kinds of motion among {len(found.cells):,} elites: from the fittest on, "
+        f"{len(shown)} kinds of motion among {elites:,} elites{of_runs}: from the fittest on, "
         f"each is more than {KIND:g} body lengths (motion distance) from all before it. "
         f"{moments} moments of one stroke, in order and from dark to light; the dot marks the "
         f"first node. Bodies have one scale and travel upwards; the arrow is the way of one "
         f"stroke, the number the fitness."
     )
-    return " ".join([first, run(found)])
+    return " ".join([first, run(runs.runs[0], seeds=runs.seeds)])
 
 
 def of_lineage(found: Archive, cell: int | None, ancestors: int) -> str:

@@ -83,15 +83,24 @@ def contact(
         return options.publish(figure, out, caption.of_sheet(found, plan, moved, moments))
 
 
-def kinds(file: Path, out: Path, options: Print, most: int, moments: int) -> list[Path]:
-    """Draw a stroke of an elite of each kind of motion in an archive file, at most `most`."""
+def kinds(
+    files: Sequence[Path], out: Path, options: Print, most: int, moments: int
+) -> list[Path]:
+    """Draw a stroke of an elite of each kind of motion in archive files, at most `most`.
+
+    Raises `ValueError` for files whose specs differ in more than the seed.
+    """
     saving.kind(out)
-    found = open_archive(file)
-    shown = strips.exemplars(file.read_bytes(), most)
+    runs, *others = groups.grouped([open_archive(file) for file in files])
+    if others:
+        raise ValueError(
+            f"`FILE` must differ in the seed alone, got {runs.label}; {others[0].label}."
+        )
+    shown = strips.exemplars([file.read_bytes() for file in files], most)
     with styled():
         width, palette = millimetres(options.width), options.palette
-        figure = strips.strips(found, shown, moments=moments, colours=palette, width=width)
-        return options.publish(figure, out, caption.of_strips(found, shown, moments))
+        figure = strips.strips(shown, moments=moments, colours=palette, width=width)
+        return options.publish(figure, out, caption.of_strips(runs, shown, moments))
 
 
 def tree(file: Path, out: Path, options: Print, cell: int | None) -> list[Path]:

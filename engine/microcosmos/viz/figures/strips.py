@@ -1,4 +1,4 @@
-"""Film strips of the kinds of motion in an archive, from recorded poses."""
+"""Film strips of the kinds of motion in archives, from recorded poses."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,7 +9,6 @@ import numpy as np
 from ...archive.file import load
 from ...archive.poses import FRAMES, STROKES, PoseStream, streams
 from ...archive.variety import exemplars as of_each_kind
-from .reading import Archive
 from .sheet import numerals
 from .style import GREY, INK, PALE, blank, palette
 
@@ -22,7 +21,7 @@ GAP = 0.12
 class Strip:
     """A stroke of an elite; places are in body lengths, the way of the centre is upwards."""
 
-    elite: int
+    fitness: float
     poses: np.ndarray
     """(frame, node, 2), about the mean of the nodes in each frame."""
     edges: np.ndarray
@@ -30,16 +29,19 @@ class Strip:
     """Way of the centre in the stroke, in body lengths."""
 
 
-def exemplars(data: bytes, most: int) -> list[Strip]:
-    """Return the fittest elite of each kind of motion in an archive file, at most `most`."""
-    tree, attributes = load(data)
-    order = np.argsort(-tree["archive"]["fitness"], kind="stable")
-    recorded = streams(tree, attributes)
-    kinds = of_each_kind([recorded[i] for i in order])[:most]
-    return [strip(int(order[i]), recorded[order[i]]) for i in kinds]
+def exemplars(files: Sequence[bytes], most: int) -> list[Strip]:
+    """Return the fittest elite of each kind of motion in archive files, at most `most`."""
+    fitness, recorded = [], []
+    for data in files:
+        tree, attributes = load(data)
+        fitness += tree["archive"]["fitness"].tolist()
+        recorded += streams(tree, attributes)
+    order = np.argsort(-np.array(fitness), kind="stable")
+    kinds = of_each_kind([recorded[i] for i in order], most)
+    return [strip(fitness[order[i]], recorded[order[i]]) for i in kinds]
 
 
-def strip(elite: int, stream: PoseStream) -> Strip:
+def strip(fitness: float, stream: PoseStream) -> Strip:
     """Return the last stroke of a pose stream; all of it without two strokes."""
     cells = stream.cells.astype(float) / stream.length
     if stream.strokes:
@@ -49,16 +51,11 @@ def strip(elite: int, stream: PoseStream) -> Strip:
     size = float(np.hypot(across, along))
     # The world's axes are turned so that the way is (0, size).
     turn = np.array([[along, -across], [across, along]]) / size if size > 1e-9 else np.eye(2)
-    return Strip(elite, (cells - middle[:, None]) @ turn.T, stream.edges, size)
+    return Strip(fitness, (cells - middle[:, None]) @ turn.T, stream.edges, size)
 
 
 def strips(
-    found: Archive,
-    shown: Sequence[Strip],
-    *,
-    moments: int = 8,
-    colours: str = "viridis",
-    width: float = 178.0,
+    shown: Sequence[Strip], *, moments: int = 8, colours: str = "viridis", width: float = 178.0
 ) -> Any:
     """Draw each stroke as poses side by side, which are equal in scale and in time apart."""
     rows = -(-len(shown) // COLUMNS)
@@ -81,8 +78,9 @@ def strips(
         _arrow(panel, length - 0.75 * step, middle, one.advance)
         look = {"fontsize": 5.5, "transform": panel.transAxes}
         panel.text(0.005, 0.97, name, va="top", color=INK, **look)
-        fitness = f"{found.fitness[one.elite]:.3g}"
-        panel.text(0.995, 0.03, fitness, ha="right", va="bottom", color=GREY, **look)
+        panel.text(
+            0.995, 0.03, f"{one.fitness:.3g}", ha="right", va="bottom", color=GREY, **look
+        )
     return figure
 
 

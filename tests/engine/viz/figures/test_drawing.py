@@ -75,12 +75,30 @@ def test_a_sheet_states_the_verdicts_of_given_audits(archive, tmp_path, figure):
 
 def test_the_fittest_of_each_kind_of_motion_is_shown(archive):
     data = archive.read_bytes()
-    found, shown = reading.read(data), strips.exemplars(data, 100)
+    found, shown = reading.read(data), strips.exemplars([data], 100)
     assert len(shown) == variety.of(data).kinds
-    fitness = found.fitness[[one.elite for one in shown]]
+    fitness = [one.fitness for one in shown]
     assert fitness[0] == found.fitness.max()
     assert np.all(np.diff(fitness) <= 0)
-    assert [one.elite for one in strips.exemplars(data, 1)] == [shown[0].elite]
+    assert [one.fitness for one in strips.exemplars([data], 1)] == fitness[:1]
+
+
+def test_kinds_are_those_of_all_seeds_of_a_spec(archive, tmp_path, figure):
+    other, out = tmp_path / "other.h5", tmp_path / "kinds.svg"
+    assert local.evolve(spec.parse(TINY | {"seed": 1}), other)
+    figure("kinds", archive, other, out, "--limit", "100")
+    text = out.with_suffix(".caption.txt").read_text()
+    elites = sum(len(reading.read(file.read_bytes()).cells) for file in (archive, other))
+    assert f"among {elites} elites of 2 runs" in text
+    assert "seeds 0, 1" in text
+    alone = strips.exemplars([archive.read_bytes()], 100)
+    files = [file.read_bytes() for file in (archive, other)]
+    assert strips.exemplars(files, 100)[0].fitness >= alone[0].fitness
+    world = spec.parse(TINY).model_dump(mode="json")["world"]
+    thick = tmp_path / "thick.h5"
+    assert local.evolve(spec.parse(TINY | {"world": world | {"viscosity": 0.3}}), thick)
+    refused = figure("kinds", archive, thick, out, code=2)
+    assert "must differ in the seed alone" in refused
 
 
 def test_each_command_of_the_help_writes_its_figure_and_its_caption(archive, tmp_path, figure):

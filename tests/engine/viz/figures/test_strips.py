@@ -21,8 +21,8 @@ def swimming(way, strokes=2):
 @pytest.mark.parametrize("degrees", [0, 60, 200])
 def test_the_way_of_a_stroke_is_upwards(degrees):
     angle = np.radians(degrees)
-    found = strip(3, swimming(10 * np.array([np.cos(angle), np.sin(angle)])))
-    assert found.elite == 3
+    found = strip(0.3, swimming(10 * np.array([np.cos(angle), np.sin(angle)])))
+    assert found.fitness == 0.3
     assert found.advance == pytest.approx(5 / LENGTH, abs=1e-3)
     np.testing.assert_allclose(found.poses.mean(1), 0, atol=1e-6)
     sides = np.linalg.norm(np.diff(found.poses, axis=1), axis=2) * LENGTH
