@@ -234,9 +234,13 @@ def draw(sizes: dict[str, list[float]], crowds: dict[str, list[float]], file: Pa
 
     figure = Figure(figsize=(10, 4), layout="constrained")
     left, right = figure.subplots(1, 2)
-    looks = {"one pass": ":", "two copies": "--"}
+    looks = {
+        "one pass": (":", "one pass over the populations"),
+        "two copies": ("--", "fluid with two copies of its populations"),
+    }
     for name, values in sizes.items():
-        left.plot(SIDES, values, looks.get(name, "o-"), label=name)
+        look, label = looks.get(name, ("o-", name))
+        left.plot(SIDES, values, look, label=label)
     for name, values in crowds.items():
         colour = next(line.get_color() for line in left.lines if line.get_label() == name)
         right.plot(CROWDS, values, "o-", color=colour, label=name)
