@@ -31,8 +31,8 @@ SIDES = (32, 64, 128, 256, 512, 1024)
 CROWDS = (20, 80, 320, 1_280, 5_120, 16_000)
 CROWDED = 256
 """Cells along each side of the box of `CROWDS`."""
-WINDOW, ROWS_AND_WEIGHTS = 16, 48
-"""Cells of a point's window, and the bytes that describe it: eight weights, four rows."""
+WINDOW, DESCRIBED = 16, 40
+"""Cells of a point's window, and the bytes that describe it: eight weights and two places."""
 PAIR = 8
 """Bytes of a vector of a cell or a node."""
 
@@ -170,14 +170,14 @@ def moved_bytes(one: Scene) -> dict[str, int]:
     nodes, cells = len(one.start.positions), one.box.size[0] * one.box.size[1]
     form, window = one.box.form, WINDOW * PAIR
     scalar = window // 2
-    spread = ROWS_AND_WEIGHTS + PAIR + 2 * window
-    interpolate = ROWS_AND_WEIGHTS + window + PAIR
+    spread = DESCRIBED + PAIR + 2 * window
+    interpolate = DESCRIBED + window + PAIR
     improve = 6 * PAIR + 4  # Target and force both ways, velocity, what is reached; beta.
     more = form.forcing_iterations - 1
-    first = 2 * ROWS_AND_WEIGHTS + 4 * scalar + 4  # Coverage, and beta from it and the density.
+    first = 2 * DESCRIBED + 4 * scalar + 4  # Coverage, and beta from it and the density.
     again = more * (spread + interpolate + scalar)
     return {
-        "windows": nodes * (PAIR + ROWS_AND_WEIGHTS),
+        "windows": nodes * (PAIR + DESCRIBED),
         "moments": touched_cells(one) * (9 * 4 + PAIR + 4),
         "interpolation": nodes * interpolate,
         "constraints": nodes * 5 * PAIR,  # Velocity, both positions, rest shape, target.

@@ -67,7 +67,7 @@ def of_sheet(found: Archive, plan: Layout, motions: Sequence[Motion], moments: i
 def of_strips(runs: Group, shown: Sequence[Strip], moments: int) -> str:
     """Return the caption of film strips of kinds of motion."""
     elites = sum(len(one.cells) for one in runs.runs)
-    of_runs = f" of {len(runs.runs)} runs" if len(runs.runs) > 1 else ""
+    of_runs = f" of {len(runs.seeds)} runs" if len(runs.seeds) > 1 else ""
     first = (
         f"{len(shown)} kinds of motion among {elites:,} elites{of_runs}: from the fittest on, "
         f"each is more than {KIND:g} body lengths (motion distance) from all before it. "
