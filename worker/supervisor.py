@@ -32,6 +32,9 @@ STOP_SECONDS = 18.0
 """Seconds that a job has to stop on request; fewer than this process itself has."""
 STOP_CHECK_SECONDS = 1.0
 """Longest time between two checks of a job that must stop."""
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1"}
+"""NumPy's products of matrices round differently with other numbers of threads, and with them
+the distances of motions with which a run's curves end."""
 
 log = logging.getLogger(__name__)
 
@@ -72,7 +75,7 @@ class Supervisor(BaseWorker):
         """Start the job's process. Other users can read its arguments: no secrets."""
         self.job = subprocess.Popen(
             [sys.executable, "-m", "worker.job_process", run_id, self.name, str(os.getpid())],
-            env=os.environ | self.environment,
+            env=os.environ | ONE_THREAD | self.environment,
             stdin=subprocess.DEVNULL,
             process_group=0,
         )

@@ -31,8 +31,8 @@ def product(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def spec():
-    """A search of twelve generations."""
-    search = {"generations": 12, "batch": 16, "block": 8}
+    """A search that is not over before a test has disturbed it."""
+    search = {"generations": 40, "batch": 16, "block": 8}
     return SMALL_SCENE | {"seed": 7, "search": search}
 
 
