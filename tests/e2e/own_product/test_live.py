@@ -10,7 +10,7 @@ from playwright.sync_api import Locator, Page, expect
 from small_runs import TINY
 
 SLOW = 120_000
-SPEC = TINY | {"seed": 7, "search": TINY["search"] | {"generations": 5000}}
+SPEC = TINY | {"seed": 7, "search": TINY["search"] | {"generations": 50_000}}
 """Longer than the test, which pauses it at the end."""
 
 
