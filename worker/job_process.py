@@ -26,7 +26,7 @@ def main(run_id: str, worker: str, parent: str) -> None:
             # Imported here, so that errors of the engine or its device are recorded.
             from .evolution import carry_out
 
-            os.nice(NICE)
+            os.nice(NICE)  # After the imports, for which the page waits.
             carry_out(attempt)
 
 

@@ -95,7 +95,7 @@ def start(data: DataFolder, tree: Tree) -> None:
         start_child(data, tree, f"worker-{index}", "worker.supervisor", str(index))
 
 
-def start_renderers(data: DataFolder, tree: Tree) -> None:
+def start_renderer_and_auditor(data: DataFolder, tree: Tree) -> None:
     """Start what a new page does not wait for, so that it leaves the cores to the others."""
     for name in ("renderer", "auditor"):
         start_child(data, tree, name, "worker.renderer", name)
@@ -160,7 +160,7 @@ def main() -> None:
         start(data, tree)
         tree.watch(lambda: answers(settings.port, "/healthz", settings.host))
         if not tree.stop_requested:
-            start_renderers(data, tree)
+            start_renderer_and_auditor(data, tree)
             say("ready", f"{address} (Ctrl-C ends it)")
         tree.watch()
         say("ending", "runs are checkpointed and continue at the next start")

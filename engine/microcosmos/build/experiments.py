@@ -54,13 +54,14 @@ def build_evolution(
     emitters, key = plan.emitters, plan.key
     on_host = any(isinstance(emitter, TensorNeat) for emitter in emitters)
     small = plan.cell_count * plan.batch <= SMALL
-    jitted = partial(jax.jit, compiler_options=device.quick_options() if small else {})
+    options = device.quick_options() if small else {}
+    jitted = partial(jax.jit, compiler_options=options)
     compiled = (lambda program: program) if on_host else jitted
     # Each program is compiled for this run's sizes and seed.
     programs = Programs(
         emit=compiled(lambda *given: search.emitters.emit(emitters, *given, key=key)),
         evaluate_block=build_block(chosen.scene, room_of(chosen)),
-        insert=search.insert_program(),
+        insert=search.insert_program(options),
         tell=compiled(lambda states, outcome: search.emitters.tell(emitters, states, outcome)),
         forget=jitted(search.reevaluation.forget),
         lessons=build_lessons(chosen, emitters),

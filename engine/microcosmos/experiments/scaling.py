@@ -71,7 +71,7 @@ CHUNK = 10
 """Steps of one call of a program; a run can stop between calls."""
 
 NATIVE_CHUNK = 100
-"""At most so many steps of one call of the native kernel, which begins with a new plan."""
+"""At most so many steps of one call of the native kernel, which lays out its arrays anew."""
 
 NATIVE_PARTS = {
     "fluid": ("moments", "fluid"),
@@ -125,7 +125,7 @@ def step_row(scene: Scene, start: world.State, plan: Timing) -> dict[str, Value]
 
 
 def _native(scene: Scene, start: world.State, plan: Timing) -> Measured:
-    """Measure the native kernel with a thread for each core; parts add up their own times."""
+    """Measure the native kernel with a thread for each core; it takes the time of each part."""
     steps, threads = min(NATIVE_CHUNK, plan.steps), device.cores()
     spent = []
 

@@ -1,6 +1,6 @@
 """Insertion into cells by a total order, independent of the order of arrival."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import equinox as eqx
 import jax
@@ -9,7 +9,6 @@ import numpy as np
 from jax.typing import DTypeLike
 from jaxtyping import Array, Bool, Float, Int, UInt32
 
-from ..device import quick_options
 from ..genomes import Genotype, words
 from .cells import Cells
 
@@ -109,10 +108,15 @@ def insert(archive: Elites, candidates: Elites, cells: Cells) -> tuple[Elites, I
     return archive, Inserted(cell, entered, fresh, improvement)
 
 
-def insert_program(*, donate: bool = False) -> Callable[..., tuple[Elites, Inserted]]:
-    """Compile `insert`; with `donate` it overwrites the old archive, which must not be used."""
+def insert_program(
+    options: Mapping[str, object] | None = None, *, donate: bool = False
+) -> Callable[..., tuple[Elites, Inserted]]:
+    """Compile `insert`, with these options of the compiler.
+
+    With `donate` it overwrites the old archive, which must not be used.
+    """
     given = (0,) if donate else ()
-    return jax.jit(insert, donate_argnums=given, compiler_options=quick_options())
+    return jax.jit(insert, donate_argnums=given, compiler_options=dict(options or {}))
 
 
 def digest(genotypes: Genotype) -> UInt32[Array, "row 2"]:

@@ -10,8 +10,13 @@ from playwright.sync_api import Locator, Page, expect
 from small_runs import TINY
 
 SLOW = 120_000
-SPEC = TINY | {"seed": 7, "search": TINY["search"] | {"generations": 50_000}}
-"""Longer than the test, which pauses it at the end."""
+SPEC = TINY | {
+    "seed": 7,
+    "task": TINY["task"] | {"steps": 8000},
+    "search": TINY["search"] | {"generations": 5000},
+}
+"""Longer than the test, which pauses it at the end, by long generations: a page with tens of
+thousands of points is slow."""
 
 
 def test_no_update_is_lost_while_the_server_is_started_again(
