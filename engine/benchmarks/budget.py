@@ -26,7 +26,7 @@ from microcosmos import bodies, device, world
 
 REPEATS = 7
 CELLS = 2**25
-"""Cells that a repeat updates, so that each takes about as long."""
+"""Cells that a pass over the populations reads and writes in a repeat; steps update fewer."""
 SIDES = (32, 64, 128, 256, 512, 1024)
 CROWDS = (20, 80, 320, 1_280, 5_120, 16_000)
 CROWDED = 256
@@ -88,10 +88,6 @@ def alone(side: int) -> Scene:
     return scene(bodies.chain(32, 1.0, **STIFF), (side, side), min(steps, 1_000), matched=True)
 
 
-def median(times: list[float]) -> float:
-    return statistics.median(times)
-
-
 def part_seconds(one: Scene) -> Callable[[], np.ndarray]:
     """Return a program for the time of each part of a step."""
     run = program(one, world.native.part_seconds)
@@ -116,7 +112,7 @@ def over_sizes(machine: Machine) -> dict[str, list[float]]:
             "step of JAX": stepping(one, in_jax),
         }
         for name, values in taking_turns(measured).items():
-            found.setdefault(name, []).append(1e6 * median(values))
+            found.setdefault(name, []).append(1e6 * statistics.median(values))
     rows = [
         (f"{side}²", *(f"{found[name][n]:.1f}" for name in found), *speeds(found, n, side))
         for n, side in enumerate(SIDES)
@@ -154,7 +150,7 @@ def budget(title: str, one: Scene, machine: Machine) -> None:
     parts: dict[str, float] = dict(
         zip(world.native.PARTS, np.median(times["parts"], 0), strict=True)
     )
-    bandwidth = 2 * 4 * 9 * side**2 / median(times["pass"])
+    bandwidth = 2 * 4 * 9 * side**2 / statistics.median(times["pass"])
     rows, sums = [], [0.0, 0.0]
     for name, moved in moved_bytes(one).items():
         least, spent = 1e6 * moved / bandwidth, 1e6 * parts[name]
@@ -206,7 +202,7 @@ def over_nodes() -> dict[str, list[float]]:
             "step of JAX": stepping(one, in_jax),
         }
         for name, values in taking_turns(measured).items():
-            found.setdefault(name, []).append(1e6 * median(values))
+            found.setdefault(name, []).append(1e6 * statistics.median(values))
     ratios = np.divide(found["step of JAX"], found["step of the kernel"])
     rows = [
         (f"{nodes:,}", *(f"{found[name][n]:.0f}" for name in found), f"{ratios[n]:.1f}")

@@ -130,7 +130,7 @@ def parts(scenes: dict[str, Scene]) -> None:
 
 def crowds() -> None:
     """Print the time of a step of the scene of `scaling/paper` by one thread and by more."""
-    cores, steps, rows = os.cpu_count() or 1, 10, []
+    cores, steps, rows = device.cores(), 10, []
     for nodes in (16_000, 128_000, 500_000):
         crowd, start = build_crowd(Scaling(), nodes)
 

@@ -1,8 +1,9 @@
-// What the machine can do at best, for `budget.py`: one core, data in cache or out of it.
+// What a core of this machine can do, for `budget.py`: the bandwidth of its caches and memory, and
+// a fluid without bodies.
 //
 // `lattice` is the usual way to write a fast lattice Boltzmann fluid: two copies of all
 // populations, read from the neighbours, collided, and written to the other copy. It has no
-// bodies and no forces.
+// forces.
 #include <chrono>
 #include <cstddef>
 #include <cstdlib>

@@ -74,7 +74,10 @@ def variety(creatures: Sequence[PoseStream]) -> Variety:
 
 
 def exemplars(creatures: Sequence[PoseStream], most: int) -> list[int]:
-    """Return a creature of each kind, at most `most`, given and counted from the fittest."""
+    """Return a creature of each kind, at most `most`, given and counted from the fittest.
+
+    All creatures are compared, however many.
+    """
     strokes, chains = _strokes(creatures)
     chosen: list[int] = []
     for i in range(len(creatures)):

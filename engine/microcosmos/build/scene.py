@@ -52,7 +52,7 @@ def build_task(
     box = build_world(scene.world, scene.coupling, body, dtype)
     middle = np.array([scene.world.width, scene.world.height]) / 2
     positions = body.positions - body.positions.mean(0) + middle
-    at_rest = jax.jit(world.at_rest)  # One program, where its operations alone are forty.
+    at_rest = jax.jit(world.at_rest)  # One program instead of forty.
     start = at_rest(box, jnp.asarray(positions, dtype))
     gait = isinstance(scene.control, spec.Gait)
     encoding = None if gait else build_encoding(scene, room or ROOM)

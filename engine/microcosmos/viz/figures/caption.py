@@ -69,8 +69,9 @@ def of_strips(runs: Group, shown: Sequence[Strip], moments: int) -> str:
     elites = sum(len(one.cells) for one in runs.runs)
     of_runs = f" of {len(runs.seeds)} runs" if len(runs.seeds) > 1 else ""
     first = (
-        f"{len(shown)} kinds of motion among {elites:,} elites{of_runs}: from the fittest on, "
-        f"each is more than {KIND:g} body lengths (motion distance) from all before it. "
+        f"The fittest {len(shown)} kinds of motion among {elites:,} elites{of_runs}: "
+        f"from the fittest on, each is more than {KIND:g} body lengths (motion distance) from "
+        f"all before it. "
         f"{moments} moments of one stroke, in order and from dark to light; the dot marks the "
         f"first node. Bodies have one scale and travel upwards; the arrow is the way of one "
         f"stroke, the number the fitness."
