@@ -1,0 +1,195 @@
+"""Edges, joints and forward kinematics of grown bodies.
+
+Edge i − 1 leads to node i; behind the edges of all nodes follow those that close rings. Each
+edge but the first has a joint with the edge before it, and the edge that closes a ring has one
+with the ring's first edge too. So joints turn independently but for one in each ring, and rings
+share no edge: least squares (`bodies.layout`) has a closed form, the mean around each ring.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .plan import Capacity
+from .sprouting import Grown
+
+MOST_COLOURS = 8
+"""Colours that suffice for edges and for joints of nodes with six edges at most."""
+
+
+class Skeleton(NamedTuple):
+    """A body of fixed sizes; what is absent belongs to the last node, which is empty."""
+
+    edges: Any
+    """(edge, 2)"""
+    joints: Any
+    """(joint, 2) edges."""
+    driver: Any
+    """(joint,) the node that commands it: the far one of its second edge."""
+    there: Any
+    """(edge,)"""
+    bends: Any
+    """(joint,) whether it is there."""
+    hand: Any
+    """(joint,) −1 in mirror images, otherwise 1."""
+    angle: Any
+    """(edge,) direction at rest, in rad."""
+    rest_angle: Any
+    """(joint,) in rad."""
+    stiffness: Any
+    """(joint,)"""
+    turned: Any
+    """(edge, joint) factor by which the turn of a joint turns an edge."""
+    placed: Any
+    """(node, edge) factor by which an edge moves a node from the middle of the body."""
+
+
+def skeleton(
+    grown: Grown, capacity: Capacity, xp: Any = np, loop: Callable | None = None
+) -> Skeleton:
+    """Return the edges, joints and kinematics of a grown body of arrays of `xp`."""
+    nodes, rings = capacity.nodes, capacity.rings
+    reals = grown.positions.dtype
+    empty = nodes - 1
+    node = xp.arange(nodes, dtype=np.int32)
+    ring = grown.ring_first >= 0
+    ring_edge = xp.arange(rings, dtype=np.int32) + nodes - 1
+    last = xp.where(ring, grown.ring_last, empty)
+    closing = xp.stack([last, xp.where(ring, grown.ring_base, empty)], 1)
+    grown_to = xp.where(grown.present[1:, None], xp.stack([grown.before, node], 1)[1:], empty)
+    edges = xp.concatenate([grown_to, closing]).astype(np.int32)
+    there = xp.concatenate([grown.present[1:], ring])
+
+    corners = (grown.ring_last - grown.ring_first + 2).astype(reals)
+    turn = grown.hand[last] * (xp.asarray(2 * np.pi, reals) * (1 / corners))
+    angle = xp.concatenate([grown.heading[1:], xp.where(ring, grown.heading[last] + turn, 0)])
+
+    # The joint of a node's edge with the one before; the root's other edges join its first.
+    absent = xp.asarray(empty - 1, np.int32)
+    earlier = xp.maximum(grown.before - 1, 0)
+    first = xp.where(grown.present, earlier, absent)[2:]
+    second = xp.where(grown.present, node - 1, absent)[2:]
+    into = xp.where(ring, grown.ring_last - 1, absent)
+    out = xp.where(ring, grown.ring_first - 1, absent)
+    closes = xp.where(ring, ring_edge, absent)
+    joints = xp.concatenate(
+        [
+            xp.stack([first, second], 1),
+            xp.stack([into, closes], 1),
+            xp.stack([closes, out], 1),
+        ]
+    ).astype(np.int32)
+    driver = xp.concatenate([node[2:], last, xp.where(ring, grown.ring_first, empty)])
+    driver = driver.astype(np.int32)
+    bends = xp.concatenate([grown.present[2:], ring, ring])
+    rest = _wrapped(angle[joints[:, 1]] - angle[joints[:, 0]], xp)
+    return Skeleton(
+        edges=edges,
+        joints=joints,
+        driver=driver,
+        there=there,
+        bends=bends,
+        hand=grown.hand[driver],
+        angle=xp.where(there, angle, 0).astype(reals),
+        rest_angle=xp.where(bends, rest, 0).astype(reals),
+        stiffness=grown.stiffness[driver],
+        turned=_turned(grown, joints, there, bends, xp, loop),
+        placed=_placed(grown, there, xp, loop),
+    )
+
+
+def ancestors(before: Any, xp: Any, loop: Callable | None) -> Any:
+    """Return which nodes (node, other) lie on the way of each one to the first, with its own."""
+    nodes = len(before)
+    own = xp.eye(nodes, dtype=bool)
+
+    def step(row, found):
+        line = found[before[row]] | own[row]
+        return xp.where(xp.arange(nodes)[:, None] == row, line[None], found)
+
+    if loop is not None:
+        return loop(nodes, step, own)
+    for row in range(nodes):
+        own[row] |= own[before[row]]
+    return own
+
+
+def colours(pairs: Any, there: Any, members: int, xp: Any, loop: Callable | None) -> Any:
+    """Return the colour of each pair, greedily: pairs of one colour share no member."""
+    masks = 1 << xp.arange(MOST_COLOURS)
+
+    def step(row, state):
+        used, found = state
+        taken = used[pairs[row, 0]] | used[pairs[row, 1]]
+        colour = xp.argmax((taken & masks) == 0).astype(np.int32)
+        mine = (xp.arange(members)[:, None] == pairs[row][None]).any(1) & there[row]
+        used = xp.where(mine, used | (1 << colour), used)
+        return used, xp.where(xp.arange(len(pairs)) == row, colour, found)
+
+    state = xp.zeros(members, np.int32), xp.zeros(len(pairs), np.int32)
+    if loop is not None:
+        return loop(len(pairs), step, state)[1]
+    for row in range(len(pairs)):
+        state = step(row, state)
+    return state[1]
+
+
+def _placed(grown: Grown, there: Any, xp: Any, loop: Callable | None) -> Any:
+    """Return the factors by which edges move nodes."""
+    way = ancestors(grown.before, xp, loop)[:, 1:] & there[None, : len(grown.before) - 1]
+    rings = len(grown.ring_first)
+    way = xp.concatenate([way, xp.zeros((len(way), rings), bool)], 1)
+    number = xp.arange(way.shape[1], dtype=np.int32)
+    member = (number[None] >= grown.ring_first[:, None] - 1) & (
+        number[None] < grown.ring_last[:, None]
+    )
+    member = member | (number[None] == len(way) - 1 + xp.arange(rings)[:, None])
+    member = member & (grown.ring_first >= 0)[:, None]
+    return _least_squares(way & grown.present[:, None], member, grown.present, xp)
+
+
+def _turned(grown: Grown, joints: Any, there: Any, bends: Any, xp: Any, loop: Any) -> Any:
+    """Return the factors by which joints turn edges."""
+    nodes, rings = len(grown.before), len(grown.ring_first)
+    # Edges of the root hang on its first, as the tree of joints has it.
+    hung = xp.where(xp.arange(nodes) <= 1, xp.arange(nodes), xp.maximum(grown.before, 1))
+    way = ancestors(hung, xp, loop)[1:, 2:] & bends[None, : nodes - 2]
+    own = xp.eye(rings, dtype=bool)
+    ring = grown.ring_first >= 0
+    none = xp.zeros((nodes - 1, 2 * rings), bool)
+    last = xp.where(ring, grown.ring_last - 1, 0)
+    closing = [way[last], own, xp.zeros((rings, rings), bool)]
+    way = xp.concatenate([xp.concatenate([way, none], 1), xp.concatenate(closing, 1)])
+    number = xp.arange(way.shape[1], dtype=np.int32)
+    member = (number[None] >= grown.ring_first[:, None] - 1) & (
+        number[None] < grown.ring_last[:, None] - 1
+    )
+    at = xp.arange(rings)[:, None] + nodes - 2
+    member = member | (number[None] == at) | (number[None] == at + rings)
+    return _least_squares(way & there[:, None], member & ring[:, None], there, xp)
+
+
+def _least_squares(way: Any, member: Any, there: Any, xp: Any) -> Any:
+    """Return the pseudoinverse of the differences of a tree and rings that share no edge.
+
+    `way` (item, pair): the pairs on the way to each item; `member` (ring, pair). Each ring
+    loses its mean, and all items theirs. Sums are of whole numbers: their order does not matter.
+    """
+    reals = np.float32
+    way, member = way.astype(reals), member.astype(reals)
+    count = xp.maximum(xp.sum(there), 1).astype(reals)
+    centred = way - (xp.sum(way, 0) * (1 / count))[None]
+    size = 1 / xp.maximum(xp.sum(member, 1), 1)
+    # Whole numbers first: the mean around a ring, then less its mean over the items.
+    around = xp.sum(way[:, None] * member[None], 2)
+    around = around - (xp.sum(around, 0) * (1 / count))[None]
+    mean = around * size[None]
+    found = centred - xp.sum(mean[:, :, None] * member[None], 1)
+    return xp.where(there[:, None], found, 0).astype(reals)
+
+
+def _wrapped(angle: Any, xp: Any) -> Any:
+    """Return the same angle within ±π."""
+    turn = xp.asarray(2 * np.pi, angle.dtype)
+    return angle - turn * xp.round(angle * (1 / turn))
