@@ -92,6 +92,8 @@ class State(NamedTuple):
 def grow(plan: Plan, capacity: Capacity, xp: Any = np, loop: Callable | None = None) -> Grown:
     """Return the body of a plan of arrays of `xp`; `loop(count, step, state)` repeats a step."""
     repeat = loop or _loop
+    # Empty rows hold zeros, by which nothing can be divided.
+    plan = plan._replace(nodes=xp.maximum(plan.nodes, 1), copies=xp.maximum(plan.copies, 1))
     state = _seed(plan, capacity, xp)
     state = repeat(
         capacity.segments, lambda gene, state: _sprout(plan, capacity, gene, state, xp), state
@@ -292,12 +294,7 @@ def _fits(plan, capacity: Capacity, gene, state: State, new: New, count, xp):
     rings = ~closed | ((state.rings + count <= capacity.rings) & (length >= LEAST_RING))
     degree = state.grown.degree + _attached(new, closed, xp)
     return (
-        (count <= capacity.limbs)
-        & few
-        & rings
-        & clear
-        & short
-        & xp.all(degree <= MOST_EDGES)
+        (count <= capacity.limbs) & few & rings & clear & short & xp.all(degree <= MOST_EDGES)
     )
 
 

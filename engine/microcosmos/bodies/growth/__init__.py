@@ -1,0 +1,7 @@
+"""Bodies that grow from genes: plans, their growth, and the kinematics of what has grown."""
+
+from .form import FORMS, form
+from .plan import Capacity, Plan
+from .random import PLAN_DRAWS, SEGMENT_DRAWS, TYPES, Segments, random_plan, random_segment
+from .skeleton import Skeleton, colours, skeleton
+from .sprouting import Grown, grow

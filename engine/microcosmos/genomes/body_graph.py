@@ -1,0 +1,185 @@
+"""A body plan that grows the body, and a CPPN that drives all of its joints and edges."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, PRNGKeyArray
+
+from .. import filaments
+from ..bodies.growth import (
+    PLAN_DRAWS,
+    Capacity,
+    Grown,
+    Segments,
+    Skeleton,
+    colours,
+    form,
+    grow,
+    random_plan,
+    skeleton,
+)
+from ..groups import single
+from ..world import State, World, at_rest
+from .commands import network_commands
+from .control import drive_feed_forward, network_size
+from .cppn import evaluate, minimal
+from .development import OUTPUTS, Controls
+from .encoding import Drive, Scalar, shifted
+from .plan import BodyGraph
+
+
+@dataclass(frozen=True)
+class BodyGraphEncoding:
+    """A genome of two parts: a plan, and a network that knows each node's place in the body."""
+
+    controls: Controls
+    """Those of the network's clock and outputs; the body's part is filled in as it grows."""
+    room: tuple[int, int]
+    capacity: Capacity
+    segments: Segments
+    inputs: int
+    waves: float | None = None
+    """Waves of the travelling inputs from the first node to the farthest."""
+    softest: float = 1.0
+    """Share of a joint's error that a step removes at stiffness 0; 1: all joints are stiff."""
+
+    def newcomer(self, *, key: PRNGKeyArray) -> BodyGraph:
+        plan_key, network_key = jax.random.split(key)
+        network = minimal(network_key, self.inputs, OUTPUTS, *self.room)
+        uniform = jax.random.uniform(plan_key, (PLAN_DRAWS,))
+        return BodyGraph(random_plan(uniform, self.segments, jnp), network)
+
+    def drive(
+        self, world: World, start: State, genotype: BodyGraph, phase: Scalar | None
+    ) -> Drive:
+        """Open loop, or closed loop where the network senses."""
+        grown, bones = self.develop(genotype)
+        world, start = self._place(world, start, grown, bones)
+        controls = self._controls(grown, bones)
+        driven = replace(controls, timer=shifted(self.controls.timer, phase))
+        network = genotype.network
+
+        def read(inputs):
+            return evaluate(network, inputs, OUTPUTS)
+
+        driven = drive_feed_forward(read, driven, world, start)
+        return replace(
+            driven,
+            length=self.capacity.spacing * jnp.max(_among(grown, grown.distance)),
+            layout=world.layout,
+            controller=network_commands(network, controls, phase),
+        )
+
+    def develop(self, genotype: BodyGraph) -> tuple[Grown, Skeleton]:
+        """Return the body of a genotype and its kinematics."""
+        grown = grow(genotype.plan, self.capacity, jnp, _loop)
+        return grown, skeleton(grown, self.capacity, jnp, _loop)
+
+    def size(self, genotype: BodyGraph) -> tuple[Array, Array]:
+        return network_size(genotype.network, self.inputs + OUTPUTS)
+
+    def form(self, genotype: BodyGraph) -> dict[str, Array]:
+        """Return the measures of form, and the number of genes without room to grow."""
+        grown, bones = self.develop(genotype)
+        found = form(grown.positions, bones.edges, grown.present, bones.there, jnp)
+        return found | {"ungrown": grown.ungrown.astype(grown.positions.dtype)}
+
+    def _place(
+        self, world: World, start: State, grown: Grown, bones: Skeleton
+    ) -> tuple[World, State]:
+        """Put the body into the middle of the one that the world and its start were built for."""
+        dtype = start.positions.dtype
+        ones, stiff = bones.there.astype(dtype), bones.bends.astype(dtype)
+        rods = filaments.Rods(
+            edges=bones.edges,
+            edge_colours=_pairings(bones.edges, bones.there, self.capacity.nodes, dtype),
+            joint_colours=_pairings(bones.joints, bones.bends, self.capacity.edges, dtype),
+            stretch=ones,
+            shear=ones,
+            bend=self._bend(bones).astype(dtype) * stiff,
+            joints=bones.joints,
+        )
+        groups = single(self.capacity.nodes)
+        layout = filaments.Layout(
+            angle=bones.angle.astype(dtype),
+            rest_angle=bones.rest_angle.astype(dtype),
+            turned=bones.turned.astype(dtype),
+            placed=bones.placed.astype(dtype),
+            pieces=groups,
+            bend=rods.bend if self.softest < 1 else None,
+        )
+        world = replace(world, rods=rods, groups=groups, layout=layout, present=grown.present)
+        positions = grown.positions.astype(dtype)
+        count = jnp.sum(grown.present)
+        inside = jnp.where(grown.present[:, None], positions, 0.0)
+        centred = positions - (jnp.sum(inside, 0) / count)[None]
+        # What has not grown rests in the middle.
+        centred = jnp.where(grown.present[:, None], centred, 0.0)
+        placed = centred + jnp.mean(start.positions, 0)[None]
+        return world, replace(at_rest(world, placed), energy=start.energy)
+
+    def _bend(self, bones: Skeleton) -> Array:
+        """Return the share of each joint's error that a step removes."""
+        if self.softest == 1:
+            return jnp.ones_like(bones.stiffness)
+        return jnp.exp(np.log(self.softest) * (1 - bones.stiffness))
+
+    def _controls(self, grown: Grown, bones: Skeleton) -> Controls:
+        """Return the inputs at every node, and the rest shape that outputs are added to."""
+        dtype = grown.positions.dtype
+        away = grown.distance[0]
+        share = away / jnp.maximum(jnp.max(_among(grown, away)), 1.0)
+        there = grown.present[:, None]
+        low = jnp.min(jnp.where(there, grown.positions, jnp.inf), 0)
+        high = jnp.max(jnp.where(there, grown.positions, -jnp.inf), 0)
+        half = jnp.maximum(jnp.max(high - low) / 2, 1e-6)
+        x, y = ((grown.positions - (low + high)[None] / 2) / half).T
+        sites = jnp.stack([grown.along, share, grown.side, grown.limb, x, y])
+        return replace(
+            self.controls,
+            sites=jnp.where(grown.present[None], sites, 0.0),
+            edges=bones.edges,
+            joint_nodes=bones.driver,
+            gain=bones.hand,
+            rest_angle=bones.rest_angle,
+            rest_length=jnp.full(len(bones.edges), self.capacity.spacing, dtype),
+            wave=None if self.waves is None else 2 * np.pi * self.waves * share,
+        )
+
+
+def _loop(count: int, step: Any, state: Any) -> Any:
+    return jax.lax.fori_loop(0, count, step, state)
+
+
+def _among(grown: Grown, values: Array) -> Array:
+    """Return distances with 0 for absent nodes, on both axes if there are two."""
+    for axis in range(values.ndim):
+        shape = [1] * values.ndim
+        shape[axis] = -1
+        values = jnp.where(grown.present.reshape(shape), values, 0.0)
+    return values
+
+
+def _pairings(
+    pairs: Array, there: Array, members: int, dtype: Any
+) -> tuple[filaments.Pairing, ...]:
+    """Return the colours of constraints as data; those of absent ones touch nothing."""
+    colour = colours(pairs, there, members, jnp, _loop)
+    found = []
+    number = jnp.arange(len(pairs), dtype=jnp.int32)
+    for one in range(8):
+        mine = there & (colour == one)
+        first, second = (jnp.where(mine, pairs[:, end], members) for end in (0, 1))
+        partner = jnp.arange(members, dtype=jnp.int32)
+        partner = partner.at[first].set(pairs[:, 1], mode="drop")
+        partner = partner.at[second].set(pairs[:, 0], mode="drop")
+        constraint = jnp.zeros(members, jnp.int32)
+        constraint = constraint.at[first].set(number, mode="drop")
+        constraint = constraint.at[second].set(number, mode="drop")
+        sign = jnp.zeros(members, dtype).at[first].set(1, mode="drop")
+        sign = sign.at[second].set(-1, mode="drop")
+        found.append(filaments.Pairing(partner, constraint, sign))
+    return tuple(found)
