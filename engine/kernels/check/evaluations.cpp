@@ -26,7 +26,7 @@ using Indices = std::vector<int32_t>;
 struct Evaluation {
   Rollout r = {};
   Numbers parameters, planes[9], positions, angles, energy, collected, layout, matrix, stiffness,
-      control, bias, weight, timer, ramp, position, lag, body_angle, body_length, uniform_force,
+      control, bias, weight, timer, ramp, site, gain, lag, body_angle, body_length, uniform_force,
       sponge, sponge_velocity, smoothing;
   Indices ends, pairs, member, piece, present, edge_colour, joint_colour, activation, source,
       target, joint_node, walls;
@@ -128,7 +128,8 @@ struct Evaluation {
   void controller(Random& random) {
     r.commands = NETWORK, r.timers = 2, r.waves = random.below(2), r.senses = random.below(2);
     r.recurrent = random.below(4) == 0;
-    r.inputs = 3 + 2 * r.waves + r.senses, r.rows = r.inputs + 2 + 9;
+    r.sites = 1 + random.below(6);
+    r.inputs = r.sites + 2 + 2 * r.waves + r.senses, r.rows = r.inputs + 2 + 9;
     for (int row = 0; row < r.rows; row++) {
       const int hidden = row - r.inputs - 2;
       activation.push_back(hidden >= 0 ? hidden : hidden >= -2 ? random.below(9) : -1);
@@ -150,9 +151,12 @@ struct Evaluation {
       timer.insert(timer.end(), {random.between(-1, 1), random.between(-1, 1)});
       ramp.push_back(float(t) / float(r.steps));
     }
-    for (int n = 0; n < r.nodes; n++)
-      position.push_back(random.between(-1, 1)), lag.push_back(random.between(0, 7));
-    for (int j = 0; j < r.joints; j++) joint_node.push_back(ends[2 * pairs[2 * j] + 1]);
+    for (int n = 0; n < r.sites * r.nodes; n++) site.push_back(random.between(-1, 1));
+    for (int n = 0; n < r.nodes; n++) lag.push_back(random.between(0, 7));
+    for (int j = 0; j < r.joints; j++) {
+      joint_node.push_back(ends[2 * pairs[2 * j] + 1]);
+      gain.push_back(random.between(-1, 1));
+    }
   }
 
   void place(Random& random) {
@@ -183,8 +187,8 @@ struct Evaluation {
     r.joint_colour = joint_colour.data(), r.stretch = r.shear = r.bend = stiffness.data();
     r.control = control.data(), r.activation = activation.data(), r.bias = bias.data();
     r.source = source.data(), r.target = target.data(), r.weight = weight.data();
-    r.timer = timer.data(), r.ramp = ramp.data(), r.position = position.data(), r.lag = lag.data();
-    r.joint_node = joint_node.data(), r.body_angle = body_angle.data();
+    r.timer = timer.data(), r.ramp = ramp.data(), r.site = site.data(), r.lag = lag.data();
+    r.joint_node = joint_node.data(), r.gain = gain.data(), r.body_angle = body_angle.data();
     r.body_length = body_length.data();
     r.rest_angle = rest_angle.data(), r.rest_length = rest_length.data(), r.clock = clock.data();
     const size_t N = r.nodes, J = r.joints;

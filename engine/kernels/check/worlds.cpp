@@ -208,7 +208,8 @@ class Fuzzed {
     const size_t N = r.nodes, E = r.edges, J = r.joints, T = r.commands == GIVEN ? 0 : r.steps;
     r.recurrent = network && coin(), r.senses = network && coin();
     r.timers = network ? random_.below(3) : 0, r.waves = r.timers == 2 && coin();
-    r.inputs = network ? 1 + r.timers * (r.waves ? 2 : 1) + r.senses : 0;
+    r.sites = network ? random_.below(8) : 0;
+    r.inputs = network ? r.sites + r.timers * (r.waves ? 2 : 1) + r.senses : 0;
     r.rows = network ? r.inputs + 2 + random_.below(8) : 0;
     r.links = network ? random_.below(20) : 0, r.terms = series ? random_.below(5) : 0;
     std::vector<int32_t> activation(r.rows, -1);
@@ -216,8 +217,9 @@ class Fuzzed {
     r.activation = indices(activation), r.bias = numbers(r.rows, -1, 1);
     r.source = indices(r.links, -1, r.rows), r.target = indices(r.links, 0, r.rows);
     r.weight = numbers(r.links, -3, 3), r.timer = numbers(network * T * r.timers, -1, 1);
-    r.ramp = numbers(T, 0, 1), r.position = numbers(network * N, -1, 1);
+    r.ramp = numbers(T, 0, 1), r.site = numbers(r.sites * N, -1, 1);
     r.lag = numbers(network * r.waves * N, 0, 7), r.joint_node = indices(network * J, 0, r.nodes);
+    r.gain = numbers(network * J, -1, 1);
     r.body_angle = numbers((network || series) * J, -1, 1);
     r.body_length = numbers((network || series) * E, 0, 2);
     r.basis = numbers(series * T * r.terms, -1, 1);

@@ -56,7 +56,8 @@ class Controller {
       }
       const int at = t * nodes_;
       int input = 0;
-      std::memcpy(network_.row(input++) + at, r_.position, 4 * size_t(nodes_));
+      for (int k = 0; k < r_.sites; k++)
+        std::memcpy(network_.row(input++) + at, r_.site + size_t(k) * nodes_, 4 * size_t(nodes_));
       for (int k = 0; k < clocks; k++) {
         float* to = network_.row(input++) + at;
         for (int n = 0; n < nodes_; n++) to[n] = timer[k];
@@ -72,7 +73,8 @@ class Controller {
     }
   }
 
-  // Rest shapes from the outputs: a joint takes that at its node, an edge the mean of its ends.
+  // Rest shapes from the outputs: a joint takes that at its node, times its gain, an edge the
+  // mean of its ends.
   void read(int first, int count, float* angle, float* length) {
     const float *turned = network_.row(r_.inputs), *stretched = network_.row(r_.inputs + 1);
     for (int i = 0; i < count * nodes_; i += LANES) {
@@ -82,7 +84,7 @@ class Controller {
     for (int t = 0; t < count; t++) {
       const float *bent = turned_ + t * nodes_, *longer = stretched_ + t * nodes_;
       actuate(
-          first + t, [&](int joint) { return bent[r_.joint_node[joint]]; },
+          first + t, [&](int joint) { return bent[r_.joint_node[joint]] * r_.gain[joint]; },
           [&](int edge) {
             return 0.5f * (longer[r_.ends[2 * edge]] + longer[r_.ends[2 * edge + 1]]);
           },

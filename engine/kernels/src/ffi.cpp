@@ -38,17 +38,19 @@ std::string read_body(Rollout& r, Numbers number) {
   r.commands = microcosmos::Commands(number("commands"));
   r.recurrent = number("recurrent"), r.senses = number("senses"), r.waves = number("waves");
   r.actuated = number("actuated"), r.rows = number("rows"), r.links = number("links");
-  r.inputs = number("inputs"), r.timers = number("timers"), r.terms = number("terms");
+  r.inputs = number("inputs"), r.sites = number("sites"), r.timers = number("timers");
+  r.terms = number("terms");
   if (!number.error.empty()) return number.error;
   if (r.commands < microcosmos::GIVEN || r.commands > microcosmos::SERIES)
     return "there is no such controller";
-  for (int32_t one : {r.steps, r.edges, r.joints, r.rows, r.links, r.timers, r.terms})
+  for (int32_t one : {r.steps, r.edges, r.joints, r.rows, r.links, r.sites, r.timers, r.terms})
     if (one < 0) return "a count is negative";
   if (r.nodes < 1 || r.bodies < 1) return "a world has at least one node";
   if (r.bodies > r.nodes) return "a body has at least one node";
   if ((r.actuated || r.matched) && !r.laid_out) return "there is no layout";
   if (r.timers > 2 || (r.waves && r.timers != 2)) return "a timer has one or two numbers";
-  const int inputs = 1 + r.timers * (r.waves ? 2 : 1) + r.senses;
+  if (r.sites > r.rows) return "a network has an input for each site";
+  const int inputs = r.sites + r.timers * (r.waves ? 2 : 1) + r.senses;
   if (r.commands == microcosmos::NETWORK && (r.inputs != inputs || r.rows < inputs + 2))
     return "a network has an input for each that it is given, and two outputs";
   return "";
@@ -102,9 +104,10 @@ void name_controller(Arrays& a, Rollout& r) {
   a.in("sources", &r.source, {L}), a.in("targets", &r.target, {L}), a.in("weights", &r.weight, {L});
   a.in("timer", &r.timer, {when(network, T), r.timers}),
       a.in("ramp", &r.ramp, {when(controlled, T)});
-  a.in("positions along the body", &r.position, {when(network, N)});
+  a.in("sites", &r.site, {r.sites, when(network, N)});
   a.in("lags", &r.lag, {when(network && r.waves, N)});
   a.in("nodes of joints", &r.joint_node, {when(network, J)});
+  a.in("gains of joints", &r.gain, {when(network, J)});
   a.in("rest angles of the body", &r.body_angle, {when(controlled, J)});
   a.in("rest lengths of the body", &r.body_length, {when(controlled, E)});
   a.in("basis", &r.basis, {when(series, T), K}), a.in("genes", &r.genes, {K, when(series, J + E)});

@@ -95,7 +95,7 @@ struct Rollout {
   // The controller, see `world.controller`.
   Commands commands;
   bool recurrent, senses, waves, actuated;
-  int32_t rows, links, inputs, timers, terms;
+  int32_t rows, links, inputs, sites, timers, terms;
   const float* given_angle;        // (step, joint)
   const float* given_length;       // (step, edge)
   const float* control;            // (BOUND_COUNT)
@@ -105,9 +105,10 @@ struct Rollout {
   const float* weight;             // (link)
   const float* timer;              // (step, timers)
   const float* ramp;               // (step)
-  const float* position;           // (node)
+  const float* site;               // (sites, node)
   const float* lag;                // (node) rad
   const int32_t* joint_node;       // (joint)
+  const float* gain;               // (joint) factor on the angle that a network commands
   const float* body_angle;         // (joint)
   const float* body_length;        // (edge)
   const float* basis;              // (step, terms)

@@ -29,7 +29,7 @@ def build_controls(control: spec.Controller, body: bodies.Body, steps: int) -> g
     unit = getattr(control, "position", "signed") == "unit"
     waves = control.waves if isinstance(control, NetworkInputs) else None
     return genomes.Controls(
-        position=body.arc if unit else 2 * body.arc - 1,
+        sites=(body.arc if unit else 2 * body.arc - 1)[None],
         timer=TIMERS[control.timer](steps, control.period),
         ramp=np.minimum(1, (np.arange(steps) + (control.ramp == 0)) / rise),
         edges=body.edges.astype(np.int32),

@@ -85,9 +85,12 @@ def _at_nodes(
     controls: Controls, phase: Scalar | None, recurrent: bool, **arrays: Array
 ) -> Controller:
     wave, dtype = controls.wave, arrays["bias"].dtype
+    joints = len(controls.joint_nodes)
+    gain = jnp.ones(joints) if controls.gain is None else controls.gain
     network = Network(
         **arrays,
-        position=jnp.asarray(controls.position, dtype),
+        sites=jnp.asarray(controls.sites, dtype),
+        gain=jnp.asarray(gain, dtype),
         lag=None if wave is None else jnp.asarray(wave, dtype),
         timer=jnp.asarray(controls.timer.T, dtype),
         joint_node=jnp.asarray(controls.joint_nodes, jnp.int32),

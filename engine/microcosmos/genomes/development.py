@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from .. import exact
+from .. import exact, portable
 from ..filaments import Rest
 from .cppn import CPPN, Points, evaluate
 
@@ -24,29 +24,38 @@ Function = Callable[[Points], Points]
 class Controls:
     """The meaning of a controller's inputs and outputs.
 
-    `position` is (node,), `timer` (input, time), `ramp` (time,); rest angles and lengths are
+    `sites` is (site, node), `timer` (input, time), `ramp` (time,); rest angles and lengths are
     the body's, in rad and cells. A network that `senses` has one more input, known only during
-    the simulation; any other network is evaluated for all times in one batch.
+    the simulation; any other network is evaluated for all times in one batch. Arrays of JAX
+    may differ between creatures.
     """
 
-    position: np.ndarray
+    sites: np.ndarray | Array
+    """Inputs that say where a node is in the body, the first its position along it."""
     timer: np.ndarray | Array
     ramp: np.ndarray
-    edges: np.ndarray
-    joint_nodes: np.ndarray
+    edges: np.ndarray | Array
+    joint_nodes: np.ndarray | Array
     rest_angle: np.ndarray | Array
     rest_length: np.ndarray | Array
     angle_scale: float
     length_scale: float
     senses: bool = False
-    wave: np.ndarray | None = None
+    wave: np.ndarray | Array | None = None
     """Phase lag in rad (node,) of a travelling sine and cosine; None: there are none."""
+    gain: np.ndarray | Array | None = None
+    """Factor (joint,) on what a network commands for rest angles; None: 1 for all joints."""
+
+    @property
+    def nodes(self) -> int:
+        """Number of nodes of the body."""
+        return self.sites.shape[1]
 
     @property
     def inputs(self) -> int:
         """Number of inputs of a network."""
         clocks = 1 if self.wave is None else 2
-        return 1 + clocks * len(self.timer) + self.senses
+        return len(self.sites) + clocks * len(self.timer) + self.senses
 
 
 def sine_cosine(steps: int, period: float) -> np.ndarray:
@@ -72,9 +81,9 @@ def function_of(network: CPPN) -> Function:
 
 def rest_shapes(read: Function, controls: Controls, dtype: Any) -> Rest:
     """Return the rest shapes at all times, in one batch."""
-    steps, nodes = len(controls.ramp), len(controls.position)
     outputs = read(network_inputs(controls, jnp.asarray(controls.timer, dtype), None))
-    return shapes_of_outputs(outputs.reshape(OUTPUTS, steps, nodes), controls.ramp, controls)
+    outputs = outputs.reshape(OUTPUTS, len(controls.ramp), controls.nodes)
+    return shapes_of_outputs(outputs, controls.ramp, controls)
 
 
 def rest_shape(
@@ -96,17 +105,22 @@ def network_inputs(
 
     `sensed` is of one time.
     """
-    times, nodes = timer.shape[1], len(controls.position)
-    position = jnp.tile(jnp.asarray(controls.position, timer.dtype), times)[None]
-    rows = [position, jnp.repeat(timer, nodes, 1)]
+    times, nodes = timer.shape[1], controls.nodes
+    sites = jnp.tile(jnp.asarray(controls.sites, timer.dtype), (1, times))
+    rows = [sites, jnp.repeat(timer, nodes, 1)]
     if controls.wave is not None:
         rows.append(travelling(timer, controls.wave).reshape(2, times * nodes))
     return jnp.concatenate([*rows, *([] if sensed is None else [sensed[None]])])
 
 
-def travelling(timer: Float[Array, "2 time"], lag: np.ndarray) -> Float[Array, "2 time node"]:
+def travelling(
+    timer: Float[Array, "2 time"], lag: np.ndarray | Float[Array, "node"]
+) -> Float[Array, "2 time node"]:
     """Return sine and cosine of the phase less the lag of each node, in rad."""
-    s, c = (jnp.asarray(f(lag), timer.dtype)[None] for f in (exact.sine, exact.cosine))
+    if isinstance(lag, np.ndarray):
+        s, c = (jnp.asarray(f(lag), timer.dtype)[None] for f in (exact.sine, exact.cosine))
+    else:
+        s, c = (f(lag.astype(timer.dtype))[None] for f in (portable.sine, portable.cosine))
     sine, cosine = timer[:, :, None]
     return jnp.stack([sine * c - cosine * s, cosine * c + sine * s])
 
@@ -122,12 +136,15 @@ def shapes_of_outputs(
 ) -> Rest:
     """Return the rest shapes at all times from a network's outputs.
 
-    A joint takes the output at its node; an edge the mean of its two ends, so that a
-    mirrored network makes a mirrored body.
+    A joint takes the output at its node, times its gain; an edge the mean of its two ends, so
+    that a mirrored network makes a mirrored body.
     """
     angle, length = jnp.tanh(outputs)
     length = 0.5 * (length[:, controls.edges[:, 0]] + length[:, controls.edges[:, 1]])
-    return actuated(angle[:, controls.joint_nodes], length, ramp, controls)
+    angle = angle[:, controls.joint_nodes]
+    if controls.gain is not None:
+        angle = angle * _row(controls.gain, angle.dtype)
+    return actuated(angle, length, ramp, controls)
 
 
 def actuated(

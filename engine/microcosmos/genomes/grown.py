@@ -54,7 +54,7 @@ class Grown:
     def grow(self, world: World, start: State, genotype: CPPN) -> Shaped:
         """Return the body that a network grows."""
         dtype = start.positions.dtype
-        zero = jnp.zeros(len(self.controls.position), dtype) if self.controls.senses else None
+        zero = jnp.zeros(self.controls.nodes, dtype) if self.controls.senses else None
         timer = jnp.zeros((len(self.controls.timer), 1), dtype)
         inputs = network_inputs(self.controls, timer, zero)
         outputs = evaluate(genotype, inputs, self.outputs)[OUTPUTS:]

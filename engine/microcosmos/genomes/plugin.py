@@ -47,7 +47,7 @@ class PluginEncoding(Networkless):
         """Open loop; values beyond ±1 are clipped."""
         dtype, controls = start.positions.dtype, self.controls
         timer = shifted(controls.timer, phase)
-        place = np.asarray(controls.position)
+        place = np.asarray(controls.sites[0])
         clock = Clock(
             phase=phases(timer, dtype),
             joints=jnp.asarray(place[controls.joint_nodes], dtype),

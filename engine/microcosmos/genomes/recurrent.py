@@ -37,7 +37,7 @@ def drive_recurrent(network: CPPN, controls: Controls, world: World, start: Stat
     """Drive a world: in open loop, computed before it, or in closed loop if it senses."""
     dtype = start.positions.dtype
     rows = slice(controls.inputs, controls.inputs + OUTPUTS)
-    nothing = jnp.zeros((len(network.bias), len(controls.position)), dtype)
+    nothing = jnp.zeros((len(network.bias), controls.nodes), dtype)
     timer, ramp = jnp.asarray(controls.timer.T, dtype), jnp.asarray(controls.ramp, dtype)
     if not controls.senses:
 

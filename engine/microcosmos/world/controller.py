@@ -18,12 +18,15 @@ class Network(eqx.Module):
     """Row from which a link comes; −1: there is no link."""
     target: Int[Array, "link"]
     weight: Float[Array, "link"]
-    position: Float[Array, "node"]
+    sites: Float[Array, "site node"]
+    """Inputs that say where a node is in the body."""
     lag: Float[Array, "node"] | None
     """Phase lag of a travelling sine and cosine, in rad; None: there are none."""
     timer: Float[Array, "time clock"]
     joint_node: Int[Array, "joint"]
     """The node whose outputs a joint takes."""
+    gain: Float[Array, "joint"]
+    """Factor on what the network commands for the angle of a joint."""
     recurrent: bool = eqx.field(static=True)
     senses: bool = eqx.field(static=True)
     """Whether the energy at the node is an input, so that the loop is closed."""

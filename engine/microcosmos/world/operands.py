@@ -99,18 +99,19 @@ def controller_of(controller: Controller | None) -> tuple[list[Array], Numbers]:
         series = commands if isinstance(commands, Series) else None
     arrays = [_bounds(controller), *_network(network)]
     ramp, angle, length = (_nothing(0),) * 3
-    timer = lag = position = joint_node = None
+    timer = lag = sites = joint_node = gain = None
     if controller is not None:
         ramp, angle, length = controller.ramp, controller.rest_angle, controller.rest_length
     if network is not None:
-        timer, lag, position = network.timer, network.lag, network.position
-        joint_node = network.joint_node
+        timer, lag, sites = network.timer, network.lag, network.sites
+        joint_node, gain = network.joint_node, network.gain
     arrays += [
         _nothing(0, 0) if timer is None else timer,
         ramp,
-        _nothing(0) if position is None else position,
+        _nothing(0, 0) if sites is None else sites,
         _nothing(0) if lag is None else lag,
         jnp.asarray(() if joint_node is None else joint_node, jnp.int32),
+        _nothing(0) if gain is None else gain,
         angle,
         length,
         _nothing(0, 0) if series is None else series.basis,
@@ -119,7 +120,7 @@ def controller_of(controller: Controller | None) -> tuple[list[Array], Numbers]:
     inputs = 0
     if network is not None:
         clocks = network.timer.shape[1] * (1 if network.lag is None else 2)
-        inputs = 1 + clocks + network.senses
+        inputs = len(network.sites) + clocks + network.senses
     numbers = {
         "commands": GIVEN if controller is None else SERIES if network is None else NETWORK,
         "recurrent": network is not None and network.recurrent,
@@ -129,6 +130,7 @@ def controller_of(controller: Controller | None) -> tuple[list[Array], Numbers]:
         "rows": 0 if network is None else len(network.bias),
         "links": 0 if network is None else len(network.weight),
         "inputs": inputs,
+        "sites": 0 if sites is None else len(sites),
         "timers": 0 if timer is None else timer.shape[1],
         "terms": 0 if series is None else series.basis.shape[1],
     }

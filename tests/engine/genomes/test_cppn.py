@@ -134,9 +134,9 @@ def test_angles_and_lengths_stay_within_their_scales():
 
 def test_a_linear_timer_and_positions_run_from_zero_or_minus_one_to_one():
     found = controls(timer="linear", position="unit")
-    np.testing.assert_allclose(found.position, BODY.arc)
+    np.testing.assert_allclose(found.sites, BODY.arc[None])
     np.testing.assert_allclose(found.timer, np.arange(STEPS)[None] / STEPS)
-    position = controls().position
+    (position,) = controls().sites
     assert (position[0], position[-1]) == (-1, 1)
 
 

@@ -75,10 +75,10 @@ def test_values_follow_the_plain_recursion(task, cyclic):
     rest = whole.encoding.drive(whole.world, whole.start, network, None).inputs
     controls = whole.encoding.controls
     for joint, node in enumerate(controls.joint_nodes):
-        outputs = recursion(network, controls.timer, controls.position[node])
+        outputs = recursion(network, controls.timer, controls.sites[0, node])
         expected = controls.angle_scale * np.tanh(outputs[:, 0])
         np.testing.assert_allclose(rest.angle[:, joint], expected, rtol=1e-12, atol=1e-14)
-    ends = [recursion(network, controls.timer, controls.position[node]) for node in (0, 1)]
+    ends = [recursion(network, controls.timer, controls.sites[0, node]) for node in (0, 1)]
     length = 1 + controls.length_scale * 0.5 * sum(np.tanh(end[:, 1]) for end in ends)
     np.testing.assert_allclose(rest.length[:, 0], length, rtol=1e-12)
 

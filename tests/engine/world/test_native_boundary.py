@@ -22,9 +22,10 @@ LAYOUT = ["layout angles", "layout rest angles", "turned", "placed"]
 CONTROLLER = [
     "bounds of the controller",
     *["activations", "biases", "sources", "targets", "weights", "timer", "ramp"],
-    "positions along the body",
+    "sites",
     "lags",
     "nodes of joints",
+    "gains of joints",
     "rest angles of the body",
     "rest lengths of the body",
     "basis",
@@ -187,8 +188,8 @@ def test_a_missing_number_is_an_error(call):
 
 
 COUNTS = {
-    *("steps", "nodes", "edges", "joints", "bodies", "rows", "links", "timers", "terms"),
-    *("height", "width"),
+    *("steps", "nodes", "edges", "joints", "bodies", "rows", "links", "sites", "timers"),
+    *("terms", "height", "width"),
 }
 CHOICES = {
     "commands": (-1, 3),
