@@ -64,6 +64,7 @@ std::string read_world(Rollout& r, Numbers number) {
   r.projection = microcosmos::Projection(number("projection"));
   r.delta = microcosmos::Delta(number("delta"));
   r.fixed_magic = number("magic");
+  r.soft = number("soft");
   r.fluid = number("fluid"), r.repelled = number("repelled"), r.energetic = number("energetic");
   r.driven = number("driven"), r.walled = number("walled"), r.damped = number("damped"),
   r.observed = number("observed"), r.timed = number("timed"), r.threads = number("threads");

@@ -57,6 +57,7 @@ struct Rollout {
   bool walled;       // There are walls.
   bool damped;       // There is a sponge.
   bool matched;      // Shape matching; otherwise sweeps.
+  bool soft;         // Of matched shapes: joints turn only by the share `bend` of their error.
   bool laid_out;     // There is a layout.
   bool observed;     // Otherwise one rest shape is for all steps, and nothing is recorded of them.
   bool timed;        // Take the time of each part.

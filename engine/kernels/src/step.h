@@ -55,6 +55,7 @@ class World {
         motion_(b_),
         measuring_(b_, r),
         watch_(r.timed ? r.seconds : nullptr) {
+    if (r.soft) softened_ = Floats(r.joints);
     if (r.layers == 2)
       normals_x_ = Floats(b_.node_slots + BLOCK), normals_y_ = Floats(b_.node_slots + BLOCK);
   }
@@ -252,6 +253,10 @@ class World {
       store(n_.new_x + i, load(n_.x + i) + ux), store(n_.new_y + i, load(n_.y + i) + uy);
     });
     if (r_.matched) {
+      if (r_.soft) {
+        follow_geometry(b_, n_, 1, share.edges);
+        rest_angle = softened(rest_angle, share.pieces);
+      }
       match(rest_angle, rest_length, share.pieces);
       follow_geometry(b_, n_, 1, share.edges);
     } else {
@@ -269,6 +274,18 @@ class World {
             store(forcing_.target_y + layer * second + i, y);
       }
     });
+  }
+
+  // The rest angles towards which soft joints turn: they keep the rest of their error.
+  const float* softened(const float* rest_angle, Range pieces) {
+    for (int p = pieces.from; p < pieces.to; p++)
+      for (int j : b_.pieces[p].joint_of) {
+        const float first = n_.angle[b_.edge_slot[r_.pairs[2 * j]]];
+        const float second = n_.angle[b_.edge_slot[r_.pairs[2 * j + 1]]];
+        const float error = wrapped(all(second - first - rest_angle[j]))[0];
+        softened_[j] = rest_angle[j] + (1 - r_.bend[j]) * error;
+      }
+    return softened_;
   }
 
   // Replace new positions by the rest shapes, moved and turned to be nearest to them: Mueller et
@@ -316,7 +333,7 @@ class World {
   Motion motion_;
   Measuring measuring_;
   Stopwatch watch_;
-  Floats normals_x_, normals_y_;
+  Floats normals_x_, normals_y_, softened_;
 };
 
 // The rest shapes that a controller commands in open loop and actuators carry out.

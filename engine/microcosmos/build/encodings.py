@@ -20,7 +20,7 @@ def build_encoding(scene: spec.Scene, room: tuple[int, int]) -> genomes.Encoding
         steps, lengths = scene.task.steps, LENGTHS[control.lengths]
         return genomes.FoldEncoding(body.rest_angle, body.rest_length, steps, lengths)
     controls = build_controls(control, body, scene.task.steps)
-    return _encoding(control, controls, body, room)
+    return _encoding(control, controls, scene.body, body, room)
 
 
 def build_controls(control: spec.Controller, body: bodies.Body, steps: int) -> genomes.Controls:
@@ -46,6 +46,7 @@ def build_controls(control: spec.Controller, body: bodies.Body, steps: int) -> g
 def _encoding(
     control: spec.Controller,
     controls: genomes.Controls,
+    grown: spec.Body,
     body: bodies.Body,
     room: tuple[int, int],
 ) -> genomes.Encoding:
@@ -70,6 +71,17 @@ def _encoding(
         case spec.PluginControl():
             act = build_act(control, controls)
             return genomes.PluginEncoding(controls, control.genes(body), act)
+        case spec.BodyGraph():
+            assert isinstance(grown, spec.GrownBody)
+            return genomes.BodyGraphEncoding(
+                controls=controls,
+                room=room,
+                capacity=grown.capacity,
+                segments=grown.genes,
+                inputs=len(control.inputs),
+                waves=control.waves,
+                softest=control.softest,
+            )
         case spec.Grown():
             layout = bodies.layout(body)
             return genomes.Grown(controls, room, control.traits, control.min_nodes, layout)

@@ -102,7 +102,7 @@ def build_repeats(chosen: spec.Evolution, plan: Plan) -> reevaluation.Programs |
         disturb=jax.jit(
             lambda g, s: reevaluation.disturb(settings, plan.key, plan.cell_count, g, s)
         ),
-        evaluate_block=build_disturbed_block(chosen.scene, plan.encoding.room),
+        evaluate_block=build_disturbed_block(chosen.scene, plan.encoding),
         add=jax.jit(search.reevaluation.add),
         correct=jax.jit(search.reevaluation.corrected),
     )
@@ -143,7 +143,6 @@ def build_plan(chosen: spec.Evolution) -> Plan:
         force_free=chosen.coupling.force_free,
         measures=measures_of(scene),
         plugins=plugin_versions(scene),
-        edges=np.asarray(spec.shape(scene.body).edges),
     )
 
 
@@ -159,7 +158,7 @@ def with_initial(
             f"`search.initial` needs the file of each creature; got none of {missing[0]}"
         )
     genes = genes_of(chosen, [given[name] for name in chosen.search.initial])
-    genotypes = [genomes.read(genome, plan.encoding.room) for genome in genes]
+    genotypes = [genomes.read(genome, plan.encoding) for genome in genes]
     names = [np.frombuffer(bytes.fromhex(name), np.uint8) for name in chosen.search.initial]
     rows = jax.tree.map(lambda *parts: np.stack(parts), *genotypes)
     return replace(

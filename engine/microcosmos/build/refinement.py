@@ -24,7 +24,7 @@ def build_refinement(chosen: spec.Refinement) -> refinement.Refinement:
     task = build_task(scene, room=room)
     names = tuple(axis.name for axis in chosen.archive.descriptors)
     assert task.encoding is not None
-    genotype = genomes.read(found["identity"]["genome"], task.encoding.room)
+    genotype = genomes.read(found["identity"]["genome"], task.encoding)
     return refinement.Refinement(
         spec=json.dumps(chosen.model_dump(mode="json"), sort_keys=True),
         genotype=jax.tree.map(lambda x: np.asarray(x)[None], genotype),

@@ -16,7 +16,7 @@ from jaxtyping import Array, PyTree
 
 from .. import neat, search
 from ..archive import file, poses
-from ..genomes import Genotype
+from ..genomes import columns, from_columns
 from ..version import VERSION
 from .resume_check import devices_of
 from .state import (
@@ -63,7 +63,7 @@ def save(plan: Plan, state: State) -> bytes:
             "creature": state.creatures[cells],
             "operator": state.operators[cells],
             "device": state.device_of[cells],
-            "genomes": vars(elites.genotypes),
+            "genomes": columns(elites.genotypes),
             "repeats": vars(jax.tree.map(lambda x: x[cells], state.repeats)),
             "poses": poses.columns([state.poses[cell] for cell in cells.tolist()]),
             **{name: getattr(elites, name) for name in ROWS},
@@ -71,13 +71,13 @@ def save(plan: Plan, state: State) -> bytes:
         "curves": {name: state.curves[:, i] for i, name in enumerate(CURVES)},
         "emitters": {name: state.outcomes[:, :, i] for i, name in enumerate(OUTCOMES)},
         "lineage": vars(state.lineage),
-        "infeasible": vars(state.failures) | {"genotypes": vars(state.failures.genotypes)},
+        "infeasible": vars(state.failures) | {"genotypes": columns(state.failures.genotypes)},
         "loop": loop,
     }
     if isinstance(state.cells, search.Voronoi):
         tree["archive"]["centroids"] = state.cells.centroids
     if state.initial is not None:
-        genes = vars(state.initial.genotypes)
+        genes = columns(state.initial.genotypes)
         tree["initial"] = {"creature": state.initial.creature, "genomes": genes}
     return file.dump(tree, _attributes(plan, state))
 
@@ -88,7 +88,8 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
     devices = devices_of(plan.spec, plan.device, attributes, other_device)
     state, archive, loop = start(plan), tree["archive"], tree["loop"]
     cells, initial, infeasible = archive["cell"], tree.get("initial"), tree["infeasible"]
-    archive.update(occupied=np.ones(len(cells), bool), genotypes=archive["genomes"])
+    genotypes = from_columns(state.elites.genotypes, archive["genomes"])
+    archive.update(occupied=np.ones(len(cells), bool), genotypes=genotypes)
     state.creatures[cells] = archive["creature"]
     state.operators[cells] = archive["operator"]
     state.device_of[cells] = archive["device"]
@@ -110,13 +111,16 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
         device_seconds=float(loop.get("device_seconds", 0.0)),
         lineage=Lineage(**tree["lineage"]),
         failures=Infeasible(
-            **infeasible | {"genotypes": _genotypes(state, infeasible["genotypes"])}
+            **infeasible
+            | {"genotypes": from_columns(state.elites.genotypes, infeasible["genotypes"])}
         ),
         devices=devices,
         unrepeated=before or None,
         poses=dict(zip(cells.tolist(), poses.streams(tree, attributes), strict=True)),
         initial=initial
-        and InitialCreatures(initial["creature"], _genotypes(state, initial["genomes"])),
+        and InitialCreatures(
+            initial["creature"], from_columns(state.elites.genotypes, initial["genomes"])
+        ),
     )
     if "centroids" in archive:  # Another machine may have found slightly other ones.
         restored = replace(restored, cells=search.voronoi(plan.axes, archive["centroids"]))
@@ -147,6 +151,8 @@ def _placed(module: Module, cells: np.ndarray, columns: dict[str, Any]) -> Modul
     """
 
     def placed(before: Any, rows: Any) -> Any:
+        if isinstance(rows, eqx.Module):
+            return jax.tree.map(placed, before, rows)
         if isinstance(before, eqx.Module):
             return _placed(before, cells, rows)
         after = np.array(before)
@@ -154,11 +160,6 @@ def _placed(module: Module, cells: np.ndarray, columns: dict[str, Any]) -> Modul
         return jnp.asarray(after)
 
     return replace(module, **{n: placed(x, columns[n]) for n, x in vars(module).items()})
-
-
-def _genotypes(state: State, columns: dict[str, np.ndarray]) -> Genotype:
-    form = state.elites.genotypes
-    return jax.tree.unflatten(jax.tree.structure(form), [columns[name] for name in vars(form)])
 
 
 def leaves(tree: PyTree[Array]) -> dict[str, np.ndarray]:

@@ -200,7 +200,8 @@ def _elite(
 def pose_stream(plan: Plan, poses: search.Poses, creature: str) -> PoseStream:
     """Return the pose stream of one creature; its nodes are those that have grown."""
     spec, present, last = json.loads(plan.spec), poses.present, poses.window
-    edges = plan.edges[np.all(present[plan.edges], 1)]
+    edges = np.asarray(poses.edges)
+    edges = edges[np.all(present[edges], 1)]
     return PoseStream(
         positions=np.asarray(poses.positions)[:, present],
         path=np.asarray(poses.path),

@@ -92,8 +92,6 @@ class Plan:
     counters: neat.Counters
     """The first numbers that no newcomer's gene has."""
     device: str
-    edges: np.ndarray
-    """Edges of the body, (edge, 2)."""
     limits: Limits = Limits()
     reevaluation: Reevaluation | None = None
     feasible: bool = False

@@ -9,10 +9,10 @@ The fit keeps the mean position and the angular momentum of the displacements.
 import equinox as eqx
 import jax.numpy as jnp
 from jax.lax import Precision
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Bool, Float, Int
 
 from ..groups import Groups
-from .projection import Positions, Rest
+from .projection import Angles, Positions, Rest, wrap
 
 
 class Layout(eqx.Module):
@@ -24,6 +24,8 @@ class Layout(eqx.Module):
     placed: Float[Array, "node edge"]
     pieces: Groups
     """The connected piece of each node."""
+    bend: Float[Array, "joint"] | None = None
+    """Share of a joint's error that a step removes; None: all of it."""
 
 
 def turns(rest: Rest, layout: Layout) -> Float[Array, "*time edge"]:
@@ -41,6 +43,19 @@ def rest_positions(rest: Rest, layout: Layout) -> Float[Array, "*time node 2"]:
         for along in (jnp.cos(angle), jnp.sin(angle))
     )
     return jnp.stack([x, y], -1)
+
+
+def softened(rest: Rest, angles: Angles, joints: Int[Array, "joint 2"], layout: Layout) -> Rest:
+    """Return the rest shape towards which soft joints turn in a step.
+
+    They keep the rest of their error: in a fluid at rest it decays exponentially. `angles` are
+    those of the edges that the fluid has carried.
+    """
+    if layout.bend is None:
+        return rest
+    first, second = joints.T
+    error = wrap(angles[second] - angles[first] - rest.angle)
+    return Rest(rest.angle + (1 - layout.bend) * error, rest.length)
 
 
 def matched(

@@ -8,7 +8,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, PRNGKeyArray, PyTree
 
-from ..filaments import Rest
+from ..bodies.growth import Segments
+from ..filaments import Layout, Rest
 from ..portable import cosine, sine
 from ..world import Controller, State, World, follow, keep_memory
 
@@ -34,6 +35,8 @@ class Drive:
     """Time of the controller at the end of each step, in steps; None: that of the world."""
     controller: Controller | None = None
     """The same control for the native kernel; None: the kernel lacks it."""
+    layout: Layout | None = None
+    """Layout of a body that the genome has grown; None: that of the task's body."""
 
 
 @runtime_checkable
@@ -43,6 +46,11 @@ class Encoding(Protocol):
     @property
     def room(self) -> tuple[int, int] | None:
         """Nodes and connections of a genotype's arrays; None for vectors."""
+        ...
+
+    @property
+    def segments(self) -> Segments | None:
+        """Limits of the segments of a plan; None where the genome has none."""
         ...
 
     def newcomer(self, *, key: PRNGKeyArray) -> Any:
@@ -62,6 +70,7 @@ class Networkless:
     """The part of an encoding whose genotypes are vectors and hold no network."""
 
     room = None
+    segments = None
 
     def size(self, genotype: Any) -> tuple[Array, Array]:
         return jnp.zeros((), jnp.int32), jnp.zeros((), jnp.int32)

@@ -9,8 +9,11 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, PRNGKeyArray, UInt32
 
+from ..bodies.growth import TYPES, Plan
 from ..naming import ACTIVATIONS, decode, encode
 from .cppn import CPPN
+from .encoding import Encoding
+from .plan import BodyGraph
 
 T = TypeVar("T")
 
@@ -21,7 +24,7 @@ class Vector(eqx.Module):
     values: Float[Array, "*batch gene"]
 
 
-Genotype = CPPN | Vector
+Genotype = CPPN | Vector | BodyGraph
 
 
 def uniform_vector(genes: int, spread: float, *, key: PRNGKeyArray) -> Vector:
@@ -29,10 +32,37 @@ def uniform_vector(genes: int, spread: float, *, key: PRNGKeyArray) -> Vector:
     return Vector(jax.random.uniform(key, (genes,), jnp.float32, -spread, spread))
 
 
+SEGMENT = "segment_"
+"""Prefix of the names of a plan's columns."""
+
+
+def columns(genotypes: Genotype) -> dict[str, Array]:
+    """Return the arrays of a genotype, or of a batch, by name."""
+    if isinstance(genotypes, BodyGraph):
+        plan = {SEGMENT + name: x for name, x in genotypes.plan._asdict().items()}
+        return plan | vars(genotypes.network)
+    return vars(genotypes)
+
+
+def from_columns(form: Genotype, found: Mapping[str, Any]) -> Genotype:
+    """Return the genotypes with these columns, of the kind of `form`."""
+    if isinstance(form, BodyGraph):
+        plan = Plan(*(found[SEGMENT + name] for name in Plan._fields))
+        return BodyGraph(plan, CPPN(**{name: found[name] for name in vars(form.network)}))
+    return type(form)(**{name: found[name] for name in vars(form)})
+
+
 def words(genotypes: Genotype) -> UInt32[Array, "row word"]:
     """Return every gene of a batch as 32 bits, with −0 as 0."""
     if isinstance(genotypes, Vector):
         return _bits(genotypes.values)
+    if isinstance(genotypes, BodyGraph):
+        plan = [
+            _bits(one) if jnp.issubdtype(one.dtype, jnp.floating) else one
+            for one in genotypes.plan
+        ]
+        parts = [one.astype(jnp.uint32) for one in plan]
+        return jnp.concatenate([*parts, words(genotypes.network)], 1)
     columns = [
         genotypes.node_id,
         genotypes.activation,
@@ -57,19 +87,44 @@ def take(genotypes: T, index: int) -> T:
 
 def write(genotype: Genotype) -> dict[str, Any]:
     """Return the genes of one genotype of NumPy arrays as a creature file holds them."""
+    if isinstance(genotype, BodyGraph):
+        return {"plan": to_segments(genotype.plan), **to_genes(genotype.network)}
     if isinstance(genotype, CPPN):
         return to_genes(genotype)
     return {"values": encode(np.asarray(genotype.values))}
 
 
-def read(genes: Mapping[str, Any], room: tuple[int, int] | None) -> Genotype:
-    """Return the genotype of a parsed creature file as NumPy arrays.
-
-    `room` is the number of nodes and connections of a network's arrays; None for a vector.
-    """
+def read(genes: Mapping[str, Any], encoding: Encoding) -> Genotype:
+    """Return the genotype of a parsed creature file as NumPy arrays, as large as the encoding
+    has them."""
+    room = encoding.room
+    if room is not None and encoding.segments is not None:
+        plan = from_segments(genes["plan"], encoding.segments.rows)
+        return BodyGraph(plan, from_genes(genes, *room))
     if room is not None:
         return from_genes(genes, *room)
     return jax.tree.map(np.array, Vector(jnp.asarray(decode(genes["values"]), jnp.float32)))
+
+
+def to_segments(plan: Plan) -> dict[str, Any]:
+    """Return the used genes of one plan of NumPy arrays."""
+    count = int(plan.used.sum())
+    columns = {name: np.asarray(getattr(plan, name))[:count] for name in Plan._fields[1:]}
+    return {
+        name: encode(column) if column.dtype == np.float32 else column.tolist()
+        for name, column in columns.items()
+    }
+
+
+def from_segments(genes: Mapping[str, Any], rows: int) -> Plan:
+    """Return the plan of a parsed creature file, with room for more segments."""
+    count = len(genes["number"])
+    found = {name: np.zeros(rows, kind) for name, kind in TYPES.items()}
+    found["used"][:count] = True
+    for name in Plan._fields[1:]:
+        given = genes[name]
+        found[name][:count] = decode(given) if isinstance(given, str) else given
+    return Plan(**found)
 
 
 def to_genes(network: CPPN) -> dict[str, Any]:

@@ -160,7 +160,8 @@ def poses_of(task: Task, driven: Drive, observed: Measures) -> Poses:
     length = _length(task, driven)
     last = window(strokes(driven, task.period, len(observed.centre)))
     begun, present = centre(driven.world, driven.start), grown_nodes(driven.world)
-    return poses(begun, observed.centre, observed.positions, present, last, length)
+    edges = driven.world.rods.edges
+    return poses(begun, observed.centre, observed.positions, present, edges, last, length)
 
 
 def fitness_of(task: Task, values: Mapping[str, Any]) -> Scalar:

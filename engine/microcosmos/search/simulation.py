@@ -31,7 +31,13 @@ def drive(task: Task, actuator: Actuator, *, differentiable: bool = False) -> Dr
     if isinstance(actuator, Rest) or task.encoding is None:
         return Drive(task.world, task.start, actuator)
     driven = task.encoding.drive(task.world, task.start, actuator, task.phase)
-    driven = driven if task.actuators is None else carried_out(driven, task.actuators)
+    if task.actuators is not None:
+        own = (
+            task.actuators
+            if driven.layout is None
+            else replace(task.actuators, layout=driven.layout)
+        )
+        driven = carried_out(driven, own)
     if not differentiable:
         driven = _developed(driven)
     if task.turn is None:

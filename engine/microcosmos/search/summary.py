@@ -52,6 +52,7 @@ def summarise(
         window=Window(begun, stop, strokes),
         length=jnp.asarray(length, jnp.float32),
         present=grown_nodes(world),
+        edges=jnp.asarray(world.rods.edges, jnp.int32),
     )
     return dict(zip(SUMMARISED, measures, strict=True)), found, status
 

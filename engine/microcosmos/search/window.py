@@ -55,6 +55,7 @@ class Poses(eqx.Module):
     window: Window
     length: Scalar
     present: Bool[Array, "*block node"]
+    edges: Int[Array, "*block edge 2"]
 
 
 def poses(
@@ -62,6 +63,7 @@ def poses(
     centre: Float[Array, "time 2"],
     positions: Float[Array, "time node 2"],
     present: Bool[Array, "node"],
+    edges: Int[Array, "edge 2"],
     window: Window,
     length: Scalar | float,
 ) -> Poses:
@@ -84,4 +86,5 @@ def poses(
         window=window,
         length=jnp.asarray(length, dtype),
         present=present,
+        edges=jnp.asarray(edges, jnp.int32),
     )

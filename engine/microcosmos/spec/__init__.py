@@ -1,12 +1,21 @@
 """Specs: validated models of everything that a run can be, with all defaults."""
 
 from .base import Part, field_path
-from .body import Body, Chain, PluginBody, SwimmerBody, is_unavailable, shape
+from .body import Body, Chain, GrownBody, PluginBody, SwimmerBody, is_unavailable, shape
 from .control import OUTPUTS, Control, Genome
 from .coupling import Coupling
 from .drawing import Drawing, drawing
 from .emitters import Emitter
-from .encodings import Bounds, Controller, Direct, Grown, PluginControl, Weights, gene_count
+from .encodings import (
+    BodyGraph,
+    Bounds,
+    Controller,
+    Direct,
+    Grown,
+    PluginControl,
+    Weights,
+    gene_count,
+)
 from .estimate import Estimate, estimate
 from .evolution import Evolution
 from .experiments import EXPERIMENTS, Experiment, Preset, Spec, parse

@@ -69,8 +69,17 @@ def one_of(
     return Discriminator(tag), BeforeValidator(refuse_unknown)
 
 
-ENCODINGS = ("cppn", "direct", "weights", "cppn-body", "gait", "fold", "plugin")
-BUILDERS = ("chain", "ring", "arc", "walk", "star", "tree", "polyline", "graph")
+ENCODINGS = (
+    "cppn",
+    "direct",
+    "weights",
+    "cppn-body",
+    "body-graph",
+    "gait",
+    "fold",
+    "plugin",
+)
+BUILDERS = ("chain", "ring", "arc", "walk", "star", "tree", "polyline", "graph", "grown")
 NETWORK_OPERATORS = ("neat", "population", "lamarckian")
 VECTOR_OPERATORS = ("iso+line", "gaussian", "cma-mae", "cma-me", "cma-mega")
 TAGS: dict[str, tuple[str, ...]] = {

@@ -8,7 +8,7 @@ from pydantic import Field, Tag, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
 from .. import bodies, plugins
-from ..bodies import swimmers
+from ..bodies import growth, swimmers
 from .base import BUILDERS, Part, field, name_in, one_of, sourced
 from .plugins import PluginName, PluginVersion, complete_plugin
 from .sources import PAPER, RODS
@@ -131,6 +131,45 @@ class Graph(Elastic):
     """Pairs of node numbers, from 0."""
 
 
+class GrownBody(Part):
+    """A body that grows from a plan of segments in the genome: its largest sizes."""
+
+    builder: Literal["grown"]
+    nodes: int = field(48, ge=8, le=256, unit="nodes")
+    """Most nodes of a body."""
+    length: float = field(40.0, ge=4.0, le=1000.0, unit="cells")
+    """Largest distance between two nodes along a body."""
+    segments: int = field(8, ge=1, le=32)
+    """Most segments of a plan."""
+    segment_nodes: int = field(16, ge=6, le=128, unit="nodes")
+    """Most nodes of a segment."""
+    copies: int = field(6, ge=1, le=32)
+    """Most copies of a segment along the one that it is attached to."""
+    limbs: int = field(12, ge=1, le=64)
+    """Most copies of a segment in a body, with those of its parents and mirror images."""
+    rings: int = field(3, ge=1, le=8)
+    """Most rings of a body."""
+    spacing: float = field(1.0, ge=0.5, le=2.0, unit="cells")
+    """Rest length of an edge; above 2 cells, fluid leaks between the nodes."""
+
+    @property
+    def capacity(self) -> growth.Capacity:
+        """Return the fixed sizes of all bodies; the last row of nodes stays empty."""
+        return growth.Capacity(
+            nodes=self.nodes + 1,
+            segments=self.segments,
+            rings=self.rings,
+            limbs=self.limbs,
+            length=self.length,
+            spacing=self.spacing,
+        )
+
+    @property
+    def genes(self) -> growth.Segments:
+        """Return the limits of the genes of segments."""
+        return growth.Segments(self.segments, self.segment_nodes, self.copies)
+
+
 Swimmer = Literal["worm", "tadpole", "ray", "cilia", "jellyfish"]
 """Names of the five swimmers of the paper."""
 
@@ -166,6 +205,7 @@ Body = Annotated[
     | Annotated[Tree, Tag("tree")]
     | Annotated[Polyline, Tag("polyline")]
     | Annotated[Graph, Tag("graph")]
+    | Annotated[GrownBody, Tag("grown")]
     | Annotated[SwimmerBody, Tag("known")]
     | Annotated[SkipJsonSchema[PluginBody], Tag("plugin")],
     *one_of(
@@ -178,7 +218,7 @@ Body = Annotated[
 
 
 def shape(body: Body) -> bodies.Body:
-    """Return the graph of a body at rest.
+    """Return the graph of a body at rest; the longest filament of bodies that grow.
 
     Raises `ValueError` where it is malformed, or `plugins.Missing` where its plug-in is not
     loaded.
@@ -265,6 +305,9 @@ def _node_count(body: Elastic) -> float:
 def _shape(body: Body) -> bodies.Body:
     if isinstance(body, SwimmerBody):
         return swimmers.SWIMMERS[body.builder]().body
+    if isinstance(body, GrownBody):
+        longest = 1 + int(body.length / body.spacing)
+        return bodies.chain(min(body.nodes, longest), body.spacing)
     sizes = {name: getattr(body, name) for name in type(body).model_fields}
     if sizes.pop("builder") == "graph":
         nodes, edges = (np.array(sizes.pop(name)) for name in ("nodes", "edges"))

@@ -10,7 +10,7 @@ from .. import bodies
 from ..bodies.layout import MAX_NODES
 from ..plugins.declaration import refuse_empty_axis
 from .base import ENCODINGS, Part, field, name_in, one_of
-from .body import Body, is_unavailable, shape
+from .body import Body, GrownBody, is_unavailable, shape
 from .control import OUTPUTS, Actuation, Control, Genome, NetworkInputs
 from .plugins import PluginName, PluginVersion, complete_plugin
 
@@ -159,6 +159,25 @@ class Grown(NetworkInputs, InheritedTraits):
         return (*OUTPUTS, *(f"body_{name}" for name in self.traits), "growth")
 
 
+class BodyGraph(NetworkInputs):
+    """A plan of segments grows the body; a CPPN that knows each node's place in it drives it."""
+
+    encoding: Literal["body-graph"] = "body-graph"
+    anatomy: Literal[True] = True
+    """The network knows the place of each node in the body."""
+    softest: float = field(1.0, gt=0.0, le=1.0)
+    """Bending stiffness of the softest segments: the share of a joint's error that a step
+    removes. Each segment inherits its stiffness, from this to 1; 1: all are stiff."""
+
+    @property
+    def inputs(self):  # TEMP until anatomy lands
+        return ("position", "distance", "side", "limb", "x", "y") + super().inputs[1:]
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        return OUTPUTS
+
+
 class PluginControl(Actuation):
     """Genes are numbers; a plug-in turns them into movements."""
 
@@ -185,8 +204,9 @@ Controller = Annotated[
     | Annotated[Direct, Tag("direct")]
     | Annotated[Weights, Tag("weights")]
     | Annotated[Grown, Tag("cppn-body")]
+    | Annotated[BodyGraph, Tag("body-graph")]
     | Annotated[SkipJsonSchema[PluginControl], Tag("plugin")],
-    *one_of("encoding", ENCODINGS[:4], name_in("encoding", "cppn")),
+    *one_of("encoding", ENCODINGS[:5], name_in("encoding", "cppn")),
 ]
 """A controller whose genome is inherited."""
 
@@ -203,6 +223,11 @@ def refuse_unfit(control: Controller, body: Body) -> None:
     if is_unavailable(body):  # A worker that can build it checks it.
         return
     graph = shape(body)
+    if isinstance(control, BodyGraph) != isinstance(body, GrownBody):
+        raise ValueError(
+            "`body.builder` must be 'grown' where `control.encoding` is 'body-graph', and only "
+            f"there; got {body.builder!r} and {control.encoding!r}"
+        )
     if isinstance(control, Grown) and body.builder != "chain":
         raise ValueError(
             f"`body.builder` must be 'chain' where a CPPN grows the body, got {body.builder!r}"
@@ -230,7 +255,7 @@ def refuse_unfit(control: Controller, body: Body) -> None:
 
 def refuse_cramped(control: Controller, genome: Genome) -> None:
     """Raise `ValueError` where networks cannot connect every input to every output."""
-    if not isinstance(control, Control | Grown):
+    if not isinstance(control, Control | Grown | BodyGraph):
         return
     inputs, outputs = len(control.inputs), len(control.outputs)
     least = {"max_nodes": inputs + outputs, "max_connections": inputs * outputs}

@@ -12,6 +12,7 @@ from .body import SUPPORT, Body, Chain, Swimmer, is_unavailable, shape
 from .control import Control, NetworkInputs
 from .coupling import Coupling
 from .encodings import (
+    BodyGraph,
     Controller,
     Direct,
     Grown,
@@ -65,6 +66,7 @@ class Scene(Part):
         | Annotated[Direct, Tag("direct")]
         | Annotated[Weights, Tag("weights")]
         | Annotated[Grown, Tag("cppn-body")]
+        | Annotated[BodyGraph, Tag("body-graph")]
         | Annotated[Gait, Tag("gait")]
         | Annotated[Fold, Tag("fold")]
         | Annotated[SkipJsonSchema[PluginControl], Tag("plugin")],

@@ -178,7 +178,7 @@ def actuator_of(file: Mapping[str, Any], scene: Scene) -> search.Actuator:
     if isinstance(scene.control, Gait):
         return build_stroke(scene.control, scene.task.steps)
     encoding = build_encoding(scene, creature.room(file) or ROOM)
-    return genomes.read(file["identity"]["genome"], encoding.room)
+    return genomes.read(file["identity"]["genome"], encoding)
 
 
 class Recording(eqx.Module):

@@ -224,6 +224,7 @@ def _form(world: World) -> dict[str, int]:
         "magic": MAGIC.index(form.magic),
         "fluid": form.fluid,
         "repelled": world.steric is not None,
+        "soft": world.layout is not None and world.layout.bend is not None,
     }
 
 

@@ -50,6 +50,8 @@ def stiffness_of(world: World) -> list[Array]:
     rods, nodes = world.rods, len(world.groups.member)
     stiffness = [rods.stretch, rods.shear, rods.bend]
     if world.layout is not None:
+        if world.layout.bend is not None:
+            stiffness[2] = world.layout.bend
         return [jnp.zeros(0, jnp.int32), jnp.zeros(0, jnp.int32), *stiffness]
     # Colours may be those of the first of several chunks of equal bodies.
     chunk = len(rods.edge_colours[0].partner)

@@ -94,6 +94,10 @@ def _constrained(
 ) -> tuple[Vectors, Float[Array, "edge"]]:
     """Return positions and edge angles that meet the constraints."""
     if world.layout is not None:
+        if world.layout.bend is not None:
+            assert world.rods.joints is not None
+            carried = filaments.follow_geometry(state.angles, positions, world.rods)
+            rest = filaments.softened(rest, carried, world.rods.joints, world.layout)
         positions = filaments.matched(positions, rest, world.layout, world.present)
         return positions, filaments.follow_geometry(state.angles, positions, world.rods)
     followed = filaments.follow_geometry(state.angles, positions, world.rods)
