@@ -76,7 +76,7 @@ CASES: dict[str, dict[str, Any]] = {
         coupling={"kernel": "hat", "constraint_iterations": 3},
     ),
     "a recurrent network that senses, in several worlds": scene(
-        {"recurrent": True, "sense_energy": True, "wave_number": 0.5},
+        {"recurrent": True, "sense_energy": True, "wave_number": 0.5, "anatomy": True},
         {"fitness": "displacement+energy", "energy_weight": 0.1},
         box={"energy": CONSUMED | {"placements": 2}},
         body={"builder": "star", "arms": 3, "arm_nodes": 3},

@@ -1,5 +1,6 @@
 """Bodies as NumPy data; JAX-free, so that a spec can be checked anywhere."""
 
+from .anatomy import Anatomy, anatomy
 from .builders import arc, chain, from_graph, graph, ring, star, tree, walk
 from .checks import MIN_GAP
 from .colouring import Colour, colour

@@ -45,7 +45,7 @@ def layout(body: Body) -> Layout:
         joints=body.joints,
         turned=_inverse(body.joints, edges),
         placed=_inverse(body.edges, nodes),
-        piece=_pieces(body.edges, nodes),
+        piece=pieces(body.edges, nodes),
     )
 
 
@@ -61,13 +61,13 @@ def _inverse(pairs: np.ndarray, count: int) -> np.ndarray:
         np.add.at(squares, (one, other), 1)
     for one, other in ((first, second), (second, first)):
         np.add.at(squares, (one, other), -1)
-    piece = _pieces(pairs, count)
+    piece = pieces(pairs, count)
     together = piece[:, None] == piece[None]
     found = exact.inverse(squares + together / together.sum(1))
     return found[:, second] - found[:, first]
 
 
-def _pieces(edges: np.ndarray, nodes: int) -> np.ndarray:
+def pieces(edges: np.ndarray, nodes: int) -> np.ndarray:
     """Number the connected pieces of a graph, in the order of their first nodes."""
     lowest = np.arange(nodes)
     while True:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from .. import bodies, genomes, spec
-from ..spec.control import NetworkInputs
+from ..spec.control import ANATOMY, NetworkInputs
 from .plugins import build_act
 
 TIMERS = {"sine-cosine": genomes.sine_cosine, "linear": genomes.linear}
@@ -26,10 +26,10 @@ def build_encoding(scene: spec.Scene, room: tuple[int, int]) -> genomes.Encoding
 def build_controls(control: spec.Controller, body: bodies.Body, steps: int) -> genomes.Controls:
     """Build a controller's inputs at all nodes and times, and the meaning of its outputs."""
     rise = np.maximum(control.ramp * control.period, 1)
-    unit = getattr(control, "position", "signed") == "unit"
     waves = control.waves if isinstance(control, NetworkInputs) else None
+    sites, path = build_sites(control, body)
     return genomes.Controls(
-        sites=(body.arc if unit else 2 * body.arc - 1)[None],
+        sites=sites,
         timer=TIMERS[control.timer](steps, control.period),
         ramp=np.minimum(1, (np.arange(steps) + (control.ramp == 0)) / rise),
         edges=body.edges.astype(np.int32),
@@ -39,8 +39,21 @@ def build_controls(control: spec.Controller, body: bodies.Body, steps: int) -> g
         angle_scale=control.angle_scale,
         length_scale=control.length_scale,
         senses=getattr(control, "sense_energy", False),
-        wave=None if waves is None else 2 * np.pi * waves * body.arc,
+        wave=None if waves is None else 2 * np.pi * waves * path,
     )
+
+
+def build_sites(control: spec.Controller, body: bodies.Body) -> tuple[np.ndarray, np.ndarray]:
+    """Return the inputs (site, node) that say where nodes are, and the path (node,), from 0 to
+    1, along which waves travel."""
+    unit = getattr(control, "position", "signed") == "unit"
+    if not (isinstance(control, NetworkInputs) and control.anatomy):
+        return (body.arc if unit else 2 * body.arc - 1)[None], body.arc
+    place = bodies.anatomy(body)
+    sites = np.stack([getattr(place, name) for name in ANATOMY])
+    if unit:
+        sites[0] = 0.5 * (1 + sites[0])
+    return sites, place.distance
 
 
 def _encoding(

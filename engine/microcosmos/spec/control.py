@@ -7,7 +7,9 @@ from pydantic import model_validator
 from .base import Part, field, sourced
 from .sources import CPPN, NEAT, OURS, PAPER, PHASE_LAG
 
-INPUTS = {"sine-cosine": ("position", "sine", "cosine"), "linear": ("position", "time")}
+ANATOMY = ("position", "distance", "side", "limb", "x", "y")
+"""Inputs that say where a node is in the body; without anatomy only the first."""
+CLOCKS = {"sine-cosine": ("sine", "cosine"), "linear": ("time",)}
 OUTPUTS = ("rest_angle", "rest_length")
 
 
@@ -42,10 +44,15 @@ class NetworkInputs(Actuation):
     """Inputs of a network at every node of the body."""
 
     position: Literal["signed", "unit"] = field("signed", source=f"unit: {PAPER}")
-    """Position along the filament: −1 to 1 (signed) or 0 to 1 (unit)."""
+    """Position along the filament, or with `anatomy` along the limb: −1 to 1 (signed) or 0 to 1
+    (unit)."""
+    anatomy: bool = False
+    """Add the place of the node in the body as inputs: distance from the first node along edges
+    (0 to 1), side of the body's axis (−1, 0 or 1), limb (−1 to 1), and x and y in the body as
+    drawn (−1 to 1). Networks can then command limbs apart."""
     wave_number: float | None = field(1.0, ge=-10.0, le=10.0, unit="waves", source=PHASE_LAG)
     """Waves along the body of a second sine and cosine, which travel from its first node to its
-    last; empty, or with a linear timer: none."""
+    last, or with `anatomy` outward along every limb; empty, or with a linear timer: none."""
     sense_energy: bool = field(False, source=PAPER)
     """Add the energy at the node as an input (closed loop)."""
 
@@ -56,9 +63,10 @@ class NetworkInputs(Actuation):
 
     @property
     def inputs(self) -> tuple[str, ...]:
+        sites = ANATOMY if self.anatomy else ANATOMY[:1]
         travelling = () if self.waves is None else ("wave_sine", "wave_cosine")
         sensed = ("energy",) if self.sense_energy else ()
-        return INPUTS[self.timer] + travelling + sensed
+        return sites + CLOCKS[self.timer] + travelling + sensed
 
 
 class Control(NetworkInputs):

@@ -158,6 +158,15 @@ class Grown(NetworkInputs, InheritedTraits):
         """The control, the inherited traits, and growth, which decides where the body ends."""
         return (*OUTPUTS, *(f"body_{name}" for name in self.traits), "growth")
 
+    @model_validator(mode="after")
+    def refuse_anatomy(self) -> Self:
+        if self.anatomy:
+            raise ValueError(
+                "`anatomy` must be false where a CPPN grows the body: on a chain it only "
+                "repeats `position`"
+            )
+        return self
+
 
 class BodyGraph(NetworkInputs):
     """A plan of segments grows the body; a CPPN that knows each node's place in it drives it."""

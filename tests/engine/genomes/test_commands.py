@@ -35,6 +35,14 @@ OPEN = {
     "series": {"control": {"encoding": "direct"}, **VECTORS},
     "table": {"control": {"encoding": "direct", "waveform": "table"}, **VECTORS},
     "a star": {"body": {"builder": "star", "arms": 3, "arm_nodes": 5}},
+    "a star with anatomy": {
+        "control": {"anatomy": True},
+        "body": {"builder": "star", "arms": 5, "arm_nodes": 3},
+    },
+    "a recurrent tree with anatomy": {
+        "control": {"anatomy": True, "recurrent": True, "position": "unit"},
+        "body": {"builder": "tree", "levels": 2, "segment_nodes": 4},
+    },
     "an arc, whose edges turn by more than half a circle": {
         "body": {"builder": "arc", "nodes": 14, "gap": 0.2}
     },
@@ -45,6 +53,10 @@ CLOSED = {
     "senses with memory": {"control": {"sense_energy": True, "recurrent": True}},
     "senses with layers": {"control": {"encoding": "weights", "sense_energy": True}, **VECTORS},
     "grows and senses": {"control": {"encoding": "cppn-body", "sense_energy": True}},
+    "a star that senses, with anatomy": {
+        "control": {"sense_energy": True, "anatomy": True},
+        "body": {"builder": "star", "arms": 3, "arm_nodes": 4},
+    },
     "senses without bounds": {
         "control": {"sense_energy": True, "max_speed": None, "lag": 0, "max_bend": None}
     },
@@ -119,6 +131,49 @@ def test_a_phase_leads_the_timer():
     driven = task.encoding.drive(task.world, task.start, genotype, phase)
     rest, _ = native.develop(driven.world, driven.start, driven.controller)
     np.testing.assert_allclose(rest.angle, driven.inputs.angle, rtol=0, atol=1e-5)
+
+
+def differing(controls):
+    """Controls of three creatures: arrays with a row for each, and the first creature's own."""
+    rng = np.random.default_rng(0)
+    joints = len(controls.joint_nodes)
+    rows = {
+        "sites": rng.uniform(-1, 1, (3, *controls.sites.shape)),
+        "wave": rng.uniform(0, 6, (3, controls.nodes)),
+        "gain": rng.choice([-1.0, 0.5, 1.0], (3, joints)),
+        "rest_angle": rng.uniform(-0.2, 0.2, (3, joints)),
+        "rest_length": rng.uniform(0.8, 1.2, (3, len(controls.edges))),
+    }
+    graph = {
+        "edges": np.stack([controls.edges, controls.edges[:, ::-1], controls.edges]),
+        "joint_nodes": rng.integers(0, controls.nodes, (3, joints)),
+    }
+    rows = {name: values.astype(np.float32) for name, values in rows.items()}
+    return rows | {name: values.astype(np.int32) for name, values in graph.items()}
+
+
+@pytest.mark.parametrize("name", ["cppn", "recurrent"])
+def test_controls_may_differ_between_creatures_of_a_batch(name):
+    task = task_of(OPEN[name], steps=60)
+    genotype, rows = creature(task, 2), differing(task.encoding.controls)
+
+    def driven(row):
+        controls = replace(task.encoding.controls, **row)
+        encoding = replace(task.encoding, controls=controls)
+        return encoding.drive(task.world, task.start, genotype, jnp.float32(0.4))
+
+    @jax.jit
+    @jax.vmap
+    def in_both(row):
+        found = driven(row)
+        return found.inputs, native.develop(found.world, found.start, found.controller)[0]
+
+    expected, found = in_both(jax.tree.map(jnp.asarray, rows))
+    jax.tree.map(lambda a, b: np.testing.assert_allclose(a, b, atol=2e-5), found, expected)
+    for number in range(3):  # The arrays of NumPy are constants of a program.
+        alone = driven({name: values[number] for name, values in rows.items()}).inputs
+        for one, all_ in zip(jax.tree.leaves(alone), jax.tree.leaves(expected), strict=True):
+            np.testing.assert_allclose(all_[number], one, rtol=0, atol=2e-5)
 
 
 @pytest.mark.parametrize("name", CLOSED)

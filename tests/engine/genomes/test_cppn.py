@@ -12,7 +12,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import genomes, naming, neat
+from microcosmos import bodies, genomes, naming, neat
 from microcosmos.build import build_controls
 from microcosmos.spec import Chain, Control, shape
 
@@ -171,3 +171,45 @@ def test_the_fixture_of_the_page_is_what_the_engine_computes_now():
     assert [case["genome"] for case in made] == [case["genome"] for case in kept]
     for now, then in zip(made, kept, strict=True):
         np.testing.assert_allclose(now["expected"], then["expected"], rtol=1e-4, atol=1e-4)
+
+
+def test_a_gain_multiplies_what_bends_a_joint_and_one_changes_no_bit(network):
+    plain = controls(ramp=0)
+    rest = genomes.develop(network, plain)
+    gain = np.where(np.arange(10) < 4, -1.0, 0.25)
+    found = genomes.develop(network, replace(plain, gain=gain))
+    bent = rest.angle - BODY.rest_angle[None]
+    np.testing.assert_allclose(
+        found.angle - BODY.rest_angle[None], gain[None] * bent, atol=1e-6
+    )
+    np.testing.assert_array_equal(found.length, rest.length)
+    same = genomes.develop(network, replace(plain, gain=np.ones(10)))
+    np.testing.assert_array_equal(same.angle, rest.angle)
+
+
+STAR = bodies.star(5, 6, 1.0)
+
+
+def arms(values):
+    """Values (time, node) of the arms, (arm, time, node), for joints or edges of the star."""
+    return np.moveaxis(np.asarray(values).reshape(len(values), 5, -1), 1, 0)
+
+
+@pytest.mark.parametrize("anatomy", [False, True])
+def test_arms_of_a_star_are_told_apart_by_anatomy_alone(anatomy):
+    found = build_controls(Control(period=40, ramp=0, anatomy=anatomy), STAR, STEPS)
+    assert found.sites.shape == (6 if anatomy else 1, 31)
+    network = neat.minimal(jax.random.key(3), found.inputs, 2, 16, 40)
+    rest = genomes.develop(network, found)
+    outer = arms(rest.angle[:, found.joint_nodes > 0]), arms(rest.length)
+    for commands in outer:
+        apart = np.abs(commands[1:] - commands[:1]).max((1, 2))
+        assert np.all(apart > 1e-3) if anatomy else np.all(apart < 1e-6)
+
+
+def test_waves_run_outward_along_every_arm_of_a_star_with_anatomy():
+    found = build_controls(Control(wave_number=1.5, anatomy=True), STAR, STEPS)
+    outward = np.r_[0, np.tile(np.arange(1, 7) / 6, 5)]
+    np.testing.assert_allclose(found.wave, 2 * np.pi * 1.5 * outward)
+    unit = build_controls(Control(position="unit", anatomy=True), STAR, STEPS)
+    np.testing.assert_allclose(unit.sites[0], outward, atol=1e-12)

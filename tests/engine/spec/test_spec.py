@@ -69,6 +69,7 @@ def free(low, high):
         (direct(waveform="table", terms=1), "control: .*at least 2"),
         (direct(rest_length=free(1.0, 2.0)), "at least 55 cells"),  # 31 × 2 × 1.1 + 4
         ({"control": GROWN, "body": {"builder": "arc"}}, "must be 'chain'"),
+        ({"control": GROWN | {"anatomy": True}}, "control: .*`anatomy` must be false"),
         (MANY, "at most the body's 12 nodes"),
         (direct(terms=256) | LARGE, "at most 65536 genes"),
         (
