@@ -102,7 +102,7 @@ def build_repeats(chosen: spec.Evolution, plan: Plan) -> reevaluation.Programs |
         disturb=jax.jit(
             lambda g, s: reevaluation.disturb(settings, plan.key, plan.cell_count, g, s)
         ),
-        evaluate_block=build_disturbed_block(chosen.scene, plan.encoding),
+        evaluate_block=build_disturbed_block(chosen.scene, plan.encoding.room),
         add=jax.jit(search.reevaluation.add),
         correct=jax.jit(search.reevaluation.corrected),
     )

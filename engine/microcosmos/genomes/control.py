@@ -22,6 +22,8 @@ class CPPNControl:
     recurrent: bool = False
     """True if networks may have cycles; their nodes then keep values between steps."""
 
+    segments = None
+
     def newcomer(self, *, key: PRNGKeyArray) -> CPPN:
         return minimal(key, self.controls.inputs, OUTPUTS, *self.room)
 

@@ -30,6 +30,8 @@ class Grown:
     min_nodes: int
     layout: Layout
 
+    segments = None
+
     @property
     def outputs(self) -> int:
         """Outputs of the network: control, inherited traits, growth."""

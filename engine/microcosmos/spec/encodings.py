@@ -179,10 +179,6 @@ class BodyGraph(NetworkInputs):
     removes. Each segment inherits its stiffness, from this to 1; 1: all are stiff."""
 
     @property
-    def inputs(self):  # TEMP until anatomy lands
-        return ("position", "distance", "side", "limb", "x", "y") + super().inputs[1:]
-
-    @property
     def outputs(self) -> tuple[str, ...]:
         return OUTPUTS
 
