@@ -161,7 +161,7 @@ def _with_initial(
     children = jax.tree.map(put, offspring.children, new)
     begins = np.cumsum([0, *(emitter.slots for emitter in plan.emitters[:-1])]).tolist()
     pairs = zip(state.emitters, begins, strict=True)
-    # A population was founded with these creatures.
+    # A population's networks are those that were evaluated in its slots.
     before = tuple(
         (kept,) if first < count and not isinstance(kept, Population) else None
         for kept, first in pairs

@@ -7,14 +7,12 @@ from typing import Any
 
 import equinox as eqx
 import jax
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int, PRNGKeyArray, PyTree, UInt8
 
 from .. import neat, search
 from ..archive.poses import PoseStream
 from ..genomes import Encoding, Genotype
-from ..search.emitters.population import PopulationNeat
 
 CURVES = (
     "qd_score",
@@ -209,7 +207,7 @@ def start(plan: Plan) -> State:
     no_genotypes = jax.tree.map(lambda x: np.zeros((0, *x.shape), x.dtype), plan.genotype)
     split = jax.jit(lambda key: tuple(jax.random.split(jax.random.fold_in(key, BEFORE), count)))
     pairs = zip(plan.emitters, split(plan.key), strict=True)
-    emitters = tuple(_founded(plan, e, e.init(key=key)) for e, key in pairs)
+    emitters = tuple(emitter.init(key=key) for emitter, key in pairs)
     return State(
         generation=0,
         evaluations=0,
@@ -241,10 +239,3 @@ def start(plan: Plan) -> State:
         devices=(plan.device,),
         initial=plan.initial,
     )
-
-
-def _founded(plan: Plan, emitter: search.Emitter, kept: PyTree[Array]) -> PyTree[Array]:
-    if plan.initial is None or not isinstance(emitter, PopulationNeat):
-        return kept
-    networks = jax.tree.map(jnp.asarray, plan.initial.genotypes)
-    return emitter.founded(kept, networks)

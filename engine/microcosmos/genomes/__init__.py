@@ -10,6 +10,7 @@ from .encoding import Drive, Encoding
 from .fold import FoldEncoding, added, scaled
 from .genotype import (
     Genotype,
+    Graph,
     Vector,
     columns,
     empty,

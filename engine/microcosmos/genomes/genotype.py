@@ -24,7 +24,10 @@ class Vector(eqx.Module):
     values: Float[Array, "*batch gene"]
 
 
-Genotype = CPPN | Vector | BodyGraph
+Graph = CPPN | BodyGraph
+"""Genotypes with numbered genes, which NEAT varies."""
+
+Genotype = Graph | Vector
 
 
 def uniform_vector(genes: int, spread: float, *, key: PRNGKeyArray) -> Vector:

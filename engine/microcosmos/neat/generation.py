@@ -34,8 +34,7 @@ class Parentage(eqx.Module):
 @partial(jax.jit, static_argnames="settings")
 def first_species(population: CPPN, settings: Settings) -> Species:
     """Divide the first population, evaluated in generation 0, into species."""
-    rows = min(settings.max_species, population.weight.shape[0])
-    empty = no_species(population, rows, settings.threshold)
+    empty = no_species(population, settings)
     return divide(population, empty, settings, jnp.zeros((), int))
 
 
@@ -53,9 +52,40 @@ def next_generation(
 ) -> tuple[CPPN, Species, Counters, Int[Array, "individual 2"], Int[Array, "individual"]]:
     """Return the offspring of an evaluated population, species, counters, parents, operators.
 
-    Fitness is maximised. A network without finite fitness is never a parent; without any finite
-    fitness the population stays. `generation` is the number of the given population. Parents
-    are indices in it (the fitter first, −1 for none).
+    It is `breed`, `number` and `divide`, for a population that shares its counters with none.
+    """
+    children, novelty, species, parents, code = breed(
+        population,
+        fitness,
+        species,
+        settings,
+        inputs=inputs,
+        outputs=outputs,
+        key=key,
+        generation=generation,
+    )
+    children, counters = barrier(number(children, novelty, counters))
+    species = divide(children, species, settings, generation + 1)
+    return children, species, counters, parents, code
+
+
+def breed(
+    population: CPPN,
+    fitness: Float[Array, "individual"],
+    species: Species,
+    settings: Settings,
+    *,
+    inputs: int,
+    outputs: int,
+    key: PRNGKeyArray,
+    generation: Int[Array, ""],
+) -> tuple[CPPN, Novelty, Species, Int[Array, "individual 2"], Int[Array, "individual"]]:
+    """Return the offspring of an evaluated population, before their new genes have numbers.
+
+    Also return these genes, the species to divide the numbered offspring into, parents and
+    operators. Fitness is maximised. A network without finite fitness is never a parent; without
+    any finite fitness the population stays. `generation` is the number of the given population.
+    Parents are indices in it (the fitter first, −1 for none).
     """
     parents_key, children_key, species_key = jax.random.split(
         jax.random.fold_in(key, generation), 3
@@ -71,11 +101,10 @@ def next_generation(
         population, parentage, settings, inputs, outputs, key=children_key
     )
     children, novelty = barrier((children, novelty))
-    children, counters = barrier(number(children, novelty, counters))
     species = _renew_species(population, species, sizes > 0, now, settings, key=species_key)
-    species = divide(children, species, settings, generation + 1)
     code = parentage.mutated + 2 * (parentage.other >= 0)
-    return children, species, counters, jnp.stack([parentage.parent, parentage.other], 1), code
+    parents = jnp.stack([parentage.parent, parentage.other], 1)
+    return children, novelty, species, parents, code
 
 
 def choose_parents(

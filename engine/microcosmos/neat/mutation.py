@@ -7,13 +7,14 @@ deletion, genes are also lost. `numbering` numbers new genes for a whole generat
 from dataclasses import replace
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 
 from ..genomes import CPPN
 from .rates import Rates, bounded, one_of
 from .rng import Uniform, draws, rescaled
-from .rows import barrier
+from .rows import NONE, barrier
 from .structure import add_connection, add_node, delete_connection, delete_node
 
 DECISIONS = 10
@@ -30,6 +31,11 @@ class Novelty(eqx.Module):
     node_row: Int[Array, "*batch"]
     split_innovation: Int[Array, "*batch"]
     """Number of the split connection, or −1."""
+
+
+def no_novelty(like: Novelty, children: int) -> Novelty:
+    """Return the novelty, with the fields of another, of children without new genes."""
+    return jax.tree.map(lambda x: jnp.full((children, *x.shape[1:]), NONE, x.dtype), like)
 
 
 def mutate(

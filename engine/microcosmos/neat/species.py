@@ -101,20 +101,21 @@ def assign(
     return state._replace(of=jnp.where(state.of == UNASSIGNED, state.nearest, state.of))
 
 
-def no_species(population: CPPN, rows: int, threshold: float) -> Species:
+def no_species(population: CPPN, settings: Settings) -> Species:
     """Return empty species for a first population."""
     individuals, dtype = population.weight.shape[0], population.weight.dtype
+    rows = min(settings.max_species, individuals)
     return Species(
         representatives=jax.tree.map(
             lambda x: jnp.zeros((rows, *x.shape[1:]), x.dtype), population
         ),
         alive=jnp.zeros(rows, bool),
-        number=jnp.full(rows, UNASSIGNED),
+        number=jnp.full(rows, UNASSIGNED, int),
         best=jnp.full(rows, -jnp.inf, dtype),
         improved=jnp.zeros(rows, int),
         members=jnp.zeros(rows, int),
-        of=jnp.full(individuals, UNASSIGNED),
-        threshold=jnp.asarray(threshold, dtype),
+        of=jnp.full(individuals, UNASSIGNED, int),
+        threshold=jnp.asarray(settings.threshold, dtype),
         next_number=jnp.zeros((), int),
         peak=jnp.asarray(-jnp.inf, dtype),
         peak_generation=jnp.zeros((), int),
@@ -124,7 +125,7 @@ def no_species(population: CPPN, rows: int, threshold: float) -> Species:
 def divide(
     population: CPPN, species: Species, settings: Settings, generation: Int[Array, ""]
 ) -> Species:
-    """Divide a population, to be evaluated in `generation`, into species.
+    """Divide a population, evaluated in `generation`, into species.
 
     Species without members end. The member nearest to a representative becomes the next one,
     if the settings ask for it.

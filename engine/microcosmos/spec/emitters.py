@@ -162,9 +162,6 @@ Emitter = Annotated[
 ]
 """One source of offspring."""
 
-NUMBERING = ("neat", "lamarckian")
-"""Operators that number the new genes of elites."""
-
 USING_GRADIENTS = ("lamarckian", "cma-mega")
 """Operators that need the derivatives of all descriptors."""
 
@@ -184,11 +181,15 @@ def refuse_unfit_emitters(emitters: tuple[Emitter, ...], encoding: str) -> None:
                 f"`search.emitters` must be random or of {', '.join(fit)} where "
                 f"`control.encoding` is {encoding!r}, got {emitter.operator!r}"
             )
-        if getattr(emitter, "backend", None) == "tensorneat" and len(emitters) > 1:
-            raise ValueError(
-                '`search.emitters` must hold no other emitter beside backend "tensorneat", got '
-                f"{len(emitters)}"
-            )
+    foreign = [getattr(emitter, "backend", None) == "tensorneat" for emitter in emitters]
+    numbering = [
+        emitter.operator for emitter in emitters if emitter.operator in NETWORK_OPERATORS
+    ]
+    if any(foreign) and len(numbering) > 1:
+        raise ValueError(
+            '`search.emitters` must hold nothing but random beside backend "tensorneat", which '
+            f"numbers genes itself, got {', '.join(numbering)}"
+        )
 
 
 def gradients(emitter: Emitter, slots: int) -> int:

@@ -9,7 +9,7 @@ from ..naming import MeasureName
 from ..plugins.declaration import refuse_empty_axis
 from . import measures
 from .base import Digest, Part, field, sourced
-from .emitters import NUMBERING, WITHOUT_GRADIENT, Emitter, NeatEmitter, slots
+from .emitters import WITHOUT_GRADIENT, Emitter, NeatEmitter, slots
 from .plugins import OR_PLUGIN, MaybePlugin, PluginVersion, complete_plugin, completed
 from .sources import CVT, MAP_ELITES, OURS, PAPER, REEVALUATION
 
@@ -225,11 +225,5 @@ class Search(Generations):
             raise ValueError(
                 f"`batch` must be large enough for each of the `emitters`, got {self.batch}, "
                 f"which leaves none for {idle!r}"
-            )
-        growing = [one.operator for one in self.emitters if one.operator in NUMBERING]
-        if len(growing) > 1:
-            raise ValueError(
-                f"`emitters` must hold one of {' and '.join(NUMBERING)} at most, so that equal "
-                f"mutations of a generation get equal numbers; got {', '.join(growing)}"
             )
         return self

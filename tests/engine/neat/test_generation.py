@@ -248,7 +248,7 @@ def test_a_moving_threshold_follows_the_number_of_species_that_breed(shrunk, shr
 def _two_species(settings):
     keys = jax.random.split(jax.random.key(0), 6)
     networks = jax.vmap(lambda k: neat.minimal(k, INPUTS, OUTPUTS, 8, 12))(keys)
-    empty = division.no_species(networks, 3, settings.threshold)
+    empty = division.no_species(networks, replace(settings, max_species=3))
     return replace(
         empty,
         alive=jnp.array([True, True, False]),

@@ -124,7 +124,7 @@ def test_each_emitter_is_told_of_its_own_children_alone(outcome_of):
         def init(self, *, key):
             return None
 
-        def emit(self, state, archive, counters, *, keys):
+        def emit(self, state, archive, *, keys):
             raise AssertionError("nobody asked for children")
 
         def tell(self, state, outcome):
@@ -251,8 +251,8 @@ def test_a_spent_distribution_begins_anew_at_an_elite(emitter, state_after):
     archive = search.no_elites(4, 1, Vector(jnp.zeros(2)))
     elite = Vector(archive.genotypes.values.at[2].set(jnp.asarray([0.7, -0.1])))
     archive = replace(archive, occupied=archive.occupied.at[2].set(True), genotypes=elite)
-    keys, counters = jax.random.split(jax.random.key(0), 6), neat.first_counters(1, 1)
-    children, again, _ = chosen.emit(after, archive, counters, keys=keys)
+    keys = jax.random.split(jax.random.key(0), 6)
+    children, again, _ = chosen.emit(after, archive, keys=keys)
     np.testing.assert_allclose(again.distribution.mean, [0.7, -0.1], rtol=1e-6)
     assert not again.restart
     assert np.abs(children.genotypes.values).max() <= 1

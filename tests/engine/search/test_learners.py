@@ -14,7 +14,6 @@ from microcosmos.search.gradients import CONSTANT, genes_of
 from microcosmos.spec.emitters import WITHOUT_GRADIENT
 
 GENES, SLOTS, CELLS = 12, 8, 100
-COUNTERS = neat.first_counters(3, 2)
 KEYS = jax.random.split(jax.random.key(7), SLOTS)
 
 
@@ -33,7 +32,7 @@ def archive(genotype, occupied):
 
 def emitted(emitter, state, elites):
     emit = jax.jit(lambda *given: emitter.emit(*given, keys=KEYS)[:2])
-    return emit(state, elites, COUNTERS)
+    return emit(state, elites)
 
 
 def slopes(rows, finite=True):
@@ -72,7 +71,7 @@ def test_cma_mega_climbs_a_sphere(outcome_of):
     best = -np.inf
     for generation in range(40):
         keys = jax.random.split(jax.random.key(generation), SLOTS)
-        children, state, _ = emitter.emit(state, elites, COUNTERS, keys=keys)
+        children, state, _ = emitter.emit(state, elites, keys=keys)
         way = 2 * (top - np.asarray(state.theta))
         rows = np.stack([way, *np.eye(GENES)[:2]])
         children, state = emitter.learn(state, children, slopes(rows))

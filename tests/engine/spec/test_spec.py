@@ -83,6 +83,23 @@ def test_a_spec_that_cannot_be_carried_out_is_refused_with_the_field_and_reason(
     assert re.search(words, refusal(**changes))
 
 
+POPULATION = {"operator": "population"}
+BACKEND = POPULATION | {"backend": "tensorneat"}
+
+
+@pytest.mark.parametrize("operator", ["random", "neat", "lamarckian", "population"])
+def test_emitters_that_number_genes_stand_beside_each_other_but_not_beside_tensorneat(operator):
+    other = {"operator": operator}
+    for emitters in ([other, other], [other, POPULATION], [{"operator": "neat"}, other]):
+        spec = parse({"experiment": "quality-diversity", "search": {"emitters": emitters}})
+        assert len(spec.emitters) == 2
+    beside = {"search": {"emitters": [BACKEND, other]}}
+    if operator == "random":
+        parse({"experiment": "quality-diversity", **beside})
+    else:
+        assert 'nothing but random beside backend "tensorneat"' in refusal(**beside)
+
+
 def test_an_unknown_encoding_or_experiment_is_refused_with_the_known_ones():
     with pytest.raises(ValidationError, match=r"`encoding` must be .*direct.*got 'l-system'"):
         Scene.model_validate({"control": {"encoding": "l-system"}})

@@ -13,7 +13,6 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, PRNGKeyArray
 
 from ...genomes import Vector
-from ...neat import Counters
 from ...portable import power
 from ..insertion import Elites
 from . import matrix_adaptation as es
@@ -54,8 +53,8 @@ class CmaMae:
         )
 
     def emit(
-        self, state: CmaMaeState, archive: Elites, counters: Counters, *, keys: Keys
-    ) -> tuple[Children, CmaMaeState, Counters]:
+        self, state: CmaMaeState, archive: Elites, *, keys: Keys
+    ) -> tuple[Children, CmaMaeState, None]:
         chosen = draw(archive, key=jax.random.fold_in(keys[0], 1))
         genotypes = archive.genotypes
         assert isinstance(genotypes, Vector)
@@ -65,7 +64,7 @@ class CmaMae:
         values, z = es.draw(distribution, keys=keys)
         children = parentless(Vector(jnp.clip(values, -1.0, 1.0)), self.slots, "cma-mae")
         state = replace(state, distribution=distribution, z=z, restart=jnp.zeros((), bool))
-        return children, state, counters
+        return children, state, None
 
     def tell(self, state: CmaMaeState, outcome: Outcome) -> CmaMaeState:
         here = state.thresholds[jnp.minimum(outcome.cell, self.cells - 1)]

@@ -13,7 +13,6 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, PRNGKeyArray
 
 from ...genomes import Genotype, Vector
-from ...neat import Counters
 from ...portable import product
 from ..gradients import Slopes, unit
 from ..insertion import Elites
@@ -68,8 +67,8 @@ class CmaMega:
         )
 
     def emit(
-        self, state: CmaMegaState, archive: Elites, counters: Counters, *, keys: Keys
-    ) -> tuple[Children, CmaMegaState, Counters]:
+        self, state: CmaMegaState, archive: Elites, *, keys: Keys
+    ) -> tuple[Children, CmaMegaState, None]:
         """Return θ in each slot until slopes are known; newcomers into an empty archive."""
         chosen = draw(archive, key=jax.random.fold_in(keys[0], 1))
         genotypes = archive.genotypes
@@ -89,7 +88,7 @@ class CmaMega:
             weights=weights.at[:, 0].set(jnp.abs(weights[:, 0])),
             due=jnp.any(archive.occupied),
         )
-        return children, state, counters
+        return children, state, None
 
     def to_differentiate(self, state: CmaMegaState, children: Children) -> Genotype:
         return Vector(state.theta[None])

@@ -2,16 +2,17 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Int
 
 from ...genomes import Genotype
-from ...neat import Counters
 from ..insertion import Elites
 from .emitter import NO_PARENT, OPERATORS, Children, Keys, Stateless
+
+T = TypeVar("T")
 
 Newcomer = Callable[..., Any]
 """`newcomer(key=...)` makes a random genotype."""
@@ -36,7 +37,7 @@ def children(genotypes: Genotype, parents: list[Int[Array, "slot"]], name: str) 
     return Children(genotypes, pairs, jnp.full(len(first), OPERATORS.index(name), jnp.int32))
 
 
-def or_newcomers(archive: Elites, varied: Children, fresh: Children) -> Children:
+def or_newcomers(archive: Elites, varied: T, fresh: T) -> T:
     """Return the varied children, or the fresh ones if the archive is empty."""
     any_elite = jnp.any(archive.occupied)
     return jax.tree.map(lambda one, other: jnp.where(any_elite, one, other), varied, fresh)
@@ -49,7 +50,5 @@ class Random(Stateless):
     slots: int
     newcomer: Newcomer
 
-    def emit(
-        self, state: None, archive: Elites, counters: Counters, *, keys: Keys
-    ) -> tuple[Children, None, Counters]:
-        return newcomers(self.newcomer, keys), None, counters
+    def emit(self, state: None, archive: Elites, *, keys: Keys) -> tuple[Children, None, None]:
+        return newcomers(self.newcomer, keys), None, None

@@ -1,5 +1,6 @@
 """Emitters: sources of children, which learn the outcome of their evaluation."""
 
+from dataclasses import replace
 from typing import Protocol, runtime_checkable
 
 import equinox as eqx
@@ -8,8 +9,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int, Key, PRNGKeyArray, PyTree
 
-from ...genomes import Genotype
-from ...neat import Counters
+from ...genomes import Genotype, Graph
+from ...neat import Counters, Novelty, no_novelty, number
 from ..gradients import Slopes
 from ..insertion import Elites, Inserted
 
@@ -88,13 +89,16 @@ class Emitter(Protocol):
         ...
 
     def emit(
-        self, state: State, archive: Elites, counters: Counters, *, keys: Keys
-    ) -> tuple[Children, State, Counters]:
-        """Return children, one for each key; `counters` number new genes."""
+        self, state: State, archive: Elites, *, keys: Keys
+    ) -> tuple[Children, State, Novelty | None]:
+        """Return children, one for each key, the state, and new genes that have no numbers.
+
+        None stands for children without new genes.
+        """
         ...
 
     def tell(self, state: State, outcome: Outcome) -> State:
-        """Return the state once its children are measured and inserted."""
+        """Return the state once its children are numbered, measured and inserted."""
         ...
 
 
@@ -137,20 +141,37 @@ def emit(
 ) -> tuple[Children, tuple[State, ...], Counters]:
     """Return the children of all emitters, one after another, and the emitters' new states.
 
-    Every slot has its own key, derived from the seed, the generation and the slot.
+    Every slot has its own key, derived from the seed, the generation and the slot. Equal
+    mutations get equal numbers, also in children of different emitters.
     """
     batch = sum(emitter.slots for emitter in emitters)
     turn = jax.random.fold_in(key, generation)
     keys = jax.vmap(lambda slot: jax.random.fold_in(turn, slot))(jnp.arange(batch))
-    found, kept, first = [], [], 0
+    found, kept, genes, first = [], [], [], 0
     for emitter, state in zip(emitters, states, strict=True):
         chosen = keys[first : first + emitter.slots]
-        offspring, state, counters = emitter.emit(state, archive, counters, keys=chosen)
+        offspring, state, novelty = emitter.emit(state, archive, keys=chosen)
         found.append(offspring)
         kept.append(state)
+        genes.append(novelty)
         first += emitter.slots
     children = jax.tree.map(lambda *parts: jnp.concatenate(parts), *found)
+    novelty = _joined(genes, [emitter.slots for emitter in emitters])
+    if novelty is not None:
+        assert isinstance(children.genotypes, Graph)
+        genotypes, counters = number(children.genotypes, novelty, counters)
+        children = replace(children, genotypes=genotypes)
     return children, tuple(kept), counters
+
+
+def _joined(parts: list[Novelty | None], slots: list[int]) -> Novelty | None:
+    """Return the new genes of all emitters' children, None if no emitter makes any."""
+    like = next((part for part in parts if part is not None), None)
+    if like is None:
+        return None
+    pairs = zip(parts, slots, strict=True)
+    whole = [no_novelty(like, count) if part is None else part for part, count in pairs]
+    return jax.tree.map(lambda *rows: jnp.concatenate(rows), *whole)
 
 
 def tell(

@@ -12,8 +12,8 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float, PRNGKeyArray
 
-from ...genomes import CPPN, Genotype
-from ...neat import Counters
+from ...genomes import Genotype
+from ...neat import Novelty
 from ..gradients import Slopes, genes_of, unit, with_genes
 from ..insertion import Elites
 from .emitter import OPERATORS, Children, Keys, Outcome
@@ -48,15 +48,15 @@ class Lamarckian:
         return Directions(jnp.zeros((self.slots, self.outputs), jnp.float32))
 
     def emit(
-        self, state: Directions, archive: Elites, counters: Counters, *, keys: Keys
-    ) -> tuple[Children, Directions, Counters]:
-        children, _, counters = self.neat.emit(None, archive, counters, keys=keys)
+        self, state: Directions, archive: Elites, *, keys: Keys
+    ) -> tuple[Children, Directions, Novelty]:
+        children, _, novelty = self.neat.emit(None, archive, keys=keys)
         shape = (self.outputs,)
         drawn = jax.vmap(lambda key: jax.random.normal(jax.random.fold_in(key, 2), shape))(keys)
         weights = (self.diversity * drawn).at[:, 0].set(1.0)
         mutated = children.operator == OPERATORS.index("neat")
         operator = jnp.where(mutated, OPERATORS.index("lamarckian"), children.operator)
-        return replace(children, operator=operator), Directions(weights), counters
+        return replace(children, operator=operator), Directions(weights), novelty
 
     def to_differentiate(self, state: Directions, children: Children) -> Genotype:
         return children.genotypes
@@ -65,12 +65,11 @@ class Lamarckian:
         self, state: Directions, children: Children, slopes: Slopes
     ) -> tuple[Children, Directions]:
         """Move each child a step; those without finite slopes stay."""
-        networks = children.genotypes
-        assert isinstance(networks, CPPN)
         way = unit(jnp.sum(state.weights[:, :, None] * unit(slopes.rows), 1))
         way = jnp.where(slopes.finite[:, None], way, 0.0)
-        genes = jax.vmap(genes_of)(networks) + self.step * way
-        return replace(children, genotypes=jax.vmap(with_genes)(networks, genes)), state
+        genes = jax.vmap(genes_of)(children.genotypes) + self.step * way
+        learnt = jax.vmap(with_genes)(children.genotypes, genes)
+        return replace(children, genotypes=learnt), state
 
     def tell(self, state: Directions, outcome: Outcome) -> Directions:
         return state

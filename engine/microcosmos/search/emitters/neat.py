@@ -7,7 +7,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Int, PRNGKeyArray
 
 from ... import neat
-from ...genomes import CPPN
+from ...genomes import Graph
 from ..insertion import Elites
 from .elites import Newcomer, children, newcomers, or_newcomers
 from .emitter import NO_PARENT, OPERATORS, Children, Keys, Stateless
@@ -27,8 +27,8 @@ class Neat(Stateless):
     select: Select = "uniform"
 
     def emit(
-        self, state: None, archive: Elites, counters: neat.Counters, *, keys: Keys
-    ) -> tuple[Children, None, neat.Counters]:
+        self, state: None, archive: Elites, *, keys: Keys
+    ) -> tuple[Children, None, neat.Novelty]:
         def child(key):
             select_key, mutate_key = jax.random.split(key)
             cell = draw(archive, self.select, key=select_key)
@@ -39,14 +39,13 @@ class Neat(Stateless):
             return network, novelty, cell, other
 
         networks, novelty, first, second = jax.vmap(child)(keys)
-        networks, numbered = neat.number(networks, novelty, counters)
         varied = children(networks, [first, second], "neat")
         crossed = OPERATORS.index("crossover")
         operator = jnp.where(second == NO_PARENT, varied.operator, crossed)
         varied = Children(varied.genotypes, varied.parents, operator)
-        any_elite = jnp.any(archive.occupied)
-        counters = jax.tree.map(lambda a, b: jnp.where(any_elite, a, b), numbered, counters)
-        return or_newcomers(archive, varied, newcomers(self.newcomer, keys)), None, counters
+        fresh = newcomers(self.newcomer, keys), neat.no_novelty(novelty, self.slots)
+        offspring, novelty = or_newcomers(archive, (varied, novelty), fresh)
+        return offspring, None, novelty
 
     def _crossed(self, archive: Elites, cell: Int[Array, ""], *, key: PRNGKeyArray):
         whether, which, cross_key = jax.random.split(jax.random.fold_in(key, 1), 3)
@@ -61,7 +60,7 @@ class Neat(Stateless):
         return parent, jnp.where(happens, other, NO_PARENT)
 
 
-def _network(archive: Elites, cell: Int[Array, ""]) -> CPPN:
+def _network(archive: Elites, cell: Int[Array, ""]) -> Graph:
     network = jax.tree.map(lambda x: x[cell], archive.genotypes)
-    assert isinstance(network, CPPN)
+    assert isinstance(network, Graph)
     return network

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float, Int, PRNGKeyArray
 
 from ... import neat
-from ...genomes import CPPN
+from ...genomes import Graph
 from ..insertion import Elites
 from .elites import Newcomer, parentless
 from .emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
@@ -21,9 +21,12 @@ CODES = np.array(
 
 
 class Population(eqx.Module):
-    """The networks of a generation, their fitness once measured, and their species."""
+    """The networks measured last, their fitness, and their species.
 
-    networks: CPPN
+    Once their children are emitted, the species are those that the children are divided into.
+    """
+
+    networks: Graph
     fitness: Float[Array, "slot"]
     species: neat.Species
     age: Int[Array, ""]
@@ -49,33 +52,25 @@ class PopulationNeat:
     def init(self, *, key: PRNGKeyArray) -> Population:
         keys = jax.random.split(key, self.slots)
         networks = jax.vmap(lambda own: self.newcomer(key=own))(keys)
+        species = neat.no_species(networks, self.settings)
         return Population(
             networks=networks,
-            fitness=jnp.full(self.slots, -jnp.inf, networks.weight.dtype),
-            species=neat.first_species(networks, self.settings),
+            fitness=jnp.full(self.slots, -jnp.inf, species.best.dtype),
+            species=species,
             age=jnp.zeros((), jnp.int32),
         )
 
-    def founded(self, state: Population, networks: CPPN) -> Population:
-        """Return the state with given networks in place of the first newcomers."""
-        count = networks.weight.shape[0]
-        networks = jax.tree.map(lambda a, b: a.at[:count].set(b), state.networks, networks)
-        species = neat.first_species(networks, self.settings)
-        return replace(state, networks=networks, species=species)
-
     def emit(
-        self, state: Population, archive: Elites, counters: neat.Counters, *, keys: Keys
-    ) -> tuple[Children, Population, neat.Counters]:
+        self, state: Population, archive: Elites, *, keys: Keys
+    ) -> tuple[Children, Population, neat.Novelty]:
         """Return the newcomers first, then the children of the generation before."""
         cells = archive.occupied.shape[0]
-        first = parentless(state.networks, self.slots, "random"), state.species, counters
 
         def breed():
-            networks, species, numbered, parents, code = neat.next_generation(
+            networks, novelty, species, parents, code = neat.breed(
                 state.networks,
                 state.fitness,
                 state.species,
-                counters,
                 self.settings,
                 inputs=self.inputs,
                 outputs=self.outputs,
@@ -83,12 +78,17 @@ class PopulationNeat:
                 generation=state.age - 1,
             )
             parents = jnp.where(parents < 0, NO_PARENT, parents + cells).astype(jnp.int32)
-            return Children(networks, parents, jnp.asarray(CODES)[code]), species, numbered
+            return Children(networks, parents, jnp.asarray(CODES)[code]), species, novelty
 
-        children, species, counters = jax.lax.cond(state.age > 0, breed, lambda: first)
-        fitness = jnp.full_like(state.fitness, -jnp.inf)
-        grown = Population(children.genotypes, fitness, species, state.age + 1)
-        return children, grown, counters
+        none = neat.no_novelty(jax.eval_shape(breed)[2], self.slots)
+        first = parentless(state.networks, self.slots, "random"), state.species, none
+        children, species, novelty = jax.lax.cond(state.age > 0, breed, lambda: first)
+        return children, replace(state, species=species, age=state.age + 1), novelty
 
     def tell(self, state: Population, outcome: Outcome) -> Population:
-        return replace(state, fitness=jnp.where(outcome.feasible, outcome.fitness, -jnp.inf))
+        """Return the state with the children as its networks, divided by their numbers."""
+        networks = outcome.genotypes
+        assert isinstance(networks, Graph)
+        species = neat.divide(networks, state.species, self.settings, state.age - 1)
+        fitness = jnp.where(outcome.feasible, outcome.fitness, -jnp.inf)
+        return replace(state, networks=networks, fitness=fitness, species=species)

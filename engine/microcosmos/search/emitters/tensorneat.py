@@ -6,7 +6,6 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float, Int, PRNGKeyArray
 
-from ...neat import Counters
 from ..insertion import Elites
 from ..tensorneat import Backend, State
 from .elites import parentless
@@ -32,7 +31,8 @@ class TensorNeatState(eqx.Module):
 class TensorNeat:
     """TensorNEAT's ask-tell loop, on the host between our programs, its state kept as arrays.
 
-    It does not report parents. Children that diverge or lack an output have the worst fitness.
+    It numbers genes itself and does not report parents. Children that diverge or lack an output
+    have the worst fitness.
     """
 
     slots: int
@@ -43,15 +43,15 @@ class TensorNeat:
         return self._unmeasured(self.backend.setup(self.seed), 0)
 
     def emit(
-        self, state: TensorNeatState, archive: Elites, counters: Counters, *, keys: Keys
-    ) -> tuple[Children, TensorNeatState, Counters]:
+        self, state: TensorNeatState, archive: Elites, *, keys: Keys
+    ) -> tuple[Children, TensorNeatState, None]:
         """Return the first population, then the one that it makes of the one before."""
         theirs = self.backend.from_arrays(state.arrays)
         if state.age > 0:
             theirs = self.backend.tell(theirs, np.asarray(state.fitness))
         networks, _ = self.backend.population(theirs)
         children = parentless(networks, self.slots, "tensorneat")
-        return children, self._unmeasured(theirs, int(state.age) + 1), counters
+        return children, self._unmeasured(theirs, int(state.age) + 1), None
 
     def tell(self, state: TensorNeatState, outcome: Outcome) -> TensorNeatState:
         _, whole = self.backend.population(self.backend.from_arrays(state.arrays))

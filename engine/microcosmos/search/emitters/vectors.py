@@ -7,7 +7,6 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int, PRNGKeyArray
 
 from ...genomes import Vector
-from ...neat import Counters
 from ..insertion import Elites
 from .elites import Newcomer, children, newcomers, or_newcomers
 from .emitter import Children, Keys, Stateless
@@ -27,13 +26,11 @@ class IsoLine(Stateless):
     line: float = 0.0
     select: Select = "uniform"
 
-    def emit(
-        self, state: None, archive: Elites, counters: Counters, *, keys: Keys
-    ) -> tuple[Children, None, Counters]:
+    def emit(self, state: None, archive: Elites, *, keys: Keys) -> tuple[Children, None, None]:
         values, *cells = jax.vmap(lambda key: self._child(archive, key=key))(keys)
         parents, name = (cells, "iso+line") if self.line else (cells[:1], "gaussian")
         varied = children(Vector(values), parents, name)
-        return or_newcomers(archive, varied, newcomers(self.newcomer, keys)), None, counters
+        return or_newcomers(archive, varied, newcomers(self.newcomer, keys)), None, None
 
     def _child(
         self, archive: Elites, *, key: PRNGKeyArray

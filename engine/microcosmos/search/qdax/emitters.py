@@ -9,7 +9,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, PRNGKeyArray, PyTree
 
 from ...genomes import CPPN, Vector
-from ...neat import Counters
+from ...neat import Counters, number
 from ..cells import Cells, places
 from ..emitters.elites import Newcomer, newcomers, or_newcomers, parentless
 from ..emitters.emitter import Children, Keys, Outcome
@@ -61,8 +61,8 @@ class QdaxEmitter:
         return Pending(state, genes, fitness, place, none, jnp.zeros((), bool))
 
     def emit(
-        self, state: Pending, archive: Elites, counters: Counters, *, keys: Keys
-    ) -> tuple[Children, Pending, Counters]:
+        self, state: Pending, archive: Elites, *, keys: Keys
+    ) -> tuple[Children, Pending, None]:
         with jax.numpy_rank_promotion("allow"):
             repertoire = to_repertoire(archive, self.cells)
             learnt = jax.lax.cond(
@@ -72,7 +72,7 @@ class QdaxEmitter:
         bred = parentless(Vector(jnp.clip(genes, -1.0, 1.0)), self.slots, self.operator)
         children = or_newcomers(archive, bred, newcomers(self.newcomer, keys))
         due = jnp.any(archive.occupied)
-        return children, replace(state, emitter=learnt, due=due), counters
+        return children, replace(state, emitter=learnt, due=due), None
 
     def tell(self, state: Pending, outcome: Outcome) -> Pending:
         assert isinstance(outcome.genotypes, Vector)
@@ -158,9 +158,10 @@ class NeatEmitter:
         if not jnp.issubdtype(key.dtype, jax.dtypes.prng_key):
             key = jax.random.wrap_key_data(key)
         keys = jax.random.split(key, self.batch_size)
-        children, _, _ = self.emitter.emit(None, archive, emitter_state, keys=keys)
+        children, _, novelty = self.emitter.emit(None, archive, keys=keys)
         assert isinstance(children.genotypes, CPPN)
-        return children.genotypes, {}
+        numbered, _ = number(children.genotypes, novelty, emitter_state)
+        return numbered, {}
 
     def state_update(
         self,
