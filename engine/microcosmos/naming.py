@@ -47,6 +47,13 @@ MeasureName = Literal[
     "aspect",
     "strouhal",
     "trial_spread",
+    "segments",
+    "limbs",
+    "rings",
+    "total_length",
+    "form_symmetry",
+    "form_aspect",
+    "ungrown",
 ]
 """Names of the measures, in the order in which they are recorded."""
 

@@ -7,11 +7,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import count
 from typing import Any
 
+from ..bodies.growth import FIRST_LIMBS
 from ..naming import decode, encode
-from ..spec import Direct, Evolution, Grown, Weights, shape
+from ..spec import BodyGraph, Direct, Evolution, Grown, GrownBody, Weights, shape
 from ..spec.control import Control
 from ..spec.creature import CreatureError, Identity
 from ..spec.creature.cppn_genes import Connections, Nodes, check_genes
+from ..spec.creature.genomes import Segments
 
 Genes = dict[str, Any]
 """The genome of a creature's identity."""
@@ -26,7 +28,7 @@ def genes_of(chosen: Evolution, files: Iterable[Mapping[str, Any]]) -> list[Gene
     Raises `CreatureError`, which names the field of the spec that a creature does not fit.
     """
     genomes = [fitting(chosen, file) for file in files]
-    if isinstance(chosen.control, Control | Grown):
+    if isinstance(chosen.control, Control | Grown | BodyGraph):
         return renumbered(genomes, len(chosen.control.inputs), len(chosen.control.outputs))
     return genomes
 
@@ -39,7 +41,7 @@ def fitting(chosen: Evolution, file: Mapping[str, Any]) -> Genes:
     for name in ("inputs", "outputs"):
         found = list(genome.get(name, ()))
         _compare(f"control: {name}", list(getattr(control, name)), found, who)
-    if isinstance(control, Control | Grown):
+    if isinstance(control, Control | Grown | BodyGraph):
         _refuse_large(chosen, genome, who)
         _refuse_cycles(control, genome, who)
     else:
@@ -62,9 +64,16 @@ def _refuse_large(chosen: Evolution, genome: Genes, who: str) -> None:
         room = getattr(chosen.genome, name)
         if room < needed:
             raise CreatureError(f"genome.{name}", f"at least {needed}, which {who} has", room)
+    if isinstance(chosen.body, GrownBody):
+        try:
+            Segments.model_validate(genome["plan"]).refuse_unfit(chosen.body)
+        except ValueError as error:
+            raise CreatureError(
+                "body", f"room for the plan of {who}: {error}", "less"
+            ) from error
 
 
-def _refuse_cycles(control: Control | Grown, genome: Genes, who: str) -> None:
+def _refuse_cycles(control: Control | Grown | BodyGraph, genome: Genes, who: str) -> None:
     if getattr(control, "recurrent", False):
         return
     fixed = len(control.inputs), len(control.outputs)
@@ -121,11 +130,13 @@ def renumbered(genomes: Sequence[Genes], inputs: int, outputs: int) -> list[Gene
     return found
 
 
-def counters(genomes: Sequence[Genes]) -> tuple[int, int]:
-    """Return the first unused number of a connection and of a node."""
+def counters(genomes: Sequence[Genes]) -> tuple[int, int, int]:
+    """Return the first unused number of a connection, of a node and of a segment."""
     connections = [n for genome in genomes for n in genome["connections"]["innovation"]]
     nodes = [n for genome in genomes for n in genome["nodes"]["id"]]
-    return max(connections, default=-1) + 1, max(nodes, default=-1) + 1
+    segments = [n for genome in genomes for n in genome.get("plan", {}).get("number", ())]
+    first, second, third = (max(n, default=-1) + 1 for n in (connections, nodes, segments))
+    return first, second, third
 
 
 def _ends(genome: Genes) -> dict[int, tuple[int, int]]:
@@ -147,8 +158,13 @@ def _shifted(genome: Genes, by: int, fixed: int, plain: dict[int, tuple[int, int
     nodes, genes = genome["nodes"], genome["connections"]
     numbers = [connection(number) for number in genes["innovation"]]
     order = sorted(range(len(numbers)), key=numbers.__getitem__)
+    plan = {}
+    if "plan" in genome:
+        shifted = [n + by if n > FIRST_LIMBS else n for n in genome["plan"]["number"]]
+        plan = {"plan": {**genome["plan"], "number": shifted}}
     return {
         **genome,
+        **plan,
         "nodes": {**nodes, "id": [node(number) for number in nodes["id"]]},
         "connections": {
             "innovation": sorted(numbers),

@@ -96,6 +96,19 @@ def build_settings(
     return replace(whole, rates=rates, population=slots, **given)
 
 
+def build_plan_rates(chosen: spec.Evolution) -> neat.PlanRates | None:
+    """Build the mutation rates of body plans; None for bodies without a plan."""
+    if not isinstance(chosen.body, spec.GrownBody):
+        return None
+    genome = chosen.genome
+    return neat.PlanRates(
+        limits=chosen.body.genes,
+        structure=genome.body_rate,
+        values=genome.segment_rate,
+        vary=genome.shape_rate,
+    )
+
+
 def build_rates(chosen: spec.Evolution) -> neat.Rates:
     """Build NEAT's mutation rates."""
     genome = chosen.genome
@@ -108,4 +121,5 @@ def build_rates(chosen: spec.Evolution) -> neat.Rates:
         add_node=genome.add_node_rate,
         add_connection=genome.add_connection_rate,
         recurrent=getattr(chosen.control, "recurrent", False),
+        plan=build_plan_rates(chosen),
     )

@@ -169,11 +169,8 @@ def with_initial(
 def _counters(plan: Plan, genes: list[dict[str, Any]]) -> neat.Counters:
     if plan.encoding.room is None:
         return plan.counters
-    connections, nodes = counters(genes)
-    return neat.Counters(
-        jnp.maximum(plan.counters.innovation, connections),
-        jnp.maximum(plan.counters.node, nodes),
-    )
+    found = zip(vars(plan.counters).items(), counters(genes), strict=True)
+    return neat.Counters(**{name: jnp.maximum(first, used) for (name, first), used in found})
 
 
 def build_stop_limits(stop: spec.Stop) -> Limits:

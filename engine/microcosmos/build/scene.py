@@ -66,8 +66,17 @@ def build_task(
         plugin_measures=build_measures(scene),
         actuators=build_actuators(scene.control, body, dtype),
         period=build_period(scene.control),
+        form=build_form(body),
         trials=scene.task.trials,
     )
+
+
+def build_form(body: bodies.Body) -> tuple[float, ...]:
+    """Build the measures of form of a body that does not grow."""
+    pieces = len(np.unique(bodies.pieces(body.edges, len(body.positions))))
+    every = np.ones(len(body.positions), bool), np.ones(len(body.edges), bool)
+    found = bodies.growth.form(body.positions, body.edges, *every, pieces=pieces)
+    return tuple(float(np.float32(found[name])) for name in bodies.growth.FORMS)
 
 
 def build_actuators(

@@ -70,6 +70,7 @@ class BodyGraphEncoding:
             driven,
             length=self.capacity.spacing * jnp.max(_among(grown, grown.distance)),
             layout=world.layout,
+            form=_form(grown, bones),
             controller=network_commands(network, controls, phase),
         )
 
@@ -81,16 +82,10 @@ class BodyGraphEncoding:
     def size(self, genotype: BodyGraph) -> tuple[Array, Array]:
         return network_size(genotype.network, self.inputs + OUTPUTS)
 
-    def form(self, genotype: BodyGraph) -> dict[str, Array]:
-        """Return the measures of form, and the number of genes without room to grow."""
-        grown, bones = self.develop(genotype)
-        found = form(grown.positions, bones.edges, grown.present, bones.there, jnp)
-        return found | {"ungrown": grown.ungrown.astype(grown.positions.dtype)}
-
     def _place(
         self, world: World, start: State, grown: Grown, bones: Skeleton
     ) -> tuple[World, State]:
-        """Put the body into the middle of the one that the world and its start were built for."""
+        """Put the body where the one stands that the world and its start were built for."""
         dtype = start.positions.dtype
         ones, stiff = bones.there.astype(dtype), bones.bends.astype(dtype)
         rods = filaments.Rods(
@@ -148,6 +143,12 @@ class BodyGraphEncoding:
             rest_length=jnp.full(len(bones.edges), self.capacity.spacing, dtype),
             wave=None if self.waves is None else 2 * np.pi * self.waves * share,
         )
+
+
+def _form(grown: Grown, bones: Skeleton) -> dict[str, Array]:
+    """Return the measures of form."""
+    found = form(grown.positions, bones.edges, grown.present, bones.there, jnp)
+    return found | {"ungrown": grown.ungrown.astype(grown.positions.dtype)}
 
 
 def _loop(count: int, step: Any, state: Any) -> Any:

@@ -1,6 +1,6 @@
 """The interface of encodings, which turn genotypes into driven bodies."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
@@ -37,6 +37,8 @@ class Drive:
     """The same control for the native kernel; None: the kernel lacks it."""
     layout: Layout | None = None
     """Layout of a body that the genome has grown; None: that of the task's body."""
+    form: Mapping[str, Array] | None = None
+    """Measures of the form of a body that has grown; None: those of the task's body."""
 
 
 @runtime_checkable

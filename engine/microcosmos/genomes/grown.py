@@ -7,7 +7,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, PRNGKeyArray
 
 from ..bodies import Layout
-from ..world import State, World
+from ..bodies.growth import form
+from ..world import State, World, edges_there, grown_nodes
 from .commands import network_commands
 from .control import drive_feed_forward, network_size
 from .cppn import CPPN, evaluate, minimal
@@ -51,7 +52,11 @@ class Grown:
 
         driven = drive_feed_forward(read, controls, body.world, body.start)
         given = network_commands(genotype, body.controls, phase)
-        return replace(driven, length=body.length, controller=given)
+        there = edges_there(body.world)
+        shape = form(
+            body.start.positions, body.world.rods.edges, grown_nodes(body.world), there, jnp
+        )
+        return replace(driven, length=body.length, controller=given, form=shape)
 
     def grow(self, world: World, start: State, genotype: CPPN) -> Shaped:
         """Return the body that a network grows."""

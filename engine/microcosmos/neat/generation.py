@@ -8,9 +8,9 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 
-from ..genomes import CPPN
-from .crossover import crossover
-from .mutation import Novelty, mutate
+from ..genomes import Graph
+from .graphs import crossover, mutate
+from .mutation import Novelty
 from .numbering import Counters, number
 from .offspring import Ranking, allot, allowed, ranking, recorded, shares
 from .rng import below, draws
@@ -32,14 +32,14 @@ class Parentage(eqx.Module):
 
 
 @partial(jax.jit, static_argnames="settings")
-def first_species(population: CPPN, settings: Settings) -> Species:
+def first_species(population: Graph, settings: Settings) -> Species:
     """Divide the first population, evaluated in generation 0, into species."""
     empty = no_species(population, settings)
     return divide(population, empty, settings, jnp.zeros((), int))
 
 
 def next_generation(
-    population: CPPN,
+    population: Graph,
     fitness: Float[Array, "individual"],
     species: Species,
     counters: Counters,
@@ -49,7 +49,7 @@ def next_generation(
     outputs: int,
     key: PRNGKeyArray,
     generation: Int[Array, ""],
-) -> tuple[CPPN, Species, Counters, Int[Array, "individual 2"], Int[Array, "individual"]]:
+) -> tuple[Graph, Species, Counters, Int[Array, "individual 2"], Int[Array, "individual"]]:
     """Return the offspring of an evaluated population, species, counters, parents, operators.
 
     It is `breed`, `number` and `divide`, for a population that shares its counters with none.
@@ -70,7 +70,7 @@ def next_generation(
 
 
 def breed(
-    population: CPPN,
+    population: Graph,
     fitness: Float[Array, "individual"],
     species: Species,
     settings: Settings,
@@ -79,7 +79,7 @@ def breed(
     outputs: int,
     key: PRNGKeyArray,
     generation: Int[Array, ""],
-) -> tuple[CPPN, Novelty, Species, Int[Array, "individual 2"], Int[Array, "individual"]]:
+) -> tuple[Graph, Novelty, Species, Int[Array, "individual 2"], Int[Array, "individual"]]:
     """Return the offspring of an evaluated population, before their new genes have numbers.
 
     Also return these genes, the species to divide the numbered offspring into, parents and
@@ -150,14 +150,14 @@ def choose_parents(
 
 
 def reproduce(
-    population: CPPN,
+    population: Graph,
     parentage: Parentage,
     settings: Settings,
     inputs: int,
     outputs: int,
     *,
     key: PRNGKeyArray,
-) -> tuple[CPPN, Novelty]:
+) -> tuple[Graph, Novelty]:
     """Return the offspring, whose new genes have no numbers yet."""
 
     def child(one, other, crosses, mutated, keys):
@@ -174,7 +174,7 @@ def reproduce(
 
 
 def _renew_species(
-    population: CPPN,
+    population: Graph,
     species: Species,
     breeding: Bool[Array, "species"],
     now: Ranking,
@@ -202,5 +202,5 @@ def _adjusted_threshold(species: Species, settings: Settings) -> Float[Array, ""
     return jnp.maximum(moved, settings.threshold_step).astype(species.threshold.dtype)
 
 
-def _either(first: Bool[Array, ""], a: CPPN, b: CPPN) -> CPPN:
+def _either(first: Bool[Array, ""], a: Graph, b: Graph) -> Graph:
     return jax.tree.map(lambda x, y: jnp.where(first, x, y), a, b)

@@ -12,6 +12,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 
 from ..genomes import CPPN
+from .plans import PlanNovelty
 from .rates import Rates, bounded, one_of
 from .rng import Uniform, draws, rescaled
 from .rows import NONE, barrier
@@ -31,6 +32,8 @@ class Novelty(eqx.Module):
     node_row: Int[Array, "*batch"]
     split_innovation: Int[Array, "*batch"]
     """Number of the split connection, or −1."""
+    segment: PlanNovelty | None = None
+    """The new segment of a plan; None where genotypes have no plan."""
 
 
 def no_novelty(like: Novelty, children: int) -> Novelty:

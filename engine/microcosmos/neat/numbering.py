@@ -7,8 +7,10 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Int
 
-from ..genomes import CPPN
+from ..bodies.growth import FIRST_LIMBS, Plan
+from ..genomes import CPPN, BodyGraph, Graph
 from .mutation import Novelty
+from .plans import PlanNovelty
 from .rows import NONE
 
 
@@ -17,16 +19,42 @@ class Counters(eqx.Module):
 
     innovation: Int[Array, ""]
     node: Int[Array, ""]
+    segment: Int[Array, ""]
 
 
 def first_counters(inputs: int, outputs: int) -> Counters:
     """Return the counters after the genes of minimal networks."""
     # Strong types: weak ones would compile programs anew.
-    return Counters(jnp.asarray(inputs * outputs, int), jnp.asarray(inputs + outputs, int))
+    first = inputs * outputs, inputs + outputs, 1 + FIRST_LIMBS
+    return Counters(*(jnp.asarray(one, int) for one in first))
 
 
-def number(children: CPPN, novelty: Novelty, counters: Counters) -> tuple[CPPN, Counters]:
-    """Number the new genes of a batch; added connections come before split ones."""
+def number(children: Graph, novelty: Novelty, counters: Counters) -> tuple[Graph, Counters]:
+    """Number the new genes of a batch."""
+    if not isinstance(children, BodyGraph):
+        return number_network(children, novelty, counters)
+    assert novelty.segment is not None
+    network, counters = number_network(children.network, novelty, counters)
+    plan, many = number_plan(children.plan, novelty.segment, counters.segment)
+    counters = replace(counters, segment=counters.segment + many)
+    return BodyGraph(plan, network), counters
+
+
+def number_plan(
+    plans: Plan, novelty: PlanNovelty, first: Int[Array, ""]
+) -> tuple[Plan, Int[Array, ""]]:
+    """Number new segments from `first` on; also return how many numbers that took.
+
+    Segments that one mutation attaches to, or splits from, the same one get equal numbers.
+    """
+    rank, many = ranks(novelty.of, novelty.operation)
+    return plans._replace(number=_assign(plans.number, novelty.row, first + rank)), many
+
+
+def number_network(
+    children: CPPN, novelty: Novelty, counters: Counters
+) -> tuple[CPPN, Counters]:
+    """Number new genes of networks; added connections come before split ones."""
     take = jax.vmap(lambda values, row: values[row])
 
     def ends(rows):
@@ -45,8 +73,10 @@ def number(children: CPPN, novelty: Novelty, counters: Counters) -> tuple[CPPN, 
     innovation = _assign(innovation, second, first + 1)
     node_id = _assign(children.node_id, novelty.node_row, node)
     children = replace(children, innovation=innovation, node_id=node_id)
-    return children, Counters(
-        counters.innovation + many_added + 2 * many_split, counters.node + many_split
+    return children, replace(
+        counters,
+        innovation=counters.innovation + many_added + 2 * many_split,
+        node=counters.node + many_split,
     )
 
 

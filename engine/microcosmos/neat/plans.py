@@ -5,6 +5,7 @@ Segments are genes with innovation numbers, as connections are in NEAT (Stanley 
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -30,8 +31,9 @@ VALUES = ("place", "angle", "nodes", "curl", "stiffness")
 
 @dataclass(frozen=True)
 class PlanRates:
-    """Probabilities of changes to a plan."""
+    """Probabilities of changes to a plan, and the limits of its genes."""
 
+    limits: Segments
     structure: float
     """A child's plan has a structural mutation."""
     values: float
@@ -50,11 +52,17 @@ class PlanNovelty(eqx.Module):
     operation: Int[Array, "*batch"]
 
 
-def mutate_plan(
-    plan: Plan, rates: PlanRates, limits: Segments, *, key: PRNGKeyArray
-) -> tuple[Plan, PlanNovelty]:
+class Varied(NamedTuple):
+    """What a mutation did to a plan."""
+
+    novelty: PlanNovelty
+    changed: Bool[Array, ""]
+    """True if it was structural."""
+
+
+def mutate_plan(plan: Plan, rates: PlanRates, *, key: PRNGKeyArray) -> tuple[Plan, Varied]:
     """Return a varied plan, and its segment that needs a number."""
-    rows = limits.rows
+    limits, rows = rates.limits, rates.limits.rows
     decisions, segment, values = draws((6,), (SEGMENT_DRAWS,), (len(VALUES), rows), key=key)
     changes = decisions[0] < rates.structure
     operation = jnp.where(changes, below(jnp.asarray(len(OPERATIONS)), decisions[1]), NONE)
@@ -78,7 +86,8 @@ def mutate_plan(
         row = jnp.where(chosen, new, row)
     # A new segment stands behind the one it is attached to, or split from.
     of = jnp.where(row >= 0, found.number[found.parent[row]], NONE)
-    return found, PlanNovelty(row, of, jnp.where(row >= 0, operation, NONE))
+    novelty = PlanNovelty(row, of, jnp.where(row >= 0, operation, NONE))
+    return found, Varied(novelty, changes)
 
 
 def crossover_plan(fitter: Plan, other: Plan, *, key: PRNGKeyArray) -> Plan:

@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Array
 
 from ..genomes import ACTIVATIONS
+from .plans import PlanRates
 from .rng import LARGEST, Uniform
 
 Draw = Callable[[Array], Array]
@@ -65,6 +66,8 @@ class Rates:
     close a cycle; otherwise draw among the possible connections."""
     drop_split: bool = False
     """Remove a split connection instead of disabling it."""
+    plan: PlanRates | None = None
+    """Rates of a body plan; None: genotypes have none."""
 
 
 def bounded(values: Array, rates: Rates) -> Array:

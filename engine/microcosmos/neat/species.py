@@ -1,15 +1,16 @@
 """Species: networks close to one representative (Stanley and Miikkulainen 2002)."""
 
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
-from ..genomes import CPPN
-from .distance import Coefficients, distance
+from ..genomes import BodyGraph, Graph
+from .distance import Coefficients
+from .graphs import distance
 from .settings import Settings
 
 UNASSIGNED = -1
@@ -18,7 +19,7 @@ UNASSIGNED = -1
 class Species(eqx.Module):
     """Rows of species, living ones first, older before younger."""
 
-    representatives: CPPN
+    representatives: Graph
     alive: Bool[Array, "species"]
     number: Int[Array, "species"]
     """Unique over the whole run."""
@@ -40,7 +41,7 @@ class Species(eqx.Module):
 class Assignment(NamedTuple):
     """The species of each network while species are founded."""
 
-    representatives: CPPN
+    representatives: Graph
     count: Int[Array, ""]
     of: Int[Array, "individual"]
     nearest: Int[Array, "individual"]
@@ -52,8 +53,8 @@ class Assignment(NamedTuple):
 
 
 def assign(
-    population: CPPN,
-    representatives: CPPN,
+    population: Graph,
+    representatives: Graph,
     count: Int[Array, ""],
     threshold: Float[Array, ""],
     coefficients: Coefficients,
@@ -63,8 +64,8 @@ def assign(
     This is the paper's rule. Once all rows are taken, a network compatible with none joins the
     species with the nearest representative.
     """
-    individuals, dtype = population.weight.shape[0], population.weight.dtype
-    rows = representatives.weight.shape[0]
+    individuals, dtype = size_and_type(population)
+    rows, _ = size_and_type(representatives)
 
     def join(row, state: Assignment, founder=None) -> Assignment:
         one = jax.tree.map(lambda x: x[row], state.representatives)
@@ -101,9 +102,9 @@ def assign(
     return state._replace(of=jnp.where(state.of == UNASSIGNED, state.nearest, state.of))
 
 
-def no_species(population: CPPN, settings: Settings) -> Species:
+def no_species(population: Graph, settings: Settings) -> Species:
     """Return empty species for a first population."""
-    individuals, dtype = population.weight.shape[0], population.weight.dtype
+    individuals, dtype = size_and_type(population)
     rows = min(settings.max_species, individuals)
     return Species(
         representatives=jax.tree.map(
@@ -123,7 +124,7 @@ def no_species(population: CPPN, settings: Settings) -> Species:
 
 
 def divide(
-    population: CPPN, species: Species, settings: Settings, generation: Int[Array, ""]
+    population: Graph, species: Species, settings: Settings, generation: Int[Array, ""]
 ) -> Species:
     """Divide a population, evaluated in `generation`, into species.
 
@@ -178,6 +179,12 @@ def compacted(species: Species) -> Species:
         members=jnp.where(alive, species.members[order], 0),
         of=jnp.where(species.of < 0, UNASSIGNED, place[species.of]),
     )
+
+
+def size_and_type(population: Graph) -> tuple[int, Any]:
+    """Return the number of genotypes, and the type of their weights."""
+    network = population.network if isinstance(population, BodyGraph) else population
+    return network.weight.shape[0], network.weight.dtype
 
 
 def _column(flags, values):

@@ -11,6 +11,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int, PyTree
 
 from .. import units
+from ..bodies.growth import FORMS
 from ..genomes import Drive, Genotype
 from ..world import Measures, State, World, centre, flow, grown_nodes
 from .kinematics import kinematics
@@ -98,6 +99,8 @@ def _evaluate(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
     end, observed = simulate(driven)
     values, shown, valid = _summary(task, driven, end, observed)
     values["hidden_nodes"], values["connections"] = task.encoding.size(genotype)
+    constant = dict(zip(FORMS, map(jnp.asarray, task.form), strict=True))
+    values |= constant if driven.form is None else driven.form
     dtype = observed.centre.dtype
     measures = jnp.stack([values[name].astype(dtype) for name in task.measures])
     finite = all_finite(measures) & all_finite(genotype)

@@ -13,8 +13,9 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
+from ..bodies.growth import FORMS
 from ..filaments import Rest
-from ..genomes import CPPN, Drive, Genotype, Vector
+from ..genomes import CPPN, BodyGraph, Drive, Genotype, Vector
 from ..world import State, World
 from .blocks import mapped
 from .evaluation import fitness_of, in_trials, motion_of
@@ -24,7 +25,7 @@ from .task import Actuator, Task
 PARTS = ("genes", "rest_angle", "rest_length", "stretch", "shear", "bend", "viscosity")
 """Parts of a creature that derivatives are taken by."""
 
-CONSTANT = ("hidden_nodes", "connections", "nodes", "limited", "trial_spread")
+CONSTANT = ("hidden_nodes", "connections", "nodes", "limited", "trial_spread", *FORMS)
 """Measures without a derivative."""
 
 Values = dict[str, Float[Array, "..."]]
@@ -149,6 +150,8 @@ def genes_of(actuator: Any) -> Float[Array, "gene"]:
     """Return genes as one vector: a network's weights and biases, or a vector's values."""
     if isinstance(actuator, Vector):
         return jnp.asarray(actuator.values)
+    if isinstance(actuator, BodyGraph):
+        return genes_of(actuator.network)
     return jnp.concatenate([jnp.asarray(actuator.weight), jnp.asarray(actuator.bias)])
 
 
@@ -156,6 +159,8 @@ def with_genes(actuator: Any, genes: Float[Array, "gene"]) -> Any:
     """Return the actuator with other genes; see `genes_of`."""
     if isinstance(actuator, Vector):
         return Vector(genes)
+    if isinstance(actuator, BodyGraph):
+        return replace(actuator, network=with_genes(actuator.network, genes))
     assert isinstance(actuator, CPPN)
     weights = actuator.weight.shape[0]
     return replace(actuator, weight=genes[:weights], bias=genes[weights:])

@@ -7,12 +7,13 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
 from ..archive.poses import FRAMES, MOMENTS
+from ..bodies.growth import FORMS
 from ..world import Measures, State, World, grown_nodes, native
 from .measures import MEASURES
 from .window import Poses, Window
 
-ELSEWHERE = ("hidden_nodes", "connections", "trial_spread")
-"""Measures of the genome and of several trials."""
+ELSEWHERE = ("hidden_nodes", "connections", "trial_spread", *FORMS)
+"""Measures of the genome, of several trials and of the form."""
 SUMMARISED = tuple(name for name in MEASURES if name not in ELSEWHERE)
 """Measures in the order of the kernel's."""
 SHOWN = 7

@@ -3,6 +3,7 @@
 import equinox as eqx
 from jaxtyping import Array, Float, Int
 
+from ..bodies.growth import FORMS
 from ..filaments import Rest
 from ..genomes import Actuators, Encoding, Genotype
 from ..world import State, World
@@ -43,6 +44,8 @@ class Task(eqx.Module):
     placements: Int[Array, "placement 2"] | None = None
     """Shift of the energy, in cells, in each world that a creature is measured in; None: one
     world, unshifted."""
+    form: tuple[float, ...] = eqx.field(static=True, default=(0.0,) * len(FORMS))
+    """Measures of the form of a body that does not grow."""
     actuators: Actuators | None = None
     """Bounds on what the controllers of genotypes command; None: none."""
     plugin_measures: tuple[Measure, ...] = eqx.field(static=True, default=())

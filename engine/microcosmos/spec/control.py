@@ -106,6 +106,13 @@ class Genome(Part):
     """Probability that a new node splits a connection."""
     add_connection_rate: float = field(0.25, ge=0.0, le=1.0)
     """Probability that a new connection joins two nodes."""
+    body_rate: float = field(0.35, ge=0.0, le=1.0, source=OURS)
+    """Probability that the structure of a body plan changes, by one segment; the network then
+    stays."""
+    shape_rate: float = field(0.35, ge=0.0, le=1.0, source=OURS)
+    """Probability that numbers of a body plan vary."""
+    segment_rate: float = field(0.25, ge=0.0, le=1.0, source=OURS)
+    """Probability that one of them does: a segment's place, angle, nodes, curl, stiffness."""
 
     @model_validator(mode="after")
     def refuse_cramped(self) -> Self:

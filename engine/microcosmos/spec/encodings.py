@@ -169,7 +169,7 @@ class Grown(NetworkInputs, InheritedTraits):
 
 
 class BodyGraph(NetworkInputs):
-    """A plan of segments grows the body; a CPPN that knows each node's place in it drives it."""
+    """A plan of segments grows the body; a CPPN that knows the place of each node drives it."""
 
     encoding: Literal["body-graph"] = "body-graph"
     anatomy: Literal[True] = True

@@ -51,5 +51,12 @@ MEASURES: dict[str, Measure] = {
     "aspect": Measure("Width over length", "", 0.0, 1.0),
     "strouhal": Measure("Strouhal number", "", 1e-1, 1e3, "log10"),
     "trial_spread": Measure("Spread over trials", "fitness", 0.0, 0.1),
+    "segments": Measure("Segments", "", 0.5, 12.5),
+    "limbs": Measure("Free ends", "", -0.5, 11.5),
+    "rings": Measure("Rings", "", -0.5, 3.5),
+    "total_length": Measure("Total length", "cells", 0.0, 50.0),
+    "form_symmetry": Measure("Mirror symmetry at rest", "", 0.0, 1.0),
+    "form_aspect": Measure("Width over length at rest", "", 0.0, 1.0),
+    "ungrown": Measure("Segments without room", "", -0.5, 8.5),
 }
 """The measures, in the order in which they are recorded."""

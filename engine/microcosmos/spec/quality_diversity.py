@@ -1,12 +1,16 @@
 """The spec of a quality-diversity run, and its presets."""
 
-from typing import Literal, Self
+from typing import Any, Literal, Self
 
 from pydantic import model_validator
 
+from .body import GrownBody
+from .control import Genome
 from .emitters import USING_GRADIENTS, Emitter, NeatEmitter
+from .encodings import BodyGraph
 from .evolution import LITERAL, SMALL, Evolution
 from .search import Archive, Descriptor, Search, refuse_flat_axes
+from .world import Steric, World
 
 
 class QualityDiversity(Evolution[Literal["quality-diversity"], Search]):
@@ -50,6 +54,20 @@ PAPER = QualityDiversity(
     ),
 )
 
+FORM_AND_MOTION = (
+    Descriptor(name="limbs", low=-0.5, high=7.5, bins=8),
+    Descriptor(name="form_aspect", bins=8),
+    Descriptor(name="curvature_mean", bins=8),
+)
+ZOO: dict[str, Any] = {
+    "world": World(steric=Steric(smoothing="binomial")),
+    "body": GrownBody(builder="grown"),
+    "control": BodyGraph(),
+    "genome": Genome(max_nodes=32, max_connections=96),
+    "archive": Archive(descriptors=FORM_AND_MOTION),
+}
+"""Parts of the searches for bodies."""
+
 PRESETS = {
     "demo": (
         "A small demonstration, a minute on two cores; the fittest swim 0.6 lengths in "
@@ -60,6 +78,14 @@ PRESETS = {
         "24 nodes in 48 × 48 cells: 3,200 swimmers, a minute on two cores; the fittest "
         "swim 0.6 lengths in 1,000 steps",
         QualityDiversity(),
+    ),
+    "zoo": (
+        "Bodies that evolve: 25,600 swimmers that grow from plans of segments",
+        QualityDiversity(**ZOO, search=Search(generations=400)),
+    ),
+    "zoo-demo": (
+        "Bodies that evolve, a small demonstration",
+        QualityDiversity(**ZOO, search=Search(generations=80)),
     ),
     "paper": (
         "As in the paper: linear timer and efforts, two layers, repulsion; not force-free, and "

@@ -2,6 +2,14 @@
 
 from .form import FORMS, form
 from .plan import Capacity, Plan
-from .random import PLAN_DRAWS, SEGMENT_DRAWS, TYPES, Segments, random_plan, random_segment
+from .random import (
+    FIRST_LIMBS,
+    PLAN_DRAWS,
+    SEGMENT_DRAWS,
+    TYPES,
+    Segments,
+    random_plan,
+    random_segment,
+)
 from .skeleton import Skeleton, colours, skeleton
 from .sprouting import Grown, grow

@@ -4,11 +4,21 @@ from typing import Any
 
 import numpy as np
 
-FORMS = ("segments", "limbs", "rings", "total_length", "form_symmetry", "form_aspect")
+FORMS = (
+    "segments",
+    "limbs",
+    "rings",
+    "total_length",
+    "form_symmetry",
+    "form_aspect",
+    "ungrown",
+)
 """Names of the measures of form."""
 
 
-def form(positions: Any, edges: Any, present: Any, there: Any, xp: Any = np) -> dict[str, Any]:
+def form(
+    positions: Any, edges: Any, present: Any, there: Any, xp: Any = np, pieces: int = 1
+) -> dict[str, Any]:
     """Measure a body at rest: `positions` (node, 2) in cells, `edges` (edge, 2).
 
     `present` (node,) and `there` (edge,) mask what has grown. Segments are filaments between
@@ -16,6 +26,7 @@ def form(positions: Any, edges: Any, present: Any, there: Any, xp: Any = np) -> 
     cells. Symmetry is that of the best mirror along a principal axis through the mean node: 1
     less the mean distance from a mirrored node to the nearest node, over half the radius of
     gyration, at least 0. The aspect is the width over the length, of second moments.
+    No segment is `ungrown` for want of room where no plan says so.
     """
     reals = positions.dtype
     node = xp.arange(len(positions))
@@ -46,10 +57,11 @@ def form(positions: Any, edges: Any, present: Any, there: Any, xp: Any = np) -> 
     found = {
         "segments": xp.maximum(joined / 2, 1),
         "limbs": xp.sum(degree == 1).astype(reals),
-        "rings": links - count + 1,
+        "rings": links - count + pieces,
         "total_length": xp.sum(lengths),
         "form_symmetry": xp.maximum(1 - unlike, 0),
         "form_aspect": xp.sqrt(narrow),
+        "ungrown": 0,
     }
     return {name: xp.asarray(value, reals) for name, value in found.items()}
 

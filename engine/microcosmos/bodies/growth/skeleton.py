@@ -100,7 +100,7 @@ def skeleton(
 
 
 def ancestors(before: Any, xp: Any, loop: Callable | None) -> Any:
-    """Return which nodes (node, other) lie on the way of each one to the first, with its own."""
+    """Return which nodes (node, other) lie on the way from each to the first, itself too."""
     nodes = len(before)
     own = xp.eye(nodes, dtype=bool)
 
@@ -174,7 +174,7 @@ def _least_squares(way: Any, member: Any, there: Any, xp: Any) -> Any:
     """Return the pseudoinverse of the differences of a tree and rings that share no edge.
 
     `way` (item, pair): the pairs on the way to each item; `member` (ring, pair). Each ring
-    loses its mean, and all items theirs. Sums are of whole numbers: their order does not matter.
+    loses its mean, and all items theirs. Sums are of whole numbers, in any order.
     """
     reals = np.float32
     way, member = way.astype(reals), member.astype(reals)

@@ -90,7 +90,7 @@ class State(NamedTuple):
 
 
 def grow(plan: Plan, capacity: Capacity, xp: Any = np, loop: Callable | None = None) -> Grown:
-    """Return the body of a plan of arrays of `xp`; `loop(count, step, state)` repeats a step."""
+    """Return the body of a plan of arrays of `xp`; `loop(count, step, state)` repeats."""
     repeat = loop or _loop
     # Empty rows hold zeros, by which nothing can be divided.
     plan = plan._replace(nodes=xp.maximum(plan.nodes, 1), copies=xp.maximum(plan.copies, 1))

@@ -140,7 +140,7 @@ class NeatEmitter:
         descriptors: Array,
         extra_scores: dict[str, Array],
     ) -> Counters:
-        return _beyond(genotypes, Counters(jnp.asarray(0), jnp.asarray(0)))
+        return _beyond(genotypes, Counters(*(jnp.asarray(0),) * 3))
 
     def emit(
         self, repertoire: Any, emitter_state: Counters, key: Array
@@ -179,7 +179,8 @@ def _beyond(networks: CPPN, counters: Counters) -> Counters:
     """Return the first numbers after those of the networks and the given ones."""
     used = jnp.where(networks.connection_used, networks.innovation, -1)
     nodes = jnp.where(networks.node_used, networks.node_id, -1)
-    return Counters(
-        jnp.maximum(counters.innovation, jnp.max(used) + 1),
-        jnp.maximum(counters.node, jnp.max(nodes) + 1),
+    return replace(
+        counters,
+        innovation=jnp.maximum(counters.innovation, jnp.max(used) + 1),
+        node=jnp.maximum(counters.node, jnp.max(nodes) + 1),
     )

@@ -8,11 +8,20 @@ from pydantic import Field, field_validator, model_validator
 from ...naming import decode
 from .. import encodings, scene
 from ..base import Part
-from ..body import Body, shape
+from ..body import Body, GrownBody, shape
 from ..control import Control, NetworkInputs
 from ..encodings import MAX_GENES
 from ..scene import Gait
-from .cppn_genes import Connections, Nodes, check_genes
+from .cppn_genes import Connections, Float32, Nodes, Number, check_genes
+
+MAX_SEGMENTS = 32
+SHAPE_LIMITS = (
+    ("place", 0.0, 1.0),
+    ("angle", -3.2, 3.2),
+    ("curl", -6.3, 6.3),
+    ("stiffness", 0.0, 1.0),
+)
+"""Genes of segments that are numbers, and their ends."""
 
 
 class Network(Part):
@@ -21,7 +30,7 @@ class Network(Part):
     encoding: str
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    control: Control | encodings.Grown
+    control: Control | encodings.Grown | encodings.BodyGraph
     nodes: Nodes
     connections: Connections
 
@@ -45,6 +54,63 @@ class Grown(Network):
 
     encoding: Literal["cppn-body"]
     control: encodings.Grown
+
+
+class Segments(Part):
+    """Genes of a body plan, in order; each segment stands behind the one it is attached to."""
+
+    number: tuple[Number, ...] = Field(min_length=1, max_length=MAX_SEGMENTS)
+    parent: tuple[Number, ...] = Field(max_length=MAX_SEGMENTS)
+    place: Float32 = Field(max_length=8 * MAX_SEGMENTS)
+    angle: Float32 = Field(max_length=8 * MAX_SEGMENTS)
+    nodes: tuple[Number, ...] = Field(max_length=MAX_SEGMENTS)
+    curl: Float32 = Field(max_length=8 * MAX_SEGMENTS)
+    stiffness: Float32 = Field(max_length=8 * MAX_SEGMENTS)
+    mirrored: tuple[bool, ...] = Field(max_length=MAX_SEGMENTS)
+    copies: tuple[Number, ...] = Field(max_length=MAX_SEGMENTS)
+    closed: tuple[bool, ...] = Field(max_length=MAX_SEGMENTS)
+
+    @model_validator(mode="after")
+    def check(self) -> Self:
+        numbers = {name: decode(getattr(self, name)) for name, *_ in SHAPE_LIMITS}
+        columns = {name: getattr(self, name) for name in type(self).model_fields} | numbers
+        lengths = {name: len(column) for name, column in columns.items()}
+        if len(set(lengths.values())) > 1:
+            raise ValueError(f"`plan` must have columns of one length, got {lengths}")
+        if len(set(self.number)) < len(self.number):
+            raise ValueError(f"`plan.number` must differ, got {list(self.number)}")
+        for row, parent in enumerate(self.parent):
+            if parent >= max(row, 1):
+                raise ValueError(
+                    f"`plan.parent` must be an earlier row, got {parent} in row {row}"
+                )
+        for name, low, high in SHAPE_LIMITS:
+            for value in numbers[name]:
+                if not low <= value <= high:
+                    raise ValueError(
+                        f"`plan.{name}` must be from {low:g} to {high:g}, got {value:g}"
+                    )
+        return self
+
+    def refuse_unfit(self, body: GrownBody) -> None:
+        """Raise `ValueError` where a plan has more than its body allows."""
+        most = {"nodes": body.segment_nodes, "copies": body.copies}
+        for name, limit in most.items():
+            for value in getattr(self, name):
+                if not 1 <= value <= limit:
+                    raise ValueError(f"`plan.{name}` must be 1 to {limit}, got {value}")
+        if len(self.number) > body.segments:
+            raise ValueError(
+                f"`plan` must have at most {body.segments} segments, got {len(self.number)}"
+            )
+
+
+class BodyGraph(Network):
+    """The genes of a body plan, and of the network that drives the body."""
+
+    encoding: Literal["body-graph"]
+    control: encodings.BodyGraph
+    plan: Segments
 
 
 class Vector(Part):

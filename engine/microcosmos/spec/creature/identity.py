@@ -5,18 +5,19 @@ from typing import Annotated, Literal, Self
 from pydantic import Tag, model_validator
 
 from ..base import ENCODINGS, Part, name_in, one_of
-from ..body import Body, PluginBody
+from ..body import Body, GrownBody, PluginBody
 from ..coupling import Coupling
 from ..scene import Gait, Scene
 from ..search import Task
 from ..world import World
-from .genomes import CPPN, Direct, Fold, GaitGenome, Grown, PluginGenome, Weights
+from .genomes import CPPN, BodyGraph, Direct, Fold, GaitGenome, Grown, PluginGenome, Weights
 
 Genome = Annotated[
     Annotated[CPPN, Tag("cppn")]
     | Annotated[Direct, Tag("direct")]
     | Annotated[Weights, Tag("weights")]
     | Annotated[Grown, Tag("cppn-body")]
+    | Annotated[BodyGraph, Tag("body-graph")]
     | Annotated[GaitGenome, Tag("gait")]
     | Annotated[Fold, Tag("fold")]
     | Annotated[PluginGenome, Tag("plugin")],
@@ -46,6 +47,9 @@ class Identity(Part):
             raise ValueError(f"`body` must be a graph, got {self.body.builder!r}")
         if isinstance(self.genome, Direct | Weights | Fold | PluginGenome):
             self.genome.refuse_other_length(scene.body)
+        if isinstance(self.genome, BodyGraph):
+            assert isinstance(scene.body, GrownBody)  # Else the scene would not be valid.
+            self.genome.plan.refuse_unfit(scene.body)
         return self
 
     @property
