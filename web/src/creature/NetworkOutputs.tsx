@@ -18,7 +18,17 @@ interface Props {
   every: number | null;
 }
 
-export function NetworkOutputs({ network, selected, control, steps, playhead, every }: Props) {
+export function NetworkOutputs(props: Props) {
+  if (props.control.anatomy !== true) return <OutputMaps {...props} />;
+  return (
+    <div class="outputs">
+      <h3>{text.outputs}</h3>
+      <p class="quiet small">{text.outputsOfAnatomy}</p>
+    </div>
+  );
+}
+
+function OutputMaps({ network, selected, control, steps, playhead, every }: Props) {
   const [energy, setEnergy] = useState(0);
   const inputs = useMemo(() => inputsOf(control), [control]);
   const activations = useMemo(

@@ -79,6 +79,7 @@ export const text = {
   outputs: "Outputs",
   outputAxes: (across: string) =>
     `Across: ${across}. Up: position along the body. Point at a node, or move to it with Tab, to show its output.`,
+  outputsOfAnatomy: "Not drawn: the outputs depend on more than the position along the body.",
   settledSteps: (from: number, to: number) => `steps ${from} to ${to}, after the memory has settled`,
   wholeLife: "the whole simulation",
   onePeriod: (period: string) => `one period of ${period} steps`,
