@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from . import bodies, cylinder, flows, gradients, shapes, sheet, sweep, swimmers
+from . import bodies, cylinder, environments, flows, gradients, shapes, sheet, sweep, swimmers
 from .rows import Result
 
 
@@ -73,6 +73,12 @@ SECTIONS = (
         "radius, and this is the whole error: it falls with the radius. Bars are 20 %, and 10 "
         "% for the largest.",
         (Check(cylinder.check_array),),
+    ),
+    Section(
+        "An array of posts",
+        "Solid discs as obstacles of a world, in a periodic box of 64 × 64 cells, the flow "
+        "driven by a uniform force. The surface of the solid cells is a staircase.",
+        (Check(environments.check_posts),),
     ),
     Section(
         "A cylinder in a free stream",

@@ -89,6 +89,13 @@ def surrounded(given, *names):
     return replace(box, surroundings=around), start, rest
 
 
+def kept_out(given):
+    """A scene with solid cells that keep bodies out, in the middle of the world."""
+    box, start, rest = surrounded(given, "force", "solid")
+    away = jnp.float32(fields.away(np.asarray(box.surroundings.solid)))
+    return replace(box, barrier=fields.Barrier(away, jnp.float32(0.1))), start, rest
+
+
 def chain(nodes=20, spacing=1.0, **stiffness):
     return bodies.chain(nodes, spacing, **{**STIFF, **stiffness})
 
@@ -180,6 +187,12 @@ SCENES = {
     "bodies that touch each other and walls": lambda: surrounded(
         repelling(heap()), "force", "solid", "sponge"
     ),
+    "a body kept out of obstacles": lambda: kept_out(scene(chain(), matched=True)),
+    "bodies kept out of obstacles and of each other": lambda: kept_out(
+        repelling(heap(), (45, 51))
+    ),
+    "a body that has grown, kept out of obstacles": lambda: kept_out(grown(chain(), 13)),
+    "obstacles without fluid": lambda: kept_out(scene(heap(), fluid=False)),
     "walls without fluid": lambda: surrounded(scene(chain(), fluid=False), "force", "solid"),
     "a body that has grown": lambda: grown(chain(), 13),
     "a stiff body that has grown": lambda: grown(chain(), 13, matched=True),

@@ -12,6 +12,17 @@
 
 namespace microcosmos::ISA {
 
+// The cell before a position along a periodic axis, and the distance from it.
+inline int cell(float position, int size, float& share) {
+  constexpr float FAR = 4194304;  // Positions that are not finite stay within the box.
+  const float x = position > -FAR ? (position < FAR ? position : FAR) : -FAR;
+  int first = int(x);
+  first -= float(first) > x;
+  share = x - float(first);
+  first %= size;
+  return first < 0 ? first + size : first;
+}
+
 struct Place {
   int x, y;      // The cell before a node.
   float dx, dy;  // The node's distance from it.
@@ -124,16 +135,6 @@ class Density {
     size_t row;
     float smooth, slope;
   };
-
-  static int cell(float position, int size, float& share) {
-    constexpr float FAR = 4194304;  // Positions that are not finite stay within the box.
-    const float x = position > -FAR ? (position < FAR ? position : FAR) : -FAR;
-    int first = int(x);
-    first -= float(first) > x;
-    share = x - float(first);
-    first %= size;
-    return first < 0 ? first + size : first;
-  }
 
   // Take away what was touched in the step before.
   void clear(Range rows) {

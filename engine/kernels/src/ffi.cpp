@@ -66,8 +66,9 @@ std::string read_world(Rollout& r, Numbers number) {
   r.fixed_magic = number("magic");
   r.soft = number("soft");
   r.fluid = number("fluid"), r.repelled = number("repelled"), r.energetic = number("energetic");
-  r.driven = number("driven"), r.walled = number("walled"), r.damped = number("damped"),
-  r.observed = number("observed"), r.timed = number("timed"), r.threads = number("threads");
+  r.driven = number("driven"), r.walled = number("walled"), r.barred = number("barred"),
+  r.damped = number("damped"), r.observed = number("observed"), r.timed = number("timed"),
+  r.threads = number("threads");
   if (!number.error.empty()) return number.error;
   if (r.height < 4 || r.width < 4) return "a world has at least 4 cells along each axis";
   if (r.threads < 1 || r.threads > 1024) return "there is at least one thread, and at most 1024";
@@ -132,6 +133,8 @@ void name_rollout(Arrays& a, Rollout& r) {
   a.in("smoothing along rows", &r.smoothing_y, {when(r.repelled, 2), W});
   a.in("uniform force", &r.uniform_force, {when(r.driven, 2)});
   a.in("walls", &r.walls, {when(r.walled, H), W});
+  a.in("displacements across rows", &r.away_x, {when(r.barred, H), W});
+  a.in("displacements along rows", &r.away_y, {when(r.barred, H), W});
   a.in("strength of the sponge", &r.sponge, {when(r.damped, H), W});
   a.in("velocity of the sponge", &r.sponge_velocity, {when(r.damped, 2)});
   a.in("rest angles", &r.given_angle, {given, J});

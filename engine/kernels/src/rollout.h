@@ -37,6 +37,7 @@ enum Parameter {
   THETA_FEEDBACK,
   REPULSION,
   REPULSION_LIMIT,
+  BARRIER_LIMIT,
   STEP_LENGTHS
 };
 // Places of `control`; a bound of 0 is none.
@@ -55,6 +56,7 @@ struct Rollout {
   bool energetic;    // There is energy.
   bool driven;       // A uniform force acts on the fluid.
   bool walled;       // There are walls.
+  bool barred;       // Solid cells keep bodies out.
   bool damped;       // There is a sponge.
   bool matched;      // Shape matching; otherwise sweeps.
   bool soft;         // Of matched shapes: joints turn only by the share `bend` of their error.
@@ -76,6 +78,7 @@ struct Rollout {
   // Surroundings of the fluid.
   const float* uniform_force;    // (2)
   const int32_t* walls;          // (height, width) 1 in walls
+  const float *away_x, *away_y;  // (height, width) displacement of nodes, away from solid cells
   const float* sponge;           // (height, width) strength
   const float* sponge_velocity;  // (2)
 

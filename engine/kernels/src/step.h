@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "actuators.h"
+#include "barrier.h"
 #include "controller.h"
 #include "energy.h"
 #include "measuring.h"
@@ -51,6 +52,7 @@ class World {
         controller_(r),
         actuators_(b_, r, n_),
         repulsion_(b_, r, shares_),
+        barrier_(b_, r),
         energy_(b_, r, l_),
         motion_(b_),
         measuring_(b_, r),
@@ -75,10 +77,9 @@ class World {
         command(t, me);
         stop(CONTROL, me);
       }
-      if (r_.repelled) {
-        repulsion_.find(n_, me);
-        stop(REPELLING, me);
-      }
+      if (r_.repelled) repulsion_.find(n_, me);
+      if (r_.barred) barrier_.find(n_, me);
+      if (r_.repelled || r_.barred) stop(REPELLING, me);
       place_points(me.share);
       if (r_.fluid || r_.energetic) find_windows(p_, l_, WEIGHTS[r_.delta], me);
       stop(WINDOWS, me);
@@ -308,6 +309,7 @@ class World {
         y = (y + load(forcing_.target_y + second + i)) * 0.5f;
       }
       if (r_.repelled) x = x + load(repulsion_.drift_x + i), y = y + load(repulsion_.drift_y + i);
+      if (r_.barred) x = x + load(barrier_.drift_x + i), y = y + load(barrier_.drift_y + i);
       const Ints here = load(n_.here + i) > 0.0f;
       store(n_.x + i, load(n_.x + i) + (here ? x : Vec{})),
           store(n_.y + i, load(n_.y + i) + (here ? y : Vec{}));
@@ -329,6 +331,7 @@ class World {
   Controller controller_;
   Actuators actuators_;
   Repulsion repulsion_;
+  Barrier barrier_;
   Energy energy_;
   Motion motion_;
   Measuring measuring_;

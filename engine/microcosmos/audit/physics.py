@@ -194,8 +194,9 @@ def _agreement_rows(
         variants += [("no limits", "without limits", free, rest)]
     variants += [
         ("delta", f"with the delta {other_delta(scene)}", with_other_delta(scene, body), rest),
-        ("heading", "with a heading of 45°", turned(scene, body, HEADING), rest),
     ]
+    if not scene.world.obstacles:  # Else directions differ.
+        variants += [("heading", "with a heading of 45°", turned(scene, body, HEADING), rest)]
     return [
         _agreement_row(name, how, expected.get(name, along), _simulate_rest(task, shapes)[0])
         for name, how, task, shapes in variants

@@ -59,6 +59,7 @@ def refine(
             "width": 2 * place.width,
             "height": 2 * place.height,
             "energy": None,
+            "obstacles": tuple(one.scaled(2) for one in place.obstacles),
         }
     )
     fine = form.model_copy(

@@ -22,6 +22,7 @@ from ..bodies import extent
 from ..bodies.layout import MAX_NODES
 from .encodings import build_encoding
 from .plugins import build_measures, strokes_of
+from .surroundings import build_barrier, build_surroundings
 
 PROJECTIONS = {
     "none": coupling.unprojected,
@@ -142,7 +143,9 @@ def build_world(
         layout=build_matching(body, form.theta_feedback, form.nu_c, dtype),
         nu_c=_scalar(form.nu_c, dtype),
         steric=build_steric(box.steric, dtype),
+        barrier=build_barrier(box, dtype),
         energy=build_energy(box.energy, size, dtype),
+        surroundings=build_surroundings(box),
     )
 
 

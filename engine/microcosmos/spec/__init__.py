@@ -22,6 +22,7 @@ from .experiments import EXPERIMENTS, Experiment, Preset, Spec, parse
 from .folding import Digit, Folding, Picture, picture
 from .gaits import Gaits
 from .neuroevolution import Neuroevolution
+from .obstacles import Pattern, Post, Wall
 from .plugins import PluginUse, PluginVersion, plugins_in
 from .quality_diversity import QualityDiversity
 from .refinement import Refinement

@@ -87,6 +87,7 @@ TAGS: dict[str, tuple[str, ...]] = {
     "genome": ENCODINGS,
     "control": ENCODINGS,
     "targets": ("digit", "picture"),
+    "obstacles": ("post", "wall", "pattern"),
     "emitters": ("random", *NETWORK_OPERATORS, *VECTOR_OPERATORS),
 }
 """The tags of union fields, which pydantic adds to the paths of errors."""

@@ -11,6 +11,7 @@ from .control import Control, Genome
 from .coupling import Coupling, refuse_without_feasible
 from .emitters import Emitter, PopulationEmitter, gradients, refuse_unfit_emitters
 from .encodings import Controller, refuse_cramped
+from .placement import refuse_blocked
 from .scene import Scene, refuse_misfit, refuse_senseless
 from .search import Archive, Generations, Task
 from .world import Steric, World
@@ -67,7 +68,14 @@ class Evolution(Part, Generic[Name, SearchSpec]):
     def check_scene(self) -> Self:
         refuse_misfit(self.world, self.body, self.control)
         refuse_cramped(self.control, self.genome)
+        refuse_blocked(self.world, self.body, self.task)
         refuse_senseless(self.world, self.control, self.task)
+        again = self.search.reevaluation
+        if again is not None and again.pose and self.world.solid is not None:
+            raise ValueError(
+                "`search.reevaluation.pose` must be false where the world has obstacles, which "
+                "a body at a random place may start in; got true"
+            )
         refuse_unfit_emitters(self.emitters, self.control.encoding)
         if self.search.feasible:
             refuse_without_feasible(self.coupling, "search.feasible")

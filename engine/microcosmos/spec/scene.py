@@ -21,6 +21,7 @@ from .encodings import (
     max_stretch,
     refuse_unfit,
 )
+from .placement import refuse_blocked
 from .plugins import OR_PLUGIN, MaybePlugin, PluginVersions, complete_plugin
 from .search import Task
 from .world import World
@@ -81,6 +82,7 @@ class Scene(Part):
         refuse_senseless(self.world, self.control, self.task)
         if isinstance(self.control, Fold):  # It may overlap itself and reach around the box.
             return self
+        refuse_blocked(self.world, self.body, self.task)
         if not isinstance(self.control, Gait):
             refuse_misfit(self.world, self.body, self.control)
             return self

@@ -2,9 +2,11 @@
 
 from typing import Literal, Self
 
+import numpy as np
 from pydantic import model_validator
 
 from .base import Part, field, sourced
+from .obstacles import Obstacle, solid_cells
 from .sources import LATTICE, OURS, PAPER, TRT
 
 
@@ -54,6 +56,10 @@ class Energy(Part):
         return self
 
 
+MAX_SOLID = 0.75
+"""Largest share of the box that obstacles may fill."""
+
+
 class World(Part):
     """A periodic box of fluid."""
 
@@ -73,6 +79,25 @@ class World(Part):
     """Repulsion between nodes; empty: filaments pass through each other."""
     energy: Energy | None = None
     """Packets of energy; empty: none."""
+    obstacles: tuple[Obstacle, ...] = field((), max_length=64, source=OURS)
+    """Fixed obstacles, which hold the fluid at rest on their surface and keep bodies out;
+    empty: none."""
+
+    @property
+    def solid(self) -> np.ndarray | None:
+        """Return the mask (x, y) of cells without fluid; None: there are none."""
+        if not self.obstacles:
+            return None
+        return solid_cells(self.obstacles, (self.width, self.height))
+
+    @model_validator(mode="after")
+    def refuse_full(self) -> Self:
+        if (solid := self.solid) is not None and (found := solid.mean()) > MAX_SOLID:
+            raise ValueError(
+                f"`obstacles` must leave at least {1 - MAX_SOLID:.0%} of the box to the fluid, "
+                f"got {1 - found:.0%}"
+            )
+        return self
 
     @model_validator(mode="after")
     def refuse_unstable(self) -> Self:

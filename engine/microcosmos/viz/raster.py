@@ -1,4 +1,4 @@
-"""One frame of a replay as a picture: vorticity, the path so far, the body.
+"""One frame of a replay as a picture: vorticity, obstacles, the path so far, the body.
 
 The picture shows the periodic box once, x to the right and y up. The colours are the page's.
 """
@@ -43,6 +43,14 @@ class View:
         x = self.centre[0] + ((np.arange(columns) + 0.5) / columns - 0.5) * width
         y = self.centre[1] - ((np.arange(rows) + 0.5) / rows - 0.5) * height
         return _weights(y, height) @ field.astype(np.float32).T @ _weights(x, width).T
+
+    def nearest(self, field: np.ndarray) -> np.ndarray:
+        """Return the values (row, column) of a periodic field's cells (x, y) at pixels."""
+        (rows, columns), (width, height) = self.shape, self.size
+        x = self.centre[0] + ((np.arange(columns) + 0.5) / columns - 0.5) * width
+        y = self.centre[1] - ((np.arange(rows) + 0.5) / rows - 0.5) * height
+        x, y = np.rint(x).astype(int) % width, np.rint(y).astype(int) % height
+        return field[x[None, :], y[:, None]]
 
 
 def view(size: tuple[int, int], width: int, centre: np.ndarray) -> View:
@@ -89,6 +97,8 @@ class Theme:
     ink: Colour
     halo: Colour
     """Colour between the body and the flow."""
+    solid: Colour
+    """Colour of obstacles."""
 
 
 THEMES = {
@@ -96,11 +106,13 @@ THEMES = {
         ((20, 66, 138), (92, 152, 206), (246, 248, 249), (228, 126, 98), (146, 24, 34)),
         ink=(18, 34, 44),
         halo=(255, 255, 255),
+        solid=(128, 140, 148),
     ),
     "dark": Theme(
         ((148, 206, 255), (44, 110, 178), (11, 20, 26), (178, 72, 48), (255, 190, 148)),
         ink=(253, 248, 236),
         halo=(4, 10, 14),
+        solid=(92, 104, 112),
     ),
 }
 
@@ -125,6 +137,7 @@ def frame(
     # The strongest vorticity has the first or last colour.
     share = seen.sampled(replay.levels[number]) * np.float32(replay.quantum / replay.strongest)
     picture = _table(theme)[np.rint(255 * np.clip(share, -1, 1)).astype(np.int16) + 255]
+    _blend(picture, colours.solid, seen.nearest(replay.solid).astype(np.float32))
     dots = seen.pixels(_grid(seen))
     _blend(picture, colours.ink, 0.22 * coverage(distance(dots, dots, seen.shape, 2), 2))
     if way:

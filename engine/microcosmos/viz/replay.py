@@ -28,7 +28,7 @@ from ..genomes import Drive
 from ..spec import Gait, Scene, Task, shape
 from ..spec.creature import fitness_of
 from ..spec.estimate import placements, simulation_bytes
-from .replay_file import REPLAY_FORMAT
+from .replay_file import REPLAY_FORMAT, solid_runs
 
 FRAMES = 250
 """Largest number of frames besides the first."""
@@ -82,6 +82,8 @@ def record(file: Mapping[str, Any]) -> bytes:
         "force_free": scene.coupling.force_free,
         "device": device_kind(),
     }
+    if (solid := scene.world.solid) is not None:
+        header["solid"] = solid_runs(solid)
     there = present_parts(scene, present)
     return _pack(
         header,

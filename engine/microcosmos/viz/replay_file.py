@@ -89,6 +89,12 @@ class Replay:
         return sums.swapaxes(0, 1) / count[:, None]
 
     @cached_property
+    def solid(self) -> np.ndarray:
+        """(x, y): the mask of cells without fluid."""
+        runs = self.header.get("solid", [prod(self.size)])
+        return np.repeat(np.arange(len(runs)) % 2 == 1, runs).reshape(self.size)
+
+    @cached_property
     def strongest(self) -> float:
         """The vorticity that 1 % of the nonzero values exceed."""
         counts = np.bincount(self.levels.ravel().view(np.uint8), minlength=256)
@@ -150,7 +156,7 @@ def _header(data: bytes) -> tuple[dict[str, Any], int]:
 def _check(header: dict[str, Any]) -> None:
     for field in ("frames", "every", "nodes"):
         _need(_is_count(header.get(field)), field, "a whole number from 1", header.get(field))
-    size = header.get("size")
+    size: Any = header.get("size")
     _need(_is_pair(size, _is_count), "size", "width and height", size)
     _check_pairs(header, "edges", header["nodes"])
     _check_pairs(header, "joints", len(header["edges"]))
@@ -164,6 +170,8 @@ def _check(header: dict[str, Any]) -> None:
     _need(planes in (0, 1, frames), "energy.frames", f"0, 1 or {frames}", planes)
     if "member" in header:
         _check_member(header["member"], header["nodes"])
+    if "solid" in header:
+        _check_solid(header["solid"], prod(size))
 
 
 def _check_pairs(header: dict[str, Any], field: str, count: int) -> None:
@@ -179,6 +187,21 @@ def _check_member(member: Any, nodes: int) -> None:
     _need(isinstance(member, list) and len(member) == nodes, "member", needed, member)
     whole = all(type(k) is int for k in member)
     _need(whole and set(member) == set(range(len(set(member)))), "member", needed, member)
+
+
+def _check_solid(runs: Any, cells: int) -> None:
+    needed = f"lengths of runs that sum to {cells} cells"
+    _need(isinstance(runs, list), "solid", needed, runs)
+    whole = all(type(k) is int and k >= 0 for k in runs)
+    _need(whole and sum(runs) == cells, "solid", needed, runs)
+
+
+def solid_runs(solid: np.ndarray) -> list[int]:
+    """Return the lengths of runs of cells of fluid, of solid, of fluid and so on."""
+    flat = solid.ravel()
+    changes = np.flatnonzero(np.diff(flat)) + 1
+    runs = np.diff(np.concatenate([[0], changes, [len(flat)]])).tolist()
+    return [0, *runs] if flat[0] else runs
 
 
 def _is_count(value: Any) -> bool:

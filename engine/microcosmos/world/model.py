@@ -58,6 +58,8 @@ class World(eqx.Module):
     nu_c: Float[Array, ""] | None = None
     """Viscosity at which actuators have half of their strength; None: full strength."""
     steric: fields.Steric | None = None
+    barrier: fields.Barrier | None = None
+    """What keeps bodies out of solid cells; None: nothing."""
     energy: fields.Energy | None = None
     surroundings: fluid.Surroundings = fluid.Surroundings()
     present: Bool[Array, "node"] | None = None

@@ -277,7 +277,8 @@ def _parameters(world: World) -> Array:
     absent = [0.0 if one is None else one for one in (world.nu_c, rate, diffusion)]
     steric = world.steric
     repulsion = (0.0, 0.0) if steric is None else (steric.strength, steric.limit)
+    barred = 0.0 if world.barrier is None else world.barrier.limit
     factors = (form.force_factor, form.theta_feedback)
-    values = [world.viscosity, *absent, *bounds, *factors, *repulsion]
+    values = [world.viscosity, *absent, *bounds, *factors, *repulsion, barred]
     lengths = coupling.step_lengths(form.forcing_iterations)
     return jnp.stack([jnp.asarray(one, jnp.float32) for one in (*values, *lengths)])

@@ -1,4 +1,4 @@
-"""Nodes: steric repulsion, sensing and collecting energy."""
+"""Nodes: repulsion from each other and from obstacles, sensing and collecting energy."""
 
 from dataclasses import replace
 
@@ -42,12 +42,18 @@ def collect(world: World, state: State, at: coupling.Windows) -> State:
 
 
 def repel(world: World, positions: Vectors) -> tuple[Vectors, Vectors]:
-    """Return steric displacements within bodies, and the rigid motion of each body by contact.
+    """Return steric displacements within bodies, and the rigid motion of each body by contact
+    with others and with obstacles.
 
     The forcing on a body has neither force nor torque, which would remove its rigid motion; so
     this motion is returned apart and moves the body after the fluid's response. Displacements
     within bodies have no rigid part, so that no body moves itself.
     """
+    within, drift = _apart(world, positions)
+    return within, drift if world.barrier is None else drift + _kept_out(world, positions)
+
+
+def _apart(world: World, positions: Vectors) -> tuple[Vectors, Vectors]:
     if world.steric is None:
         return jnp.zeros_like(positions), jnp.zeros_like(positions)
     at = coupling.masked(coupling.windows(positions, world.size, coupling.HAT), world.present)
@@ -79,6 +85,31 @@ def _turned(
     push = jnp.sqrt(groups.largest(here * jnp.sum(moved * moved, 1)) + 1e-24)
     most = jnp.minimum(limit / tip, push * tip / (mean + 1e-24))
     return turned * groups.per_node(jnp.minimum(1.0, most))[:, None]
+
+
+def _kept_out(world: World, positions: Vectors) -> Vectors:
+    """Return the rigid motion of each body away from solid cells.
+
+    It is the mean of the nodes' displacements, each weighted by its length: a body of many
+    nodes, one of which touches, moves like that node. It turns as far as the displacements
+    that are left turn its farthest node. Both are limited.
+    """
+    barrier, groups = world.barrier, world.groups
+    assert barrier is not None
+    at = coupling.masked(coupling.windows(positions, world.size, coupling.HAT), world.present)
+    away = coupling.interpolate(barrier.away, at)
+    weight = jnp.sqrt(jnp.sum(away * away, 1) + 1e-24)
+    touching = groups.total(weight) + 1e-9
+    moved = groups.per_node(groups.total(weight[:, None] * away) / touching[:, None])
+    here = _weights(world, positions)
+    centre = groups.total(here[:, None] * positions) / groups.total(here)[:, None]
+    arm, left = positions - groups.per_node(centre), away - moved
+    torque = groups.total(weight * (arm[:, 0] * left[:, 1] - arm[:, 1] * left[:, 0]))
+    tip = jnp.sqrt(groups.largest(here * jnp.sum(arm * arm, 1)) + 1e-24)
+    turn = torque / touching / tip
+    turn = jnp.clip(turn, -barrier.limit, barrier.limit) / tip
+    turned = groups.per_node(turn)[:, None] * jnp.stack([-arm[:, 1], arm[:, 0]], 1)
+    return fields.capped(moved, barrier.limit) + turned
 
 
 def _weights(world: World, positions: Vectors) -> Scalars:

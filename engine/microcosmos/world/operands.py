@@ -74,19 +74,24 @@ def smoothing_of(world: World) -> list[Array]:
 
 
 def surroundings_of(world: World) -> tuple[list[Array], Numbers]:
-    """Return the uniform force, the walls and the sponge, and which of them there are."""
+    """Return the uniform force, the walls, what keeps bodies out of them, and the sponge, and
+    which of these there are."""
     around, width = world.surroundings, world.size[1]
     force, solid, sponge = around.force, around.solid, around.sponge
     walls = jnp.zeros((0, width), jnp.int32) if solid is None else jnp.asarray(solid, jnp.int32)
+    away = _nothing(2, 0, width) if world.barrier is None else world.barrier.away
     arrays = [
         _nothing(0) if force is None else jnp.asarray(force, jnp.float32),
         walls,
+        jnp.asarray(away[0], jnp.float32),
+        jnp.asarray(away[1], jnp.float32),
         _nothing(0, width) if sponge is None else jnp.asarray(sponge.strength, jnp.float32),
         _nothing(0) if sponge is None else jnp.asarray(sponge.velocity, jnp.float32),
     ]
     numbers: Numbers = {
         "driven": force is not None,
         "walled": solid is not None,
+        "barred": world.barrier is not None,
         "damped": sponge is not None,
     }
     return arrays, numbers

@@ -12,6 +12,7 @@ from microcosmos.spec import Gaits
 from validation import (
     bodies,
     cylinder,
+    environments,
     flows,
     gradients,
     scenes,
@@ -51,6 +52,9 @@ CHECKS = {
         bodies.check_stability, (0.001, 0.01, 2.0), 2, 1500
     ),
     "the drag of an array of cylinders is that of the series": cylinder.check_array,
+    "the drag of an array of posts is that of the series": partial(
+        environments.check_posts, (5,)
+    ),
     "a cylinder at Re 20 has the published drag": partial(cylinder.check, RE_20, 0.12),
     "a cylinder at Re 40 has the published drag": partial(cylinder.check, RE_40, 0.12),
     "the wake of a cylinder swings at the published frequency": partial(cylinder.check, WAKE),
