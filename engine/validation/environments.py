@@ -1,15 +1,18 @@
 """Boxes that specs describe: obstacles and flows, against closed forms and published drag."""
 
+from typing import Literal
+
 import jax.numpy as jnp
 import numpy as np
 
-from microcosmos import fluid, spec
-from microcosmos.build.surroundings import build_surroundings
+from microcosmos import bodies, fluid, spec, world
+from microcosmos.build import build_flow, build_start, build_surroundings, build_world
 
+from . import scenes
 from .cylinder import SANGANI, series
-from .flows import after, velocity
-from .paths import JAX, Path
-from .rows import Result, at_most
+from .flows import EXACT, after, distance, velocity
+from .paths import JAX, Path, roll
+from .rows import Result, at_most, close
 
 
 def post_drag(radius: float, cell: int, path: Path = JAX) -> float:
@@ -37,4 +40,64 @@ def check_posts(radii: tuple[float, ...] = (3, 5, 8), path: Path = JAX) -> Resul
         error = post_drag(radius, cell, path) / series(np.pi * radius**2 / cell**2) - 1
         what = f"drag of a post in an array, R = {radius:g}: relative error"
         rows.append(at_most(what, abs(error), 0.05, SANGANI))
+    return Result(rows)
+
+
+Kind = Literal["poiseuille", "shear", "vortices"]
+SIDE = 64
+
+
+def in_flow(
+    kind: Kind, body: bodies.Body, place: tuple[float, float], viscosity: float, speed: float
+) -> tuple[world.World, world.State]:
+    """Return a body at a place in a flow of a spec, and its first state."""
+    flow = spec.Flow(kind=kind, speed=speed)
+    box = spec.World(width=SIDE, height=SIDE, viscosity=viscosity, flow=flow)
+    found = build_world(box, spec.Coupling(), body)
+    arms = body.positions - body.positions.mean(0)
+    return found, build_start(box, found, arms + np.array(place))
+
+
+def flow_error(kind: Kind, viscosity: float, steps: int, path: Path = JAX) -> float:
+    """Return how far the fluid of a spec is from its closed form after `steps`."""
+    flow = spec.Flow(kind=kind, speed=0.01)
+    box = spec.World(width=SIDE, height=SIDE, viscosity=viscosity, flow=flow)
+    exact, around = build_flow(box), build_surroundings(box)
+    assert exact is not None
+    pair = bodies.chain(2, 1.0)
+    start = build_start(box, build_world(box, spec.Coupling(), pair), pair.positions)
+    f = after(start.populations, steps, viscosity, around=around, path=path)
+    force = exact.force if exact.force.ndim == 3 else exact.force[:, None, None]
+    found = velocity(f, jnp.broadcast_to(jnp.asarray(force, jnp.float32), (2, SIDE, SIDE)))
+    fluids = np.ones((SIDE, SIDE), bool) if box.solid is None else ~box.solid
+    return distance(np.asarray(found)[:, fluids], exact.velocity[:, fluids])
+
+
+def check_flows(steps: int = 10_000, path: Path = JAX) -> Result:
+    """Flows stay as they start. Λ is capped, as for creatures."""
+    rows = []
+    for kind in ("poiseuille", "shear", "vortices"):
+        for viscosity in (0.01, 0.05, 0.5):
+            error = flow_error(kind, viscosity, steps, path)
+            what = f"{kind}, ν {viscosity:g}, after {steps:,} steps: relative L2"
+            rows.append(at_most(what, error, 2e-3, EXACT))
+    return Result(rows)
+
+
+def check_carried(steps: int = 4000, path: Path = JAX) -> Result:
+    """A ring turns with half the shear; two nodes across the flow move at its speed."""
+    ring = bodies.ring(16, 1.0)
+    box, start = in_flow("shear", ring, (SIDE / 2, SIDE / 2), 0.1, 0.02)
+    end, _ = roll(path, box, start, scenes.held(ring, steps, "float32"))
+    rate = -0.5 * 0.02 * 2 * np.pi / SIDE * np.cos(np.pi)
+    turned = float(np.mean(np.asarray(end.angles - start.angles))) / (rate * steps)
+    rows = [close("ring in shear: turn over half the shear", turned, 1.0, 0.04, EXACT)]
+    pair, height = bodies.chain(2, 1.0), 16.0
+    box, start = in_flow("poiseuille", pair, (SIDE / 2, height), 0.1, 0.02)
+    end, _ = roll(path, box, start, scenes.held(pair, steps, "float32"))
+    moved = np.asarray(end.positions - start.positions).mean(0)
+    across, y = SIDE - 1, height - 0.5
+    local = 4 * 0.02 * y * (across - y) / across**2
+    what = "tracer in Poiseuille flow: speed over that of the flow"
+    rows.append(close(what, float(moved[0]) / (local * steps), 1.0, 0.01, EXACT))
     return Result(rows)

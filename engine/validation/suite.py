@@ -41,8 +41,7 @@ SECTIONS = (
             Check(flows.check_shear_wave),
             Check(
                 flows.check_kolmogorov,
-                "The kernel does not run Kolmogorov flow: its force varies from cell to cell, "
-                "and a world has only a uniform force.",
+                "The kernel does not run the fluid alone: see the flows of a world below.",
             ),
             Check(flows.check_taylor_green),
         ),
@@ -58,6 +57,14 @@ SECTIONS = (
             Check(flows.check_poiseuille, FLOAT64),
             Check(partial(flows.check_poiseuille, dtype="float32")),
         ),
+    ),
+    Section(
+        "Flows of a world",
+        "The flows that a spec offers, in 64 × 64 cells, started in their steady state and "
+        "kept up by their force, Λ capped as for creatures; then bodies that they carry: a "
+        "ring where the shear is strongest, and two nodes between the wall and the middle of "
+        "a channel.",
+        (Check(environments.check_flows), Check(environments.check_carried)),
     ),
     Section(
         "Conservation",

@@ -68,7 +68,7 @@ def fed(body, size=(48, 48), *, rate=None, diffusion=None, **options):
 
 
 def surrounded(given, *names):
-    """A scene with some of a uniform force, walls and a sponge.
+    """A scene with some of the forces, walls and a sponge.
 
     The body in the middle touches the walls: a channel across the edges of the world, and
     pillars. The sponge covers a third of the world, and of the walls.
@@ -80,10 +80,12 @@ def surrounded(given, *names):
     solid[x - 4 : x - 1, y + 1 : y + 3] = solid[x + 7, y] = True
     strength[: box.size[0] // 3] = np.linspace(0, 0.3, box.size[0] // 3)[:, None]
     sponge = fluid.Sponge(jnp.float32(strength), jnp.asarray([0.02, -0.01], jnp.float32))
+    varied = fluid.vortices(box.size, 0.02, float(box.viscosity), 2).force
     parts = {
         "force": jnp.asarray([2e-5, -1e-5], jnp.float32),
         "solid": jnp.asarray(solid),
         "sponge": sponge,
+        "force_field": jnp.float32(varied),
     }
     around = fluid.Surroundings(**{name: parts[name] for name in names})
     return replace(box, surroundings=around), start, rest
@@ -175,6 +177,12 @@ SCENES = {
     "energy for two layers": lambda: fed(chain(), matched=True, rate=0.1, layers=2),
     "energy without fluid": lambda: fed(chain(), rate=0.1, diffusion=0.05, fluid=False),
     "a uniform force": lambda: surrounded(scene(chain(), matched=True), "force"),
+    "a force of its own in every cell": lambda: surrounded(
+        scene(chain(), (45, 51), matched=True), "force_field"
+    ),
+    "both forces and walls": lambda: surrounded(
+        scene(chain(), matched=True), "force", "force_field", "solid"
+    ),
     "walls": lambda: surrounded(scene(chain(), matched=True), "solid"),
     "a sponge": lambda: surrounded(scene(chain(), (45, 51), matched=True), "sponge"),
     "walls for two layers": lambda: surrounded(scene(chain(), (45, 51), layers=2), "solid"),

@@ -235,9 +235,11 @@ class Fuzzed {
 
   void surround() {
     const size_t cells = size_t(r.height) * r.width;
-    r.driven = few(), r.walled = few(), r.barred = few(), r.damped = few();
+    r.driven = few(), r.varied = few(), r.walled = few(), r.barred = few(), r.damped = few();
     r.smoothing_x = weights(r.height), r.smoothing_y = weights(r.width);
     r.uniform_force = numbers(r.driven * 2, -1e-3f, 1e-3f);
+    r.force_x = numbers(r.varied * cells, -1e-3f, 1e-3f);
+    r.force_y = numbers(r.varied * cells, -1e-3f, 1e-3f);
     r.walls = indices(r.walled * cells, 0, 2);
     r.away_x = numbers(r.barred * cells, -2, 2), r.away_y = numbers(r.barred * cells, -2, 2);
     r.sponge = numbers(r.damped * cells, 0, 1);

@@ -66,9 +66,9 @@ std::string read_world(Rollout& r, Numbers number) {
   r.fixed_magic = number("magic");
   r.soft = number("soft");
   r.fluid = number("fluid"), r.repelled = number("repelled"), r.energetic = number("energetic");
-  r.driven = number("driven"), r.walled = number("walled"), r.barred = number("barred"),
-  r.damped = number("damped"), r.observed = number("observed"), r.timed = number("timed"),
-  r.threads = number("threads");
+  r.driven = number("driven"), r.varied = number("varied"), r.walled = number("walled"),
+  r.barred = number("barred"), r.damped = number("damped"), r.observed = number("observed"),
+  r.timed = number("timed"), r.threads = number("threads");
   if (!number.error.empty()) return number.error;
   if (r.height < 4 || r.width < 4) return "a world has at least 4 cells along each axis";
   if (r.threads < 1 || r.threads > 1024) return "there is at least one thread, and at most 1024";
@@ -132,6 +132,8 @@ void name_rollout(Arrays& a, Rollout& r) {
   a.in("smoothing across rows", &r.smoothing_x, {when(r.repelled, 2), H});
   a.in("smoothing along rows", &r.smoothing_y, {when(r.repelled, 2), W});
   a.in("uniform force", &r.uniform_force, {when(r.driven, 2)});
+  a.in("forces across rows", &r.force_x, {when(r.varied, H), W});
+  a.in("forces along rows", &r.force_y, {when(r.varied, H), W});
   a.in("walls", &r.walls, {when(r.walled, H), W});
   a.in("displacements across rows", &r.away_x, {when(r.barred, H), W});
   a.in("displacements along rows", &r.away_y, {when(r.barred, H), W});

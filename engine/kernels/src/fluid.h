@@ -34,6 +34,7 @@ struct Lattice {
   Array<uint8_t> crossing;       // Rows whose windows continue beyond the edge.
   List<Band> bands;              // Together all rows.
   float push_x = 0, push_y = 0;  // The uniform force.
+  Floats pushes_x, pushes_y;     // The force in each cell, if it varies.
 
   Lattice(int height, int width, int parts)
       : height(height), width(width), blocks((width + BLOCK - 1) / BLOCK) {
@@ -51,6 +52,9 @@ struct Lattice {
       bands.emplace_back(int(height * n / parts), int(height * (n + 1) / parts), blocks);
   }
 };
+
+// Forces on the fluid besides those of bodies: none, one for all cells, or one for each.
+enum Drive { UNDRIVEN, UNIFORM, VARIED };
 
 struct Rates {
   float keep, same, other, even, even45, forced3, forced9, odd1, odd2, push1, push2;
@@ -104,8 +108,8 @@ INLINE Vec collide(Vec* f, Vec fx, Vec fy, const Rates& k) {
 
 // Collide and stream the rows of a band in place, one at a time: what goes to the next row waits
 // until that has been read, what goes to the row before is written at once. What leaves the band
-// waits for `join`. With DRIVEN, the uniform force acts on every cell.
-template <bool FILLED, bool DRIVEN>
+// waits for `join`.
+template <bool FILLED, Drive DRIVE>
 __attribute__((noinline)) void advance(Lattice& l, Band& band, const Rates& k) {
   const size_t P = l.plane, S = l.row, W = l.width;
   const size_t end = (W - 1) / LANES * LANES,
@@ -113,7 +117,7 @@ __attribute__((noinline)) void advance(Lattice& l, Band& band, const Rates& k) {
   float *const t1 = band.next_row, *const t5 = t1 + S, *const t7 = t5 + S;
   Ints inside;
   for (int i = 0; i < LANES; i++) inside[i] = end + i < W ? -1 : 0;
-  const Vec push_x = all(l.push_x), push_y = all(l.push_y);
+  Vec push_x = all(l.push_x), push_y = all(l.push_y);
   Vec fastest = {};
   const size_t first_row = band.from, end_row = band.to;
   for (size_t x = first_row; x < end_row; x++) {
@@ -131,14 +135,16 @@ __attribute__((noinline)) void advance(Lattice& l, Band& band, const Rates& k) {
       for (int i = 0; i < 9; i++) f[i] = load(r + i * P + y);
       if (!FILLED && y == end)
         for (int i = 0; i < 9; i++) f[i] = (Vec)((Ints)f[i] & inside);
+      if (DRIVE == VARIED)
+        push_x = load(l.pushes_x + x * S + y), push_y = load(l.pushes_y + x * S + y);
       Vec square;
       if (__builtin_expect(touched[y / BLOCK], 0)) {
         const Vec a = load(g + 2 * y), b = load(g + 2 * y + LANES);
         Vec fx = even(a, b), fy = odd(a, b);
-        if (DRIVEN) fx = fx + push_x, fy = fy + push_y;
+        if (DRIVE != UNDRIVEN) fx = fx + push_x, fy = fy + push_y;
         square = collide<true>(f, fx, fy, k);
       } else
-        square = collide<DRIVEN>(f, push_x, push_y, k);
+        square = collide<DRIVE != UNDRIVEN>(f, push_x, push_y, k);
       fastest = most(square, fastest);  // Ignores NaN.
       store(r + y, f[0]);
       store(u2 + y, f[2]);

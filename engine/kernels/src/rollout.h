@@ -55,6 +55,7 @@ struct Rollout {
   bool repelled;     // Nodes repel each other.
   bool energetic;    // There is energy.
   bool driven;       // A uniform force acts on the fluid.
+  bool varied;       // A force that differs from cell to cell acts on the fluid.
   bool walled;       // There are walls.
   bool barred;       // Solid cells keep bodies out.
   bool damped;       // There is a sponge.
@@ -76,11 +77,12 @@ struct Rollout {
   const float* smoothing_y;  // (2, width)
 
   // Surroundings of the fluid.
-  const float* uniform_force;    // (2)
-  const int32_t* walls;          // (height, width) 1 in walls
-  const float *away_x, *away_y;  // (height, width) displacement of nodes, away from solid cells
-  const float* sponge;           // (height, width) strength
-  const float* sponge_velocity;  // (2)
+  const float* uniform_force;      // (2)
+  const float *force_x, *force_y;  // (height, width)
+  const int32_t* walls;            // (height, width) 1 in walls
+  const float *away_x, *away_y;    // (height, width) displacement of nodes, away from solid cells
+  const float* sponge;             // (height, width) strength
+  const float* sponge_velocity;    // (2)
 
   const int32_t* ends;     // (edge, 2) nodes
   const int32_t* pairs;    // (joint, 2) edges

@@ -152,8 +152,9 @@ class World {
   // The collision and streaming of this world.
   void (*chosen_flow() const)(Lattice&, Band&, const Rates&) {
     const bool filled = r_.width % BLOCK == 0;
-    if (r_.driven) return filled ? advance<true, true> : advance<false, true>;
-    return filled ? advance<true, false> : advance<false, false>;
+    if (r_.varied) return filled ? advance<true, VARIED> : advance<false, VARIED>;
+    if (r_.driven) return filled ? advance<true, UNIFORM> : advance<false, UNIFORM>;
+    return filled ? advance<true, UNDRIVEN> : advance<false, UNDRIVEN>;
   }
 
   // The rest shape of a step, in closed loop.

@@ -1,4 +1,4 @@
-// Surroundings of the fluid: walls, a uniform force and a sponge, as in `fluid.surroundings`.
+// Surroundings of the fluid: walls, forces and a sponge, as in `fluid.surroundings`.
 #pragma once
 #include <algorithm>
 
@@ -11,6 +11,7 @@ class Surroundings {
  public:
   Surroundings(const Rollout& r, Lattice& l) {
     if (r.driven) l.push_x = r.uniform_force[0], l.push_y = r.uniform_force[1];
+    if (r.varied) find_forces(r, l);
     if (r.walled) find_walls(r, l);
     if (r.damped) find_sponge(r, l);
   }
@@ -51,6 +52,16 @@ class Surroundings {
       return int(std::lower_bound(cells.begin(), cells.end(), row * l.row) - cells.begin());
     };
     return {before(band.from), before(band.to)};
+  }
+
+  // The force in each cell, with the uniform one.
+  void find_forces(const Rollout& r, Lattice& l) {
+    l.pushes_x = Floats(l.row * l.height), l.pushes_y = Floats(l.row * l.height);
+    for (int x = 0; x < r.height; x++)
+      for (int y = 0; y < r.width; y++) {
+        l.pushes_x[x * l.row + y] = l.push_x + r.force_x[size_t(x) * r.width + y];
+        l.pushes_y[x * l.row + y] = l.push_y + r.force_y[size_t(x) * r.width + y];
+      }
   }
 
   void find_walls(const Rollout& r, const Lattice& l) {

@@ -60,6 +60,7 @@ def refine(
             "height": 2 * place.height,
             "energy": None,
             "obstacles": tuple(one.scaled(2) for one in place.obstacles),
+            "flow": _halved(place.flow),
         }
     )
     fine = form.model_copy(
@@ -71,7 +72,7 @@ def refine(
     box = build.build_world(wide, fine, half.body)
     middle = np.array([wide.width, wide.height]) / 2
     positions = half.body.positions - half.body.positions[half.nodes].mean(0) + middle
-    start = world.at_rest(box, jnp.asarray(positions, jnp.float32))
+    start = build.build_start(wide, box, positions)
     angle = np.tile(half.body.rest_angle, (4 * len(rest.angle), 1))
     angle[:, half.joints] = _between(_between(np.asarray(rest.angle)))
     length = _between(_between(np.asarray(rest.length)))[:, half.edges]
@@ -131,6 +132,11 @@ def _with(scene: spec.Scene, body: bodies.Body | None, **form: Any) -> search.Ta
     coupling = scene.coupling.model_copy(update=form)
     changed = scene.model_copy(update={"coupling": coupling})
     return replace(build.build_task(changed, body=body), encoding=None)
+
+
+def _halved(flow: spec.Flow | None) -> spec.Flow | None:
+    """Return the flow at half its speed in cells a step."""
+    return flow and flow.model_copy(update={"speed": flow.speed / 2})
 
 
 def _scaled(limit: float | None, factor: float) -> float | None:

@@ -19,4 +19,5 @@ from .scene import (
     build_task,
     build_world,
 )
+from .surroundings import build_flow, build_start, build_surroundings
 from .tables import build_crowd, build_gaits, build_scaling

@@ -2,7 +2,6 @@
 
 from typing import Any
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 
@@ -22,7 +21,7 @@ from ..bodies import extent
 from ..bodies.layout import MAX_NODES
 from .encodings import build_encoding
 from .plugins import build_measures, strokes_of
-from .surroundings import build_barrier, build_surroundings
+from .surroundings import build_barrier, build_start, build_surroundings
 
 PROJECTIONS = {
     "none": coupling.unprojected,
@@ -53,8 +52,7 @@ def build_task(
     box = build_world(scene.world, scene.coupling, body, dtype)
     middle = np.array([scene.world.width, scene.world.height]) / 2
     positions = body.positions - body.positions.mean(0) + middle
-    at_rest = jax.jit(world.at_rest)  # One program instead of forty.
-    start = at_rest(box, jnp.asarray(positions, dtype))
+    start = build_start(scene.world, box, positions)
     gait = isinstance(scene.control, spec.Gait)
     encoding = None if gait else build_encoding(scene, room or ROOM)
     return search.Task(
@@ -145,7 +143,7 @@ def build_world(
         steric=build_steric(box.steric, dtype),
         barrier=build_barrier(box, dtype),
         energy=build_energy(box.energy, size, dtype),
-        surroundings=build_surroundings(box),
+        surroundings=build_surroundings(box, dtype),
     )
 
 

@@ -1,4 +1,4 @@
-"""Surroundings of the fluid: walls, a uniform force, a free stream.
+"""Surroundings of the fluid: walls, forces, a free stream.
 
 Halfway bounce-back: Ladd, J. Fluid Mech. 271, 285 (1994), for walls at rest. The wall lies
 half a cell outside the last fluid cell, exactly so for a straight wall at Λ = 3/16.
@@ -29,6 +29,8 @@ class Surroundings(eqx.Module):
     solid: Bool[Array, "x y"] | None = None
     """Cells of wall at rest, in which there is no fluid."""
     sponge: Sponge | None = None
+    force_field: Float[Array, "2 x y"] | None = None
+    """A force density of its own in every cell."""
 
 
 def advance(
@@ -45,6 +47,8 @@ def advance(
     """
     if surroundings.force is not None:
         force = force + surroundings.force[:, None, None]
+    if surroundings.force_field is not None:
+        force = force + surroundings.force_field
     collided = collision(f, rho, momentum, force, rates)
     f = stream(collided)
     if surroundings.solid is not None:

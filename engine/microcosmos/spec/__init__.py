@@ -19,6 +19,7 @@ from .encodings import (
 from .estimate import Estimate, estimate
 from .evolution import Evolution
 from .experiments import EXPERIMENTS, Experiment, Preset, Spec, parse
+from .flow import Flow
 from .folding import Digit, Folding, Picture, picture
 from .gaits import Gaits
 from .neuroevolution import Neuroevolution

@@ -73,8 +73,8 @@ class Evolution(Part, Generic[Name, SearchSpec]):
         again = self.search.reevaluation
         if again is not None and again.pose and self.world.solid is not None:
             raise ValueError(
-                "`search.reevaluation.pose` must be false where the world has obstacles, which "
-                "a body at a random place may start in; got true"
+                "`search.reevaluation.pose` must be false where the world has obstacles or "
+                "walls, which a body at a random place may start in; got true"
             )
         refuse_unfit_emitters(self.emitters, self.control.encoding)
         if self.search.feasible:

@@ -127,8 +127,11 @@ class Folding(Part):
             )
         if self.world.energy is not None:
             raise ValueError("`world.energy` must be empty: folding collects no energy")
-        if self.world.obstacles:
-            raise ValueError("`world.obstacles` must be empty: filaments fold in an open box")
+        if not self.world.open:
+            raise ValueError(
+                "`world.obstacles` and `world.flow` must be empty: filaments fold in an open "
+                "box of fluid at rest"
+            )
         names = [target.name for target in self.targets]
         if len(set(names)) < len(names):
             raise ValueError(f"`targets` must have different names, got {names}")

@@ -34,8 +34,9 @@ def refuse_blocked(world: World, body: Body, task: Task) -> None:
         blocked = np.flatnonzero(crowded(nodes, solid, CLEARANCE))
         if len(blocked):
             x, y = nodes[blocked[0]]
+            owner = "world.obstacles" if world.obstacles else "world.flow"
             raise ValueError(
-                f"`world.obstacles` must leave {CLEARANCE} cells around the `body`, which "
+                f"`{owner}` must leave {CLEARANCE} cells around the `body`, which "
                 f"starts in the middle of the box; got one at node {blocked[0]}, which starts "
                 f"at ({x:.4g}, {y:.4g}) in trial {number + 1}"
             )

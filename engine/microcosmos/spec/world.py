@@ -6,6 +6,7 @@ import numpy as np
 from pydantic import model_validator
 
 from .base import Part, field, sourced
+from .flow import Flow
 from .obstacles import Obstacle, solid_cells
 from .sources import LATTICE, OURS, PAPER, TRT
 
@@ -82,13 +83,23 @@ class World(Part):
     obstacles: tuple[Obstacle, ...] = field((), max_length=64, source=OURS)
     """Fixed obstacles, which hold the fluid at rest on their surface and keep bodies out;
     empty: none."""
+    flow: Flow | None = None
+    """A flow that the creature swims in; empty: the fluid starts at rest."""
+
+    @property
+    def open(self) -> bool:
+        """Whether all places and directions in the box are alike but for energy."""
+        return not self.obstacles and self.flow is None
 
     @property
     def solid(self) -> np.ndarray | None:
         """Return the mask (x, y) of cells without fluid; None: there are none."""
-        if not self.obstacles:
+        walled = self.flow is not None and self.flow.kind == "poiseuille"
+        if not self.obstacles and not walled:
             return None
-        return solid_cells(self.obstacles, (self.width, self.height))
+        solid = solid_cells(self.obstacles, (self.width, self.height))
+        solid[:, 0] |= walled
+        return solid
 
     @model_validator(mode="after")
     def refuse_full(self) -> Self:
@@ -97,6 +108,12 @@ class World(Part):
                 f"`obstacles` must leave at least {1 - MAX_SOLID:.0%} of the box to the fluid, "
                 f"got {1 - found:.0%}"
             )
+        return self
+
+    @model_validator(mode="after")
+    def refuse_dry(self) -> Self:
+        if self.flow is not None and not self.fluid:
+            raise ValueError("`flow` must be empty where `fluid` is false; got one")
         return self
 
     @model_validator(mode="after")

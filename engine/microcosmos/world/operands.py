@@ -74,14 +74,17 @@ def smoothing_of(world: World) -> list[Array]:
 
 
 def surroundings_of(world: World) -> tuple[list[Array], Numbers]:
-    """Return the uniform force, the walls, what keeps bodies out of them, and the sponge, and
+    """Return the forces, the walls, what keeps bodies out of them, and the sponge, and
     which of these there are."""
     around, width = world.surroundings, world.size[1]
     force, solid, sponge = around.force, around.solid, around.sponge
     walls = jnp.zeros((0, width), jnp.int32) if solid is None else jnp.asarray(solid, jnp.int32)
     away = _nothing(2, 0, width) if world.barrier is None else world.barrier.away
+    forces = _nothing(2, 0, width) if around.force_field is None else around.force_field
     arrays = [
         _nothing(0) if force is None else jnp.asarray(force, jnp.float32),
+        jnp.asarray(forces[0], jnp.float32),
+        jnp.asarray(forces[1], jnp.float32),
         walls,
         jnp.asarray(away[0], jnp.float32),
         jnp.asarray(away[1], jnp.float32),
@@ -90,6 +93,7 @@ def surroundings_of(world: World) -> tuple[list[Array], Numbers]:
     ]
     numbers: Numbers = {
         "driven": force is not None,
+        "varied": around.force_field is not None,
         "walled": solid is not None,
         "barred": world.barrier is not None,
         "damped": sponge is not None,

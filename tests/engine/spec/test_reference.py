@@ -15,8 +15,8 @@ pytestmark = pytest.mark.fast
 DOCUMENT = Path(__file__).parents[3] / "docs" / "spec.md"
 
 WITHOUT_UNIT = """
-arms levels branches bins centroids packets placements terms emitters lessons updates digit
-edges forcing_iterations constraint_iterations share seed refinement.steps
+arms levels branches bins centroids packets placements vortices terms emitters lessons
+updates digit edges forcing_iterations constraint_iterations share seed refinement.steps
 stretch shear bend gap length_scale faintest spread survival crossover learning_rate
 weight_rate replace_rate activation_rate toggle_rate add_node_rate add_connection_rate
 Reevaluation.viscosity Energy.rate folding.rate CmaMegaEmitter.rate

@@ -55,6 +55,8 @@ CHECKS = {
     "the drag of an array of posts is that of the series": partial(
         environments.check_posts, (5,)
     ),
+    "flows of a world stay": partial(environments.check_flows, 2000),
+    "a shear turns a ring and a channel carries a tracer": environments.check_carried,
     "a cylinder at Re 20 has the published drag": partial(cylinder.check, RE_20, 0.12),
     "a cylinder at Re 40 has the published drag": partial(cylinder.check, RE_40, 0.12),
     "the wake of a cylinder swings at the published frequency": partial(cylinder.check, WAKE),
