@@ -46,6 +46,7 @@ MeasureName = Literal[
     "heading_angle",
     "aspect",
     "strouhal",
+    "advance",
     "trial_spread",
     "segments",
     "limbs",

@@ -17,6 +17,12 @@ TRAITS = {
     "shear": {"low": 0.2, "high": 0.9},
     "bend": {"low": 0.3, "high": 0.8},
 }
+OBSTACLES = [
+    {"kind": "post", "x": 1, "y": 2, "radius": 1.5},
+    {"kind": "wall", "x0": 18, "y0": 4, "x1": 18, "y1": 10, "thickness": 2},
+    {"kind": "pattern", "rows": "....#/...../...../...../....."},
+]
+VORTICES = {"kind": "vortices", "speed": 0.02, "vortices": 4}
 POINTS = [[0, 0], [3, 0], [3, 3], [0, 3]]
 CROSS = {"nodes": [[0, 0], [1, 0], [2, 0.3], [1, 1], [1, 2]], "edges": [[0, 1], [1, 2], [1, 3]]}
 
@@ -92,6 +98,19 @@ CASES: dict[str, dict[str, Any]] = {
             "angle": 1.2,
         },
     ),
+    "upstream in a channel": scene(
+        {},
+        {"fitness": "upstream"},
+        box={"flow": {"speed": 0.02}},
+        body={"nodes": 8},
+    ),
+    "through obstacles, among vortices": scene(
+        {},
+        {"fitness": "through", "trials": 2},
+        box={"flow": VORTICES, "obstacles": OBSTACLES},
+        body={"nodes": 8},
+    ),
+    "in a shear": scene({}, box={"flow": {"kind": "shear"}}, body={"nodes": 8}),
     "tables of genes without fluid": scene(
         {"encoding": "direct", "waveform": "table", "timer": "linear"},
         {"fitness": "displacement"},

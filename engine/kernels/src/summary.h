@@ -42,6 +42,7 @@ enum Measure {
   HEADING_ANGLE,
   ASPECT,
   STROUHAL,
+  ADVANCE,
   MEASURE_COUNT
 };
 // Places of the other numbers of a summary.
@@ -286,13 +287,14 @@ class Summary {
       }
   }
 
-  // Speed, stride and cost of transport, over whole strokes after the first.
+  // Speed, stride, advance along x and cost of transport, over whole strokes after the first.
   void swimming() {
     const bool swam = done_ >= 2;
     const double from = swam ? when(1) : 0, to = swam ? when(done_) : m_.steps;
     const double moved = norm(centre(to, 0) - centre(from, 0), centre(to, 1) - centre(from, 1));
     const double lengths = moved / length_;
     if (swam) {
+      found_[ADVANCE] = 1000 * (centre(to, 0) - centre(from, 0)) / length_ / larger(to - from, 1);
       found_[SPEED] = 1000 * lengths / larger(to - from, 1);
       found_[STRIDE] = lengths / (done_ - 1);
     }

@@ -19,6 +19,7 @@ from .. import (
 )
 from ..bodies import extent
 from ..bodies.layout import MAX_NODES
+from ..spec.search import MEASURED
 from .encodings import build_encoding
 from .plugins import build_measures, strokes_of
 from .surroundings import build_barrier, build_start, build_surroundings
@@ -99,10 +100,11 @@ def build_period(control: spec.Controller | spec.Gait | spec.Fold) -> float | No
 
 
 def build_goal(task: spec.Task) -> search.Goal:
-    if task.plugin is not None or task.fitness == "speed":
+    if task.plugin is not None:
         return search.Goal(measure=task.fitness)
-    if task.fitness == "cost_of_transport":
-        return search.Goal(measure=task.fitness, sign=-1.0)
+    if task.fitness in MEASURED:
+        name, sign = MEASURED[task.fitness]
+        return search.Goal(measure=name, sign=float(sign))
     displacement, energy = GOALS[task.fitness]
     return search.Goal(displacement, energy * task.energy_weight)
 

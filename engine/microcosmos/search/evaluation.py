@@ -17,6 +17,7 @@ from ..world import Measures, State, World, centre, flow, grown_nodes
 from .kinematics import kinematics
 from .measures import (
     MEASURES,
+    advance,
     cost_of_transport,
     motion,
     motion_for_plugins,
@@ -135,6 +136,7 @@ def motion_of(task: Task, driven: Drive, end: State, observed: Measures) -> dict
     values = motion(driven.world, driven.start, end, observed, length)
     done = strokes(driven, task.period, len(observed.centre))
     values["speed"], values["stride"] = swimming(observed.centre, done, length)
+    values["advance"] = advance(observed.centre, done, length)
     values["cost_of_transport"] = cost_of_transport(
         centre(driven.world, driven.start), observed, done, length
     )

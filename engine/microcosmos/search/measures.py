@@ -72,18 +72,35 @@ def swimming(
     Both are over whole strokes after the first, which starts from rest: `path` and `strokes`
     are the body's centre and the strokes done after each step. Both are 0 below two strokes.
     """
+    moved, took, count = _stroked(path, strokes)
+    distance = _norm(moved) / length
+    zero = jnp.zeros_like(distance)
+    return (
+        jnp.where(count > 0, 1000 * distance / took, zero),
+        jnp.where(count > 0, distance / jnp.maximum(count, 1.0), zero),
+    )
+
+
+def advance(
+    path: Float[Array, "time 2"], strokes: Float[Array, "time"], length: Scalar | float
+) -> Scalar:
+    """Return the speed along x, in lengths in 1,000 steps, over the same strokes; it is
+    negative along −x."""
+    moved, took, count = _stroked(path, strokes)
+    return jnp.where(count > 0, 1000 * moved[0] / length / took, jnp.zeros_like(took))
+
+
+def _stroked(
+    path: Float[Array, "time 2"], strokes: Float[Array, "time"]
+) -> tuple[Float[Array, "2"], Scalar, Scalar]:
+    """Return the displacement over whole strokes after the first, their time in steps and
+    their number, 0 below two strokes."""
     times = jnp.arange(1.0, len(path) + 1, dtype=path.dtype)
     done = jax.lax.stop_gradient(jnp.floor(strokes[-1] + 1e-3))
     ends = jnp.stack([jnp.ones_like(done), jnp.maximum(done, 2.0)])
     moved = [jnp.diff(jnp.interp(ends, strokes, path[:, axis]))[0] for axis in (0, 1)]
-    distance = _norm(jnp.stack(moved)) / length
     took = jnp.maximum(jnp.diff(jnp.interp(ends, strokes, times))[0], 1.0)
-    swam = done >= 2
-    zero = jnp.zeros_like(distance)
-    return (
-        jnp.where(swam, 1000 * distance / took, zero),
-        jnp.where(swam, distance / (ends[1] - 1), zero),
-    )
+    return jnp.stack(moved), took, jnp.where(done >= 2, done - 1, jnp.zeros_like(done))
 
 
 def cost_of_transport(

@@ -50,6 +50,7 @@ MEASURES: dict[str, Measure] = {
     "heading_angle": Measure("Heading to the axis", "rad", 0.0, 1.58),
     "aspect": Measure("Width over length", "", 0.0, 1.0),
     "strouhal": Measure("Strouhal number", "", 1e-1, 1e3, "log10"),
+    "advance": Measure("Advance", "lengths/1,000 steps", -0.6, 0.6),
     "trial_spread": Measure("Spread over trials", "fitness", 0.0, 0.1),
     "segments": Measure("Segments", "", 0.5, 12.5),
     "limbs": Measure("Free ends", "", -0.5, 11.5),

@@ -7,7 +7,7 @@ from pydantic import Field, Tag, model_validator
 
 from .base import Part, field, name_in, one_of
 
-SOLID, OPEN = "#", "."
+SOLID = "#"
 
 Size = tuple[int, int]
 
@@ -56,26 +56,24 @@ class Wall(Part):
         return _scaled(self, ("x0", "y0", "x1", "y1", "thickness"), factor)
 
 
-Row = Annotated[str, Field(pattern=r"^[#.]{1,2048}$")]
-
-
 class Pattern(Part):
     """A pattern of solid cells, stretched to the whole box."""
 
     kind: Literal["pattern"]
-    rows: Annotated[tuple[Row, ...], Field(min_length=1, max_length=2048)]
-    """Rows from the top, all of one length: # is solid, a full stop is fluid."""
+    rows: str = Field(pattern=r"^[#.]+(/[#.]+)*$", max_length=2**22)
+    """Rows from the top, divided by slashes and all of one length: # is solid, a full stop is
+    fluid, as in ..#../.###."""
 
     @model_validator(mode="after")
     def refuse_ragged(self) -> Self:
-        lengths = {len(row) for row in self.rows}
+        lengths = {len(row) for row in self.rows.split("/")}
         if len(lengths) > 1:
             raise ValueError(f"`rows` must have one length, got {sorted(lengths)}")
         return self
 
     def solid(self, size: Size) -> np.ndarray:
         """Return the mask (x, y): each cell takes the symbol under its middle."""
-        symbols = np.array([list(row) for row in self.rows])[::-1] == SOLID
+        symbols = np.array([list(row) for row in self.rows.split("/")])[::-1] == SOLID
         x, y = ((np.arange(n) * m) // n for n, m in zip(size, symbols.shape[::-1], strict=True))
         return symbols[y[None, :], x[:, None]]
 

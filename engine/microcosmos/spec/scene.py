@@ -23,7 +23,7 @@ from .encodings import (
 )
 from .placement import refuse_blocked
 from .plugins import OR_PLUGIN, MaybePlugin, PluginVersions, complete_plugin
-from .search import Task
+from .search import STROKED, Task
 from .world import World
 
 
@@ -118,12 +118,23 @@ def refuse_too_large(world: World, body: Body, stretch: float) -> None:
 
 
 def refuse_senseless(world: World, control: Controller | Gait | Fold, task: Task) -> None:
-    """Raise `ValueError` where energy is sensed or counts but the world has none."""
+    """Raise `ValueError` where the task or the controller needs what the world lacks."""
     senses = isinstance(control, NetworkInputs) and control.sense_energy
-    if task.fitness == "speed" and getattr(control, "timer", "") == "linear":
+    if task.fitness in STROKED and getattr(control, "timer", "") == "linear":
         raise ValueError(
-            "`task.fitness` must not be 'speed' where `control.timer` is 'linear': without "
-            "a period there are no strokes"
+            f"`task.fitness` must not be {task.fitness!r} where `control.timer` is 'linear': "
+            "without a period there are no strokes"
+        )
+    channel = world.flow is not None and world.flow.kind == "poiseuille"
+    if task.fitness == "upstream" and not channel:
+        got = "none" if world.flow is None else world.flow.kind
+        raise ValueError(
+            "`world.flow` must be 'poiseuille', which has a direction, where `task.fitness` is "
+            f"'upstream'; got {got}"
+        )
+    if task.fitness == "through" and not world.obstacles:
+        raise ValueError(
+            "`world.obstacles` must hold some where `task.fitness` is 'through'; got none"
         )
     collects = task.plugin is None and "energy" in task.fitness
     if world.energy is None and (senses or collects):

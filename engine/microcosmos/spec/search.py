@@ -13,7 +13,24 @@ from .emitters import WITHOUT_GRADIENT, Emitter, NeatEmitter, slots
 from .plugins import OR_PLUGIN, MaybePlugin, PluginVersion, complete_plugin, completed
 from .sources import CVT, MAP_ELITES, OURS, PAPER, REEVALUATION
 
-Fitness = Literal["speed", "displacement", "energy", "displacement+energy", "cost_of_transport"]
+Fitness = Literal[
+    "speed",
+    "displacement",
+    "energy",
+    "displacement+energy",
+    "cost_of_transport",
+    "upstream",
+    "through",
+]
+MEASURED: dict[str, tuple[MeasureName, int]] = {
+    "speed": ("speed", 1),
+    "cost_of_transport": ("cost_of_transport", -1),
+    "upstream": ("advance", -1),
+    "through": ("advance", 1),
+}
+"""Fitness that is a measure, and its sign; the others are displacement and energy."""
+STROKED = ("speed", "upstream", "through")
+"""Fitness over whole strokes."""
 
 
 class Task(Part):
@@ -24,8 +41,9 @@ class Task(Part):
     fitness: Annotated[Fitness, *OR_PLUGIN] = field("speed", source=f"displacement: {PAPER}")
     """Fitness: speed (body lengths in 1,000 steps over whole strokes after the first),
     displacement (cells between the mean node positions at start and end), energy collected by
-    all nodes, displacement and energy, or cost_of_transport (minus the work on the fluid per
-    body length)."""
+    all nodes, displacement and energy, cost_of_transport (minus the work on the fluid per
+    body length: the task of an efficient swimmer), upstream or through (speed along −x against
+    the flow of a channel, or along x past obstacles)."""
     trials: int = field(1, ge=1, le=16, unit="simulations")
     """Simulations of each creature, each with 45° more of heading and its share of a stroke
     more of phase; fitness and measures are their means."""

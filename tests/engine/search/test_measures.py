@@ -9,7 +9,7 @@ import pytest
 
 from microcosmos import bodies, filaments, search, spec, world
 from microcosmos.naming import MeasureName
-from microcosmos.search.measures import curvature, efficiency, symmetry
+from microcosmos.search.measures import advance, curvature, efficiency, symmetry
 from microcosmos.search.measures import swimming as swimming_of
 from microcosmos.spec import measures
 
@@ -79,6 +79,14 @@ def test_speed_and_stride_of_an_even_motion(float64):
     assert swum(steps / 100, jump=5.0) == pytest.approx([0.5, 0.05], rel=1e-3)
     assert swum(steps / 501) == [0.0, 0.0]
     assert swum(np.zeros(1000)) == [0.0, 0.0]
+
+
+@pytest.mark.fast
+def test_advance_is_the_speed_along_x_with_its_sign(float64):
+    steps = np.arange(1.0, 1001)
+    path = jnp.asarray(np.stack([-0.006 * steps, 0.008 * steps], 1))
+    assert float(advance(path, jnp.asarray(steps / 300), 20.0)) == pytest.approx(-0.3)
+    assert float(advance(path, jnp.asarray(steps / 501), 20.0)) == 0
 
 
 @pytest.mark.fast

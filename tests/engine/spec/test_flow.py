@@ -19,3 +19,30 @@ pytestmark = pytest.mark.fast
 def test_impossible_flows_are_refused(world, message):
     with pytest.raises(ValidationError, match=message):
         spec.World.model_validate(world)
+
+
+@pytest.mark.parametrize(
+    ("fitness", "world", "message"),
+    [
+        ("upstream", {}, "`world.flow` must be 'poiseuille'.*got none"),
+        (
+            "upstream",
+            {"flow": {"kind": "vortices"}},
+            "`world.flow` must be 'poiseuille'.*vortices",
+        ),
+        ("through", {"flow": {}}, "`world.obstacles` must hold some.*got none"),
+    ],
+)
+def test_tasks_need_the_world_that_they_are_about(fitness, world, message):
+    with pytest.raises(ValidationError, match=message):
+        spec.Scene.model_validate({"world": world, "task": {"fitness": fitness}})
+
+
+@pytest.mark.parametrize("fitness", ["speed", "upstream", "through"])
+def test_tasks_over_strokes_need_a_periodic_timer(fitness):
+    world = {"flow": {}, "obstacles": [{"kind": "post", "x": 8, "y": 8}]}
+    control = {"timer": "linear"}
+    with pytest.raises(ValidationError, match=f"must not be {fitness!r}"):
+        spec.Scene.model_validate(
+            {"world": world, "control": control, "task": {"fitness": fitness}}
+        )

@@ -28,7 +28,7 @@ def test_a_wall_along_the_box_fills_its_thickness():
 
 
 def test_a_pattern_is_stretched_to_the_box_with_its_first_row_on_top():
-    solid = cells(spec.Pattern(kind="pattern", rows=("#..", "...")))
+    solid = cells(spec.Pattern(kind="pattern", rows="#../..."))
     expected = np.zeros((24, 16), bool)
     expected[:8, 8:] = True
     np.testing.assert_array_equal(solid, expected)
@@ -37,8 +37,8 @@ def test_a_pattern_is_stretched_to_the_box_with_its_first_row_on_top():
 @pytest.mark.parametrize(
     ("obstacle", "message"),
     [
-        ({"kind": "pattern", "rows": ["#.", "..."]}, "`rows` must have one length"),
-        ({"kind": "pattern", "rows": ["#"]}, "must leave at least 25% of the box"),
+        ({"kind": "pattern", "rows": "#./..."}, "`rows` must have one length"),
+        ({"kind": "pattern", "rows": "#"}, "must leave at least 25% of the box"),
         ({"kind": "hedge"}, "`kind` must be one of post, wall, pattern, got 'hedge'"),
     ],
 )

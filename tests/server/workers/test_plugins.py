@@ -18,7 +18,7 @@ def test_plug_ins_of_workers_appear_in_the_schemas(api, services, offer):
     after = {one["experiment"]: one["schema"] for one in api.get("experiments").json()}
     search = after["quality-diversity"]
     fitness = search["$defs"]["Task"]["properties"]["fitness"]
-    assert fitness["enum"][-2:] == ["cost_of_transport", "mine.straight"]
+    assert fitness["enum"][-2:] == ["through", "mine.straight"]
     assert fitness["plugins"]["mine.straight"]["workers"] == ["worker"]
     settings = search["$defs"]["Task"]["properties"]["plugin"]["parts"]["mine.straight"]
     assert settings["properties"]["settings"]["properties"] == STRICT["properties"]

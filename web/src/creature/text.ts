@@ -186,6 +186,7 @@ export const text = {
     heading_angle: ["Heading to the axis", "rad"],
     aspect: ["Width over length", ""],
     strouhal: ["Strouhal number", ""],
+    advance: ["Advance along x", "lengths / 1,000 steps"],
     trial_spread: ["Spread over trials", "fitness"],
   } as Record<string, [title: string, unit: string, digits?: number]>,
   sha: "SHA-256",

@@ -11,7 +11,7 @@ from ...naming import LICENCE, name
 from ..base import Digest, Part, field_path
 from ..plugins import PluginVersions
 from ..scene import Scene
-from ..search import Task
+from ..search import MEASURED, Task
 from .genomes import Network
 from .identity import Identity
 
@@ -88,10 +88,11 @@ class CreatureFile(Part):
 
 def fitness_of(task: Task, measures: Mapping[str, float]) -> float:
     """Return the fitness in float32, as an evaluation computes it."""
-    if task.plugin is not None or task.fitness == "speed":
+    if task.plugin is not None:
         return measures.get(task.fitness, np.nan)
-    if task.fitness == "cost_of_transport":
-        return -measures.get(task.fitness, np.nan)
+    if task.fitness in MEASURED:
+        name, sign = MEASURED[task.fitness]
+        return sign * measures.get(name, np.nan)
     displacement = np.float32(measures.get("displacement", np.nan))
     energy = np.float32(task.energy_weight) * np.float32(measures.get("energy", np.nan))
     both = {"displacement": displacement, "energy": energy}
