@@ -8,6 +8,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse, Response
 
 from microcosmos.archive import creature, creature_h5
+from microcosmos.spec.creature import PlanDrawing
 from microcosmos.viz.networks import NetworkPositions
 
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE, ShareAccessDep
@@ -17,7 +18,7 @@ from ..core.schemas import Wire
 from ..core.static_files import IMMUTABLE
 from ..services.services import ServicesDep, SessionDep
 from ..tables import Creature
-from . import lineage, networks
+from . import lineage, networks, plans
 from . import storage as creatures
 from .deps import CreatureDep, IdentityDep, Sha
 from .lineage import Ancestors, Children
@@ -126,6 +127,13 @@ def import_creature(
     response.status_code = 201 if new else 200
     response.headers["Location"] = f"/api/v1/creatures/{file['sha256']}"
     return CreatureName(creature=file["sha256"])
+
+
+@router.get("/{sha}/plan.json", responses={404: {}}, dependencies=[MAY_READ_SHARED])
+def read_plan(identity: IdentityDep, response: Response) -> PlanDrawing:
+    """Return the body plan: nodes at rest, edges, and the genes of every segment."""
+    response.headers.update(IMMUTABLE)
+    return plans.drawing(identity)
 
 
 def _network_reader(form: str, media_type: str, description: str) -> Callable[..., Response]:

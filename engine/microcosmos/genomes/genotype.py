@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, PRNGKeyArray, UInt32
 
-from ..bodies.growth import TYPES, Plan
+from ..bodies.growth import Plan, plan_of
 from ..naming import ACTIVATIONS, decode, encode
 from .cppn import CPPN
 from .encoding import Encoding
@@ -121,13 +121,9 @@ def to_segments(plan: Plan) -> dict[str, Any]:
 
 def from_segments(genes: Mapping[str, Any], rows: int) -> Plan:
     """Return the plan of a parsed creature file, with room for more segments."""
-    count = len(genes["number"])
-    found = {name: np.zeros(rows, kind) for name, kind in TYPES.items()}
-    found["used"][:count] = True
-    for name in Plan._fields[1:]:
-        given = genes[name]
-        found[name][:count] = decode(given) if isinstance(given, str) else given
-    return Plan(**found)
+    columns = {name: genes[name] for name in Plan._fields[1:]}
+    found = {name: decode(x) if isinstance(x, str) else x for name, x in columns.items()}
+    return plan_of(found, rows)
 
 
 def to_genes(network: CPPN) -> dict[str, Any]:

@@ -326,6 +326,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/creatures/{sha}/plan.json": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Plan
+         * @description Return the body plan: nodes at rest, edges, and the genes of every segment.
+         */
+        get: operations["read_plan_api_v1_creatures__sha__plan_json_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/creatures/{sha}/poses": {
         parameters: {
             query?: never;
@@ -1909,6 +1929,67 @@ export interface components {
             width: number;
         };
         /**
+         * PlanDrawing
+         * @description A body at rest and the plan that it grew from.
+         */
+        PlanDrawing: {
+            /** Edges */
+            edges: [
+                number,
+                number
+            ][];
+            /** Nodes */
+            nodes: components["schemas"]["PlanNode"][];
+            /** Segments */
+            segments: components["schemas"]["PlanSegment"][];
+        };
+        /**
+         * PlanNode
+         * @description A node at rest, in cells from the middle of the body.
+         */
+        PlanNode: {
+            /** Copy */
+            copy: number;
+            /** Hand */
+            hand: number;
+            /** Segment */
+            segment: number;
+            /** Side */
+            side: number;
+            /** X */
+            x: number;
+            /** Y */
+            y: number;
+        };
+        /**
+         * PlanSegment
+         * @description The genes of a segment, and how many copies of it have grown.
+         */
+        PlanSegment: {
+            /** Angle */
+            angle: number;
+            /** Copies */
+            copies: number;
+            /** Curl */
+            curl: number;
+            /** Grown */
+            grown: number;
+            /** Mirrored */
+            mirrored: boolean;
+            /** Nodes */
+            nodes: number;
+            /** Number */
+            number: number;
+            /** Parent */
+            parent: number | null;
+            /** Place */
+            place: number;
+            /** Ring */
+            ring: boolean;
+            /** Stiffness */
+            stiffness: number;
+        };
+        /**
          * PluginRead
          * @description A plug-in that a worker has.
          */
@@ -3330,6 +3411,44 @@ export interface operations {
                 };
                 content: {
                     "image/svg+xml": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_plan_api_v1_creatures__sha__plan_json_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PlanDrawing"];
                 };
             };
             /** @description Not Found */

@@ -1,5 +1,6 @@
 """Bodies that grow from genes: plans, their growth, and the kinematics of what has grown."""
 
+from .columns import plan_of
 from .form import FORMS, form
 from .plan import Capacity, Plan
 from .random import (
@@ -12,4 +13,4 @@ from .random import (
     random_segment,
 )
 from .skeleton import Skeleton, colours, skeleton
-from .sprouting import Grown, grow
+from .sprouting import Grown, State, grow, sprout

@@ -91,14 +91,18 @@ class State(NamedTuple):
 
 def grow(plan: Plan, capacity: Capacity, xp: Any = np, loop: Callable | None = None) -> Grown:
     """Return the body of a plan of arrays of `xp`; `loop(count, step, state)` repeats."""
+    return sprout(plan, capacity, xp, loop).grown
+
+
+def sprout(plan: Plan, capacity: Capacity, xp: Any = np, loop: Callable | None = None) -> State:
+    """Return the body of a plan, with the copies of each segment that have grown."""
     repeat = loop or _loop
     # Empty rows hold zeros, by which nothing can be divided.
     plan = plan._replace(nodes=xp.maximum(plan.nodes, 1), copies=xp.maximum(plan.copies, 1))
     state = _seed(plan, capacity, xp)
-    state = repeat(
+    return repeat(
         capacity.segments, lambda gene, state: _sprout(plan, capacity, gene, state, xp), state
     )
-    return state.grown
 
 
 def _loop(count: int, step: Callable, state: State) -> State:
