@@ -1,0 +1,206 @@
+"""Whether bodies evolve: `zoo` over five seeds, against frozen random plans and chains.
+
+Elites are simulated again in variants that should not matter, as those of fixed bodies are in
+`swimming`. Then bodies are evolved upstream in a channel and past a row of posts, where the
+fittest of `standard` are put too.
+"""
+
+import statistics
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import rich
+from drive import Installation
+from searches import SEEDS, carry_out, rank, summary
+from swimming import BARS as AGREE
+from swimming import along, chosen, displacements, feasible_share, needed
+
+from microcosmos import search
+from microcosmos.archive import creature
+from microcosmos.audit import variants
+from microcosmos.build import build_block, build_task, room_of
+from microcosmos.filaments import Rest
+from microcosmos.search.evaluation import judged
+from microcosmos.spec import Scene, parse
+from microcosmos.spec.quality_diversity import PRESETS
+from microcosmos.viz.replay import actuator_of
+
+FEASIBLE_SHARE = 0.6
+"""Least share of feasible evaluations in the second half of a run."""
+VARIETY = 1.5
+"""Least ratio of the motion distance to that of `standard`."""
+NODES = 16
+"""Least nodes of a body whose stride counts."""
+CONTROL_GENERATIONS = 200
+"""Generations of the controls, and at which evolving bodies are compared with them."""
+FROZEN = {"body_rate": 0.0, "shape_rate": 0.0}
+"""Rates with which plans stay as they were drawn."""
+CHANNEL: dict[str, Any] = {"flow": {"kind": "poiseuille", "speed": 0.005}}
+POSTS: dict[str, Any] = {
+    "width": 96,
+    "obstacles": [
+        {"kind": "post", "x": 72.0, "y": y, "radius": 2.5} for y in (8.0, 24.0, 40.0)
+    ],
+}
+PLACES = {"upstream": CHANNEL, "through": POSTS}
+"""Worlds that ask for bodies, by the task in each."""
+
+
+def bodies(product: Installation) -> bool:
+    """Tell whether bodies of `zoo` evolve, swim truly, and solve tasks of their own."""
+    zoo, standard = PRESETS["zoo"][1], PRESETS["standard"][1]
+    runs = [carry_out(product, seeded(zoo, seed), f"zoo, seed {seed}") for seed in SEEDS]
+    plain = [
+        carry_out(product, seeded(standard, seed), f"standard, seed {seed}") for seed in SEEDS
+    ]
+    good = [varied(product, runs, plain), truly(product, parse(seeded(zoo, 0)).scene, runs)]
+    good.append(controls(product, runs))
+    good += [solves(product, task, plain) for task in PLACES]
+    return all(good)
+
+
+def seeded(preset: Any, seed: int, **parts: Any) -> dict[str, Any]:
+    """The document of a preset with another seed and other fields in some parts."""
+    document = preset.model_dump(mode="json")
+    changed = {name: {**document[name], **fields} for name, fields in parts.items()}
+    return parse({**document, **changed, "seed": seed}).model_dump(mode="json")
+
+
+def varied(product: Installation, runs: list[dict], plain: list[dict]) -> bool:
+    """Print feasible shares, strides and motion distances; tell whether they reach the bars."""
+    shares = [feasible_share(product, run["id"]) for run in runs]
+    rich.print(f"zoo: feasible in the second half {summary(shares)}")
+    strides = [fastest_stride(product, run["id"]) for run in runs]
+    others = [fastest_stride(product, run["id"]) for run in plain]
+    rich.print(
+        f"fittest, lengths a stroke, at least {NODES} nodes: zoo {summary(strides)}, standard "
+        f"{summary(others)}"
+    )
+    found = [run["summary"]["motion_distance"] for run in runs]
+    usual = [run["summary"]["motion_distance"] for run in plain]
+    ratio = statistics.median(found) / statistics.median(usual)
+    kinds = [run["summary"]["kinds"] for run in runs]
+    rich.print(
+        f"motion distance: zoo {summary(found)}, standard {summary(usual)}: {ratio:.2f} × "
+        f"(bar {VARIETY}); kinds {summary(kinds)}"
+    )
+    faster = statistics.median(strides) >= statistics.median(others)
+    return min(shares) >= FEASIBLE_SHARE and faster and ratio >= VARIETY
+
+
+def fastest_stride(product: Installation, run: str) -> float:
+    """The longest stride of an elite with enough nodes, in lengths."""
+    measures = measured(product, run)
+    return float(measures["stride"][measures["nodes"] >= NODES].max())
+
+
+def measured(product: Installation, run: str) -> dict[str, np.ndarray]:
+    """The measures of all elites, by name."""
+    table = product.get(f"runs/{run}/archive")
+    names = {"stride", "nodes", "speed", "segments"}
+    files = [product.get(f"creatures/{name}")["measured"] for name in table["creature"]]
+    return {name: np.array([file["measures"][name] for file in files]) for name in names}
+
+
+def truly(product: Installation, scene: Scene, runs: list[dict]) -> bool:
+    """Print how far elites go in each variant, relative to the recorded distance."""
+    shares: dict[str, list[float]] = {name: [] for name in AGREE}
+    for run in runs:
+        for file in chosen(product, run["id"]):
+            for name, share in in_variants(scene, file).items():
+                shares[name].append(share)
+    good = []
+    for name, found in shares.items():
+        low, high = AGREE[name]
+        inside = np.mean([low <= share <= high for share in found])
+        rich.print(
+            f"zoo, {len(found)} elites, {name}: median {statistics.median(found):.4f} "
+            f"({min(found):.4f}–{max(found):.4f}), {inside:.0%} within {low:g} to {high:g}"
+        )
+        good.append(
+            low <= statistics.median(found) <= high if name == "fine" else inside >= needed(name)
+        )
+    return all(good)
+
+
+def in_variants(scene: Scene, file: dict[str, Any]) -> dict[str, float]:
+    """The displacement of one creature in each variant, as a share of the recorded one."""
+    task = build_task(scene, room=creature.room(file))
+    driven = search.drive(task, actuator_of(creature.parse(file), scene))
+    body, joints, edges = variants.body_of(scene, driven)
+    inputs = driven.inputs
+    rest = Rest(jnp.asarray(inputs.angle)[:, joints], jnp.asarray(inputs.length)[:, edges])
+    plain = displacements(variants.turned(scene, body, 0.0), [rest])
+    eighth = np.pi / 4
+    tasks = {
+        "doubled": (variants.with_limits(scene, body, 2.0), 0.0),
+        "off": (variants.with_limits(scene, body, None), 0.0),
+        "turned": (variants.turned(scene, body, eighth), eighth),
+    }
+    found = {
+        name: along(displacements(one, [rest]), plain, turn)[0]
+        for name, (one, turn) in tasks.items()
+    }
+    fine, slower = variants.refine(scene, rest, body)
+    return found | {"fine": along(displacements(fine, [slower]) / 2, plain, 0.0)[0]}
+
+
+def controls(product: Installation, runs: list[dict]) -> bool:
+    """Print how evolving bodies compare with frozen random plans and chains at equal
+    evaluations, with rank tests; tell whether they are better than both."""
+    zoo = PRESETS["zoo"][1]
+    short = {"generations": CONTROL_GENERATIONS}
+    chain = PRESETS["standard"][1].model_dump(mode="json")
+    parts = {name: chain[name] for name in ("body", "control", "genome")}
+    others = {
+        "frozen": [
+            carry_out(product, seeded(zoo, s, genome=FROZEN, search=short), f"frozen, seed {s}")
+            for s in SEEDS
+        ],
+        "chains": [
+            carry_out(
+                product, seeded(zoo, s, **parts, search=short), f"chains, seed {s}"
+            )
+            for s in SEEDS
+        ],
+    }
+    good = True
+    for figure in ("best", "qd_score", "coverage"):
+        own = [at_generation(product, run, figure) for run in runs]
+        for name, some in others.items():
+            other = [at_generation(product, run, figure) for run in some]
+            rich.print(
+                f"{figure} after {CONTROL_GENERATIONS} generations: evolved {summary(own)}, "
+                f"{name} {summary(other)}, {rank(own, other)}"
+            )
+            good &= figure == "best" or statistics.median(own) > statistics.median(other)
+    return good
+
+
+def at_generation(product: Installation, run: dict, figure: str) -> float:
+    found = product.get(f"runs/{run['id']}/generations")
+    return found[figure][CONTROL_GENERATIONS - 1]
+
+
+def solves(product: Installation, task: str, plain: list[dict]) -> bool:
+    """Tell whether the fittest evolved for a task beats every fittest of `standard` there."""
+    zoo = PRESETS["zoo"][1]
+    parts = {"world": PLACES[task], "task": {"fitness": task}}
+    parts["search"] = {"generations": CONTROL_GENERATIONS}
+    run = carry_out(product, seeded(zoo, 0, **parts), f"zoo, {task}")
+    put = [fitness_there(product, one, task) for one in plain]
+    rich.print(f"{task}: evolved {run['best']:.3f}, the fittest of standard {summary(put)}")
+    return run["best"] > max(put)
+
+
+def fitness_there(product: Installation, run: dict, task: str) -> float:
+    """The fitness of a run's fittest elite in the world of a task; −inf if infeasible."""
+    file = chosen(product, run["id"])[0]
+    document = seeded(PRESETS["standard"][1], 0, world=PLACES[task], task={"fitness": task})
+    there = parse(document)
+    genotype = actuator_of(creature.parse(file), there.scene)
+    block = jax.tree.map(lambda x: jnp.asarray(x)[None], genotype)
+    found = judged(jax.device_get(build_block(there.scene, room_of(there))(block)))
+    return float(found.fitness[0]) if found.status[0] == 0 else -np.inf
