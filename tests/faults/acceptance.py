@@ -1,6 +1,7 @@
 """Acceptance checks: `make acceptance` repeats tests of `make test` at full size.
 
 Presets over five seeds, whose elites are simulated again in variants that should not matter;
+bodies that evolve, against frozen plans and chains, in a channel and past posts;
 four searches at equal evaluations, five seeds each, submitted over HTTP; a run that is
 killed, stopped, paused and resumed, whose archive has to be byte for byte the undisturbed
 one, as has that of a second installation, on PostgreSQL and a Redis server; creatures that
@@ -25,6 +26,7 @@ from searches import HOURS, METHODS, SEEDS, carry_out, compare, forage, spec
 from slopes import compare_slopes
 from swimming import swimming
 from uploads import all_cases, send, watched
+from zoo import bodies
 
 FAULTS = (kill_job, stop_worker, kill_job, pause_and_resume, kill_job)
 SETTINGS = {"MICROCOSMOS_DEMONSTRATION": "0", "MICROCOSMOS_CHECKPOINT_INTERVAL": "5"}
@@ -93,6 +95,7 @@ def uploads(product: Installation) -> bool:
 
 PARTS = {
     "swimming": swimming,
+    "bodies": bodies,
     "searches": searches,
     "databases": databases,
     "foraging": forage,

@@ -20,7 +20,8 @@ from swimming import along, chosen, displacements, feasible_share, needed
 from microcosmos import search
 from microcosmos.archive import creature
 from microcosmos.audit import variants
-from microcosmos.build import build_block, build_task, room_of
+from microcosmos.build import build_block, build_task
+from microcosmos.build.experiments import room_of
 from microcosmos.filaments import Rest
 from microcosmos.search.evaluation import judged
 from microcosmos.spec import Scene, parse
@@ -119,9 +120,8 @@ def truly(product: Installation, scene: Scene, runs: list[dict]) -> bool:
             f"zoo, {len(found)} elites, {name}: median {statistics.median(found):.4f} "
             f"({min(found):.4f}–{max(found):.4f}), {inside:.0%} within {low:g} to {high:g}"
         )
-        good.append(
-            low <= statistics.median(found) <= high if name == "fine" else inside >= needed(name)
-        )
+        middle = low <= statistics.median(found) <= high
+        good.append(middle if name == "fine" else inside >= needed(name))
     return all(good)
 
 
@@ -160,9 +160,7 @@ def controls(product: Installation, runs: list[dict]) -> bool:
             for s in SEEDS
         ],
         "chains": [
-            carry_out(
-                product, seeded(zoo, s, **parts, search=short), f"chains, seed {s}"
-            )
+            carry_out(product, seeded(zoo, s, **parts, search=short), f"chains, seed {s}")
             for s in SEEDS
         ],
     }

@@ -55,6 +55,7 @@ class Weights:
     controls: Controls
     layers: Layers
     room: None = None
+    segments: None = None
 
     def newcomer(self, *, key: PRNGKeyArray) -> Vector:
         return uniform_vector(self.layers.genes, 1.0, key=key)

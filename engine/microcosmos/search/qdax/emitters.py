@@ -161,6 +161,7 @@ class NeatEmitter:
         children, _, novelty = self.emitter.emit(None, archive, keys=keys)
         assert isinstance(children.genotypes, CPPN)
         numbered, _ = number(children.genotypes, novelty, emitter_state)
+        assert isinstance(numbered, CPPN)
         return numbered, {}
 
     def state_update(
