@@ -3,8 +3,8 @@
 A plan is a tree of segments. A segment is attached to a place on an earlier one, may be
 mirrored about it, repeated along it, or closed into a ring. Segments grow in the order of their
 genes. A segment for which there is no room does not grow, nor do those attached to it: growth
-ends at the capacity, at the largest length, and where nodes would come too near to others. So
-every plan grows into a valid body.
+ends at the capacity, at the largest length, and where nodes would come too near to others. The
+root is cut to the room there is. So every plan grows into a valid body.
 
 The same code runs on NumPy, for drawings, and on JAX, for a batch of creatures in one compiled
 program. Both give the same bits in single precision, without fused multiply-adds.
@@ -99,10 +99,39 @@ def sprout(plan: Plan, capacity: Capacity, xp: Any = np, loop: Callable | None =
     repeat = loop or _loop
     # Empty rows hold zeros, by which nothing can be divided.
     plan = plan._replace(nodes=xp.maximum(plan.nodes, 1), copies=xp.maximum(plan.copies, 1))
+    plan = _rooted(plan, capacity, xp)
     state = _seed(plan, capacity, xp)
     return repeat(
         capacity.segments, lambda gene, state: _sprout(plan, capacity, gene, state, xp), state
     )
+
+
+def _rooted(plan: Plan, capacity: Capacity, xp: Any) -> Plan:
+    """Return the plan with a root for which there is room.
+
+    It has no more nodes than fit, bends at most until its ends come near, and is open where it
+    is too short or too long for a ring.
+    """
+    root = xp.arange(len(plan.used)) == 0
+    longest = _steps(capacity)
+    most = min(capacity.nodes - 2, 2 * longest) if capacity.rings else 0
+    closed = plan.closed & (~root | ((plan.nodes >= LEAST_RING) & (plan.nodes <= most)))
+    longest = xp.where(closed, capacity.nodes, min(capacity.nodes - 2, longest))
+    nodes = xp.where(root, xp.minimum(plan.nodes, longest), plan.nodes).astype(np.int32)
+    reals = plan.curl.dtype
+    corners, joints = nodes.astype(reals) + 2.5, (nodes - 1).astype(reals)
+    bent = xp.asarray(2 * np.pi, reals) * joints * (1 / corners)
+    curl = xp.where(root, xp.clip(plan.curl, -bent, bent), plan.curl).astype(reals)
+    return plan._replace(closed=closed, nodes=nodes, curl=curl)
+
+
+def _steps(capacity: Capacity) -> int:
+    """Return the most edges between two nodes along a body."""
+    spacing, length = np.float32(capacity.spacing), np.float32(capacity.length)
+    steps = int(length / spacing) + 1
+    while np.float32(steps) * spacing > length:
+        steps -= 1
+    return steps
 
 
 def _loop(count: int, step: Callable, state: State) -> State:
@@ -212,8 +241,9 @@ def _bases(plan, capacity, gene, state: State, limb, sides, copies, xp) -> Bases
     radial = (parent == 0) & (place == 0) & (copies > 1) & ~ring
     turn = xp.asarray(2 * np.pi, reals) * (1 / (copies + 1).astype(reals))
     angle = xp.where(radial, turn * (copy + 1).astype(reals), plan.angle[gene])
-    # On a ring 0 is straight outwards.
+    # On a ring 0 is straight outwards; at its base, from the edge that leaves it.
     corner = xp.asarray(np.pi, reals) / (reach + 1)
+    corner = xp.where(place == 0, -corner, corner)
     out = xp.where(ring & ~root, corner - xp.asarray(np.pi / 2, reals), 0).astype(reals)
     spread = (2 * copy - (copies - 1)).astype(reals)
     spread = spread * (1 / xp.maximum(copies - 1, 1).astype(reals))
