@@ -132,7 +132,10 @@ def _added(plan: Plan, count, uniform: Uniform, limits: Segments) -> Change:
 
 
 def _split(plan: Plan, count, which: Uniform, where: Uniform) -> Change:
-    """Cut a segment in two; the second part keeps its course, but may now change alone."""
+    """Cut a segment in two; the second part keeps its course, but may now change alone.
+
+    The body keeps its shape, but for copies along the segment, which crowd on one part.
+    """
     rows = jnp.arange(len(plan.used))
     able = plan.used & ~plan.closed & (plan.nodes >= LEAST_SPLIT)
     cut, exists = choose(able, which)
@@ -140,13 +143,15 @@ def _split(plan: Plan, count, which: Uniform, where: Uniform) -> Change:
     whole = plan.nodes[cut]
     first = jnp.clip(jnp.rint(whole * (0.3 + 0.4 * where)), 1, whole - 1).astype(jnp.int32)
     share = first / whole
-    curl = plan.curl[cut]
+    bend = plan.curl[cut] / jnp.maximum(whole - 1, 1)
     # Rows behind the cut one move down by one; the new segment takes the row behind it.
     source = jnp.where(rows > cut, rows - 1, rows)
     moved = Plan(*(column[source] for column in plan))
     moved = moved._replace(parent=moved.parent + (moved.parent > cut))
     behind, mine = rows == cut + 1, rows == cut
-    later = (moved.parent == cut) & (rows > cut + 1) & (moved.place > share)
+    # Growth rounds to the same node.
+    beyond = jnp.rint(moved.place * whole) > first
+    later = (moved.parent == cut) & (rows > cut + 1) & beyond
     new = moved._replace(
         number=jnp.where(behind, -1, moved.number),
         parent=jnp.where(behind, cut, jnp.where(later, cut + 1, moved.parent)),
@@ -161,9 +166,13 @@ def _split(plan: Plan, count, which: Uniform, where: Uniform) -> Change:
                 ),
             ),
         ),
-        angle=jnp.where(behind, curl / whole, moved.angle),
+        angle=jnp.where(behind, bend, moved.angle),
         nodes=jnp.where(mine, first, jnp.where(behind, whole - first, moved.nodes)),
-        curl=jnp.where(mine, curl * share, jnp.where(behind, curl * (1 - share), moved.curl)),
+        curl=jnp.where(
+            mine,
+            bend * (first - 1),
+            jnp.where(behind, bend * (whole - first - 1), moved.curl),
+        ),
         mirrored=moved.mirrored & ~behind,
         copies=jnp.where(behind, 1, moved.copies),
     )
