@@ -23,10 +23,11 @@ def form(
 
     `present` (node,) and `there` (edge,) mask what has grown. Segments are filaments between
     ends and branches, limbs are free ends, rings are independent loops. The total length is in
-    cells. Symmetry is that of the best mirror along a principal axis through the mean node: 1
-    less the mean distance from a mirrored node to the nearest node, over half the radius of
-    gyration, at least 0. The aspect is the width over the length, of second moments.
-    No segment is `ungrown` for want of room where no plan says so.
+    cells. Symmetry is that of the best mirror through the mean node, along or across the first
+    axis, a principal axis or the way to the farthest node: 1 less the mean distance from a
+    mirrored node to the nearest node, over half the radius of gyration, at least 0. The aspect
+    is the width over the length, of second moments. No segment is `ungrown` for want of room
+    where no plan says so.
     """
     reals = positions.dtype
     node = xp.arange(len(positions))
@@ -42,18 +43,15 @@ def form(
     half = xp.sqrt((xx - yy) * (xx - yy) / 4 + xy * xy + 1e-12)
     mean = (xx + yy) / 2
     narrow = xp.maximum(mean - half, 0) / xp.maximum(mean + half, 1e-12)
-    # Half the angle of the axis of second moments, without trigonometry.
-    double = xp.clip((xx - yy) / (2 * half), -1, 1)
-    c = xp.sqrt((1 + double) / 2)
-    s = xp.where(xy < 0, -1, 1) * xp.sqrt(xp.maximum(1 - double, 0) / 2)
-    along, across = c * arms[:, 0] + s * arms[:, 1], c * arms[:, 1] - s * arms[:, 0]
     radius = xp.sqrt((xx + yy) / count + 1e-12)
     mirrored = [
-        _mismatch(along, across, sign, present, count, xp) for sign in ((1, -1), (-1, 1))
+        _mismatch(c * arms[:, 0] + s * arms[:, 1], c * arms[:, 1] - s * arms[:, 0], *one)
+        for c, s in _axes(arms, xx, yy, xy, half, xp)
+        for one in ((1, -1, present, count, xp), (-1, 1, present, count, xp))
     ]
     v = positions[edges[:, 1]] - positions[edges[:, 0]]
     lengths = xp.where(there, xp.sqrt(xp.sum(v * v, 1) + 1e-12), 0)
-    unlike = xp.minimum(*mirrored) / (0.5 * radius)
+    unlike = xp.min(xp.stack(mirrored)) / (0.5 * radius)
     found = {
         "segments": xp.maximum(joined / 2, 1),
         "limbs": xp.sum(degree == 1).astype(reals),
@@ -66,10 +64,28 @@ def form(
     return {name: xp.asarray(value, reals) for name, value in found.items()}
 
 
-def _mismatch(along: Any, across: Any, sign: Any, present: Any, count: Any, xp: Any) -> Any:
-    """Return the mean distance from each mirrored node to the nearest one."""
-    dx = sign[0] * along[:, None] - along[None]
-    dy = sign[1] * across[:, None] - across[None]
+def _axes(arms: Any, xx: Any, yy: Any, xy: Any, half: Any, xp: Any) -> list[tuple[Any, Any]]:
+    """Return cosine and sine of the mirrors; those that rounding would decide are the first."""
+    one, zero = xp.ones_like(half), xp.zeros_like(half)
+    # Half the angle of the axis of second moments, without trigonometry.
+    double = xp.clip((xx - yy) / (2 * half), -1, 1)
+    c = xp.sqrt((1 + double) / 2)
+    s = xp.where(xy < 0, -1, 1) * xp.sqrt(xp.maximum(1 - double, 0) / 2)
+    long = half > 0.01 * (xx + yy)
+    square = xp.sum(arms * arms, 1)
+    # The first of equals.
+    far = arms[xp.argmax(square >= 0.999 * xp.max(square))]
+    size = xp.sqrt(xp.sum(far * far) + 1e-12)
+    principal = xp.where(long, c, one), xp.where(long, s, zero)
+    return [(one, zero), principal, (far[0] / size, far[1] / size)]
+
+
+def _mismatch(
+    along: Any, across: Any, u: int, v: int, present: Any, count: Any, xp: Any
+) -> Any:
+    """Return the mean distance from each node, mirrored by `u` and `v`, to the nearest one."""
+    dx = u * along[:, None] - along[None]
+    dy = v * across[:, None] - across[None]
     square = xp.where(present[None], dx * dx + dy * dy, np.inf)
     nearest = xp.sqrt(xp.min(square, 1) + 1e-12)
     return xp.sum(xp.where(present, nearest, 0)) / count
