@@ -39,7 +39,7 @@ SEGMENT = "segment_"
 """Prefix of the names of a plan's columns."""
 
 
-def columns(genotypes: Genotype) -> dict[str, Array]:
+def columns(genotypes: Genotype) -> dict[str, Any]:
     """Return the arrays of a genotype, or of a batch, by name."""
     if isinstance(genotypes, BodyGraph):
         plan = {SEGMENT + name: x for name, x in genotypes.plan._asdict().items()}
@@ -49,10 +49,8 @@ def columns(genotypes: Genotype) -> dict[str, Array]:
 
 def from_columns(form: Genotype, found: Mapping[str, Any]) -> Genotype:
     """Return the genotypes with these columns, of the kind of `form`."""
-    if isinstance(form, BodyGraph):
-        plan = Plan(*(found[SEGMENT + name] for name in Plan._fields))
-        return BodyGraph(plan, CPPN(**{name: found[name] for name in vars(form.network)}))
-    return type(form)(**{name: found[name] for name in vars(form)})
+    leaves = [found[name] for name in columns(form)]
+    return jax.tree.unflatten(jax.tree.structure(form), leaves)
 
 
 def words(genotypes: Genotype) -> UInt32[Array, "row word"]:
