@@ -10,8 +10,7 @@ import h5py
 import numpy as np
 
 from ..naming import canonical, decode
-from ..spec import shape
-from ..spec.creature import scene_of
+from ..spec.creature import Identity
 from . import file as hdf5
 from . import hdf5_guard
 from .creature import parse
@@ -19,6 +18,8 @@ from .creature import parse
 FORMAT = "microcosmos-creature-hdf5/1"
 
 BODY = ("positions", "edges", "joints", "rest_length", "rest_angle", "stretch", "shear", "bend")
+NUMBERS = ("bias", "weight", "values", "place", "angle", "curl", "stiffness")
+"""Genes that a creature file holds as Base64."""
 PARTS = ("measured", "provenance", "licence", "credit")
 ATTRIBUTES = {"format", "sha256", *PARTS}
 
@@ -34,7 +35,7 @@ def _attributes(file: Mapping[str, Any]) -> dict[str, str]:
 
 
 def _tree(file: Mapping[str, Any]) -> dict[str, Any]:
-    body = shape(scene_of(file).body)
+    body = Identity.model_validate(file["identity"]).shape
     measured = file["measured"]
     tree: dict[str, Any] = {
         "identity": np.bytes_(canonical(file["identity"])),
@@ -83,11 +84,11 @@ def link(name: str) -> str:
 def _arrays(genome: Mapping[str, Any]) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for name, value in genome.items():
-        if name in ("bias", "weight", "values"):
+        if name in NUMBERS and isinstance(value, str):
             found[name] = decode(value)
         elif isinstance(value, list | tuple):
             text = any(isinstance(item, str) for item in value)
             found[name] = np.array([v.encode() for v in value]) if text else np.array(value)
-        elif name in ("nodes", "connections"):
+        elif name in ("nodes", "connections", "plan"):
             found[name] = _arrays(value)
     return found

@@ -6,9 +6,10 @@ from functools import singledispatch
 import numpy as np
 
 from .. import bodies
+from ..bodies import growth
 from . import targets
-from .body import Body, is_unavailable, shape
-from .creature import scene_of
+from .body import Body, GrownBody, is_unavailable, shape
+from .creature import Identity
 from .evolution import Evolution
 from .experiments import Spec
 from .folding import Folding
@@ -21,6 +22,8 @@ MOST_NODES = 1024
 """Approximate number of drawn nodes of a body."""
 MOST_FILAMENTS = 600
 """Most drawn filaments."""
+RANDOM_PLANS = 12
+"""Drawn plans where bodies grow."""
 MOST_PICTURES = 16
 """Most drawn pictures."""
 PIXELS = 32
@@ -63,13 +66,16 @@ def drawing(spec: Spec) -> Drawing:
 
 @drawing.register
 def _(spec: Evolution) -> Drawing:
+    if isinstance(spec.body, GrownBody):
+        return _random(spec.world, spec.body, spec.seed)
     return _alone(spec.world, spec.body)
 
 
 @drawing.register
 def _(spec: Refinement) -> Drawing:
-    scene = scene_of(parsed(spec.creature))
-    return _alone(scene.world, scene.body)
+    found = Identity.model_validate(parsed(spec.creature)["identity"])
+    size = found.world.width, found.world.height
+    return Drawing(*size, (_placed(found.body.builder, *size, found.shape),))
 
 
 @drawing.register
@@ -103,7 +109,22 @@ def _alone(world: World, body: Body) -> Drawing:
 
 def _drawn(name: str, width: int, height: int, body: Body) -> Drawn:
     """Draw a body in the middle of its world, where it starts."""
-    whole = bodies.placed(shape(body), (width / 2, height / 2))
+    return _placed(name, width, height, shape(body))
+
+
+def _random(world: World, body: GrownBody, seed: int) -> Drawing:
+    """Draw bodies of random plans, the kind that a search begins with."""
+    rng, drawn = np.random.default_rng(seed), []
+    for number in range(1, RANDOM_PLANS + 1):
+        uniform = rng.random(growth.PLAN_DRAWS, np.float32)
+        plan = growth.random_plan(uniform, body.genes)
+        grown = growth.grown_body(plan, body.capacity)
+        drawn.append(_placed(f"random plan {number}", world.width, world.height, grown))
+    return Drawing(world.width, world.height, tuple(drawn))
+
+
+def _placed(name: str, width: int, height: int, body: bodies.Body) -> Drawn:
+    whole = bodies.placed(body, (width / 2, height / 2))
     positions, edges = bodies.thinned(whole, MOST_NODES)
     return Drawn(name, len(whole.positions), positions, edges)
 

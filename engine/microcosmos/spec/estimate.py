@@ -6,7 +6,7 @@ from math import ceil
 
 from ..bodies.layout import MAX_NODES as LAID_OUT
 from . import reverse
-from .body import estimated_shape as shape
+from .body import Body, GrownBody, estimated_shape
 from .creature import room, scene_of
 from .encodings import Controller, Direct, Grown, Weights, gene_count
 from .evolution import Evolution
@@ -28,6 +28,8 @@ PATH = 8 * 65
 """Bytes of the path in a pose stream."""
 GRADIENT = 7
 """Time of a gradient relative to the simulation alone."""
+SEGMENT = 11
+"""Genes of a segment."""
 CHUNK = 2**13
 """Nodes processed at a time."""
 
@@ -55,8 +57,10 @@ def estimate(spec: Spec) -> Estimate:
 def _(spec: Evolution) -> Estimate:
     search = spec.search
     rows = 3 * spec.genome.max_nodes + 5 * spec.genome.max_connections
-    genome = FLOAT * (gene_count(spec.control, shape(spec.body)) or rows)
-    count = len(shape(spec.body).positions)
+    if isinstance(spec.body, GrownBody):
+        rows += SEGMENT * spec.body.segments
+    genome = FLOAT * (gene_count(spec.control, estimated_shape(spec.body)) or rows)
+    count = node_count(spec.body)
     archive = 4 * (spec.archive.cells + 2 * search.batch) * (genome + 160)
     archive += 2 * spec.archive.cells * (POSE * count + PATH)
     vary = 4 * search.batch * spec.genome.max_nodes**2 * FLOAT
@@ -72,7 +76,7 @@ def _(spec: Evolution) -> Estimate:
 
 @estimate.register
 def _(spec: Folding) -> Estimate:
-    cells, count = spec.world.width * spec.world.height, len(shape(spec.body).positions)
+    cells, count = spec.world.width * spec.world.height, node_count(spec.body)
     in_flight = spec.block * (fluid_bytes(cells) + node_bytes(count * spec.coupling.layers))
     updates = spec.updates * ceil(len(spec.targets) / spec.block) * spec.block
     return Estimate(
@@ -139,7 +143,7 @@ def cell_steps_of(scene: Scene) -> int:
 
 def gradient_bytes(scene: Scene, segment: int | None) -> int:
     """Return the bytes that one creature's gradient keeps."""
-    count = len(shape(scene.body).positions)
+    count = node_count(scene.body)
     step = reverse.step_bytes(scene.world, scene.coupling, count)
     state = reverse.state_bytes(scene.world, count)
     return reverse.total_bytes(scene.task.steps, segment, step, state)
@@ -147,15 +151,24 @@ def gradient_bytes(scene: Scene, segment: int | None) -> int:
 
 def simulation_bytes(scene: Scene, network_nodes: int) -> int:
     """Return the bytes of one simulated creature."""
-    count = len(shape(scene.body).positions)
+    count = node_count(scene.body)
     # A batched choice among activations computes all of them.
     width = max(network_nodes, _width(scene.control)) + 2
     controls = 10 * scene.task.steps * count * width * FLOAT
     if isinstance(scene.control, Direct | Grown):
         controls += 4 * min(count, LAID_OUT) ** 2 * FLOAT
+    if isinstance(scene.body, GrownBody):
+        controls += (8 + 4 * scene.body.rings) * count**2 * FLOAT
     poses = 3 * scene.task.steps * count * FLOAT
     cells = scene.world.width * scene.world.height
     return fluid_bytes(cells) + node_bytes(count * scene.coupling.layers) + controls + poses
+
+
+def node_count(body: Body) -> int:
+    """Return the nodes that a simulation of the body holds, also those that may not grow."""
+    if isinstance(body, GrownBody):
+        return body.capacity.nodes
+    return len(estimated_shape(body).positions)
 
 
 def _width(control: Controller | Gait | Fold) -> int:

@@ -2,6 +2,7 @@
 
 from .columns import plan_of
 from .form import FORMS, form
+from .graph import grown_body
 from .plan import Capacity, Plan
 from .random import (
     FIRST_LIMBS,

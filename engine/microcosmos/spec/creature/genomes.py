@@ -5,6 +5,8 @@ from typing import Literal, Self
 import numpy as np
 from pydantic import Field, field_validator, model_validator
 
+from ... import bodies
+from ...bodies import growth
 from ...naming import decode
 from .. import encodings, scene
 from ..base import Part
@@ -91,6 +93,16 @@ class Segments(Part):
                         f"`plan.{name}` must be from {low:g} to {high:g}, got {value:g}"
                     )
         return self
+
+    def grow(self, body: GrownBody, softest: float) -> bodies.Body:
+        """Return the body that the plan grows into, in the sizes of `body`."""
+        found = {name: np.zeros(body.segments, kind) for name, kind in growth.TYPES.items()}
+        for name in type(self).model_fields:
+            given = getattr(self, name)
+            column = decode(given) if isinstance(given, str) else given
+            found[name][: len(column)] = column
+        found["used"][: len(self.number)] = True
+        return growth.grown_body(growth.Plan(**found), body.capacity, softest)
 
     def refuse_unfit(self, body: GrownBody) -> None:
         """Raise `ValueError` where a plan has more than its body allows."""

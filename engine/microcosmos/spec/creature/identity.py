@@ -4,8 +4,9 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Tag, model_validator
 
+from ... import bodies
 from ..base import ENCODINGS, Part, name_in, one_of
-from ..body import Body, GrownBody, PluginBody
+from ..body import Body, GrownBody, PluginBody, shape
 from ..coupling import Coupling
 from ..scene import Gait, Scene
 from ..search import Task
@@ -51,6 +52,14 @@ class Identity(Part):
             assert isinstance(scene.body, GrownBody)  # Else the scene would not be valid.
             self.genome.plan.refuse_unfit(scene.body)
         return self
+
+    @property
+    def shape(self) -> bodies.Body:
+        """Return the graph of the body at rest; that of a plan as it has grown."""
+        genome, body = self.genome, self.body
+        if isinstance(genome, BodyGraph) and isinstance(body, GrownBody):
+            return genome.plan.grow(body, genome.control.softest)
+        return shape(body)
 
     @property
     def scene(self) -> Scene:

@@ -1,0 +1,77 @@
+"""Bodies that grow from plans: drawings, estimates and the graph of a creature."""
+
+from io import BytesIO
+
+import h5py
+import jax
+import jax.numpy as jnp
+import numpy as np
+from grown_bodies import genotype_of, grown_file, grown_scene
+
+from microcosmos import bodies
+from microcosmos.archive import creature_h5
+from microcosmos.build import build_encoding
+from microcosmos.spec import drawing, estimate, parse
+from microcosmos.spec.creature import Identity
+
+ZOO = {
+    "experiment": "quality-diversity",
+    "body": {"builder": "grown"},
+    "control": {"encoding": "body-graph"},
+    "genome": {"max_nodes": 32, "max_connections": 96},
+}
+
+
+def test_a_search_for_bodies_is_drawn_by_random_plans_of_its_seed():
+    found, again, other = (drawing(parse({**ZOO, "seed": seed})) for seed in (1, 1, 2))
+    assert [body.name for body in found.bodies] == [f"random plan {n}" for n in range(1, 13)]
+    for body, same in zip(found.bodies, again.bodies, strict=True):
+        np.testing.assert_array_equal(body.positions, same.positions)
+        np.testing.assert_allclose(body.positions.mean(0), [24, 24])
+        a, b = body.positions[body.edges].swapaxes(0, 1)
+        np.testing.assert_allclose(np.hypot(*(b - a).T), 1, rtol=1e-5)
+    assert [body.nodes for body in found.bodies] != [body.nodes for body in other.bodies]
+
+
+def test_a_refined_creature_is_drawn_as_it_has_grown():
+    file = grown_file(grown_scene())
+    (body,) = drawing(parse({"experiment": "refinement", "creature": file})).bodies
+    assert (body.nodes, len(body.edges)) == (22, 22)
+
+
+def test_the_graph_of_a_creature_is_the_body_that_is_simulated():
+    scene = grown_scene(softest=0.05)
+    body = Identity.model_validate(grown_file(scene)["identity"]).shape
+    encoding = build_encoding(scene, (16, 40))
+    genotype = jax.tree.map(jnp.asarray, genotype_of(scene))
+    grown, bones = encoding.develop(genotype)
+    there = np.asarray(grown.present)
+    np.testing.assert_allclose(body.positions, np.asarray(grown.positions)[there], atol=1e-5)
+    turns = np.asarray(bones.rest_angle)[np.asarray(bones.bends)]
+    np.testing.assert_allclose(body.rest_angle, turns, atol=1e-5)
+    stiffness = np.asarray(bones.stiffness)[np.asarray(bones.bends)]
+    np.testing.assert_allclose(body.bend, 0.05 ** (1 - stiffness), rtol=1e-5)
+    laid_out = bodies.layout(body)
+    placed = np.asarray(bones.placed)[there][:, np.asarray(bones.there)]
+    np.testing.assert_allclose(laid_out.placed, placed, atol=1e-5)
+    turned = np.asarray(bones.turned)[np.asarray(bones.there)][:, np.asarray(bones.bends)]
+    np.testing.assert_allclose(laid_out.turned, turned, atol=1e-5)
+
+
+def test_an_hdf5_file_holds_the_grown_body_and_its_plan():
+    file = grown_file(grown_scene())
+    data = creature_h5.dump(file)
+    assert creature_h5.load(data) == creature_h5.parse(file)
+    with h5py.File(BytesIO(data), "r") as tree:
+        plan = tree["genome/plan"]
+        assert tree["body/positions"].shape == (22, 2)
+        np.testing.assert_array_equal(plan["nodes"], [7, 4, 6])
+        np.testing.assert_allclose(plan["angle"], [0, 1.1, -0.6], rtol=1e-6)
+
+
+def test_the_estimate_grows_with_the_most_nodes_of_a_body():
+    small, large = (
+        estimate(parse({**ZOO, "body": {"builder": "grown", "nodes": nodes}})).memory_bytes
+        for nodes in (24, 96)
+    )
+    assert large > small
