@@ -14,31 +14,45 @@ from ..viz.replay import graph_among, present_parts
 
 
 def body_of(scene: spec.Scene, driven: Drive) -> tuple[bodies.Body, np.ndarray, np.ndarray]:
-    """Return the developed body, and masks of the scene's joints and edges that it has.
+    """Return the developed body, and masks of its world's joints and edges that it has.
 
-    Raises `ValueError` if it is no valid body.
+    It is at rest as it starts. Raises `ValueError` if it is no valid body.
     """
-    body, start, rods = spec.shape(scene.body), driven.start, driven.world.rods
+    body, rods = spec.shape(scene.body), driven.world.rods
     nodes = np.asarray(world.grown_nodes(driven.world))
-    edges, joints = present_parts(scene, nodes)
-    edge_pairs, joint_pairs = graph_among(scene, nodes)
+    graph = np.asarray(rods.edges), np.asarray(rods.joints)
+    edges, joints = present_parts(*graph, nodes)
+    edge_pairs, joint_pairs = graph_among(*graph, nodes)
+    positions = np.asarray(driven.start.positions, float)[nodes]
+    given = body.rest_angle if driven.layout is None else driven.layout.rest_angle
+    length, angle = _geometry(positions, edge_pairs, joint_pairs, np.asarray(given)[joints])
     return (
         bodies.Body(
-            positions=np.asarray(start.positions, float)[nodes],
+            positions=positions,
             edges=edge_pairs,
             joints=joint_pairs,
-            rest_length=body.rest_length[edges],
-            rest_angle=body.rest_angle[joints],
+            rest_length=length,
+            rest_angle=angle,
             stretch=np.asarray(rods.stretch, float)[edges],
             shear=np.asarray(rods.shear, float)[edges],
             bend=np.asarray(rods.bend, float)[joints],
-            arc=body.arc[nodes],
-            member=body.member[nodes],
+            arc=np.linspace(0, 1, len(positions)),
+            member=np.asarray(driven.world.groups.member)[nodes],
             crossing=body.crossing,
         ),
         joints,
         edges,
     )
+
+
+def _geometry(
+    positions: np.ndarray, edges: np.ndarray, joints: np.ndarray, given: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lengths of edges, and the angles at joints on the branch of those given."""
+    x, y = (positions[edges[:, 1]] - positions[edges[:, 0]]).T
+    direction = np.arctan2(y, x)
+    error = direction[joints[:, 1]] - direction[joints[:, 0]] - given
+    return np.hypot(x, y), given + error - 2 * np.pi * np.round(error / (2 * np.pi))
 
 
 def refine(
@@ -49,7 +63,8 @@ def refine(
     Lengths in cells double, times in steps quadruple, speeds halve and the viscosity in cells²
     a step stays: errors of resolution, of the step and of compressibility all fall fourfold.
     The chain has twice the joints, and sweeps relax a bend in the same time. Repulsion keeps
-    its width in cells: it then reaches half as far.
+    its width in cells, and so reaches half as far; its speed halves as others do. A body with
+    soft joints that a plan grew bends in the middle of its edges too, as softly as beside it.
     """
     body = spec.shape(scene.body) if body is None else body
     half = bodies.subdivided(body)
@@ -61,6 +76,7 @@ def refine(
             "energy": None,
             "obstacles": tuple(one.scaled(2) for one in place.obstacles),
             "flow": _halved(place.flow),
+            "steric": place.steric and _slower(place.steric),
         }
     )
     fine = form.model_copy(
@@ -69,7 +85,9 @@ def refine(
             "max_force": _scaled(form.force_limit(place.viscosity), 0.5),
         }
     )
-    box = build.build_world(wide, fine, half.body)
+    if isinstance(scene.body, spec.GrownBody):
+        half = replace(half, body=replace(half.body, bend=_soft(body)))
+    box = build.build_world(wide, fine, half.body, matching=build.matching_of(scene.body))
     middle = np.array([wide.width, wide.height]) / 2
     positions = half.body.positions - half.body.positions[half.nodes].mean(0) + middle
     start = build.build_start(wide, box, positions)
@@ -117,6 +135,8 @@ def at_full_strength(scene: spec.Scene, body: bodies.Body | None = None) -> sear
 
     A soft body lags behind its rest shape: its motion is not reciprocal although the gait is.
     """
+    if body is not None and isinstance(scene.body, spec.GrownBody):
+        body = replace(body, bend=np.ones(len(body.bend)))
     return _with(scene, body, nu_c=None)
 
 
@@ -137,6 +157,24 @@ def _with(scene: spec.Scene, body: bodies.Body | None, **form: Any) -> search.Ta
 def _halved(flow: spec.Flow | None) -> spec.Flow | None:
     """Return the flow at half its speed in cells a step."""
     return flow and flow.model_copy(update={"speed": flow.speed / 2})
+
+
+def _soft(body: bodies.Body) -> np.ndarray:
+    """Return the stiffness of the refined joints, whose errors decay at the same rate.
+
+    A new joint, in the middle of an edge, is as stiff as those at its ends in the mean.
+    """
+    stiff = 1 - (1 - body.bend) ** 0.25
+    ends, count = body.joints.ravel(), len(body.edges)
+    total = np.bincount(ends, np.repeat(stiff, 2), count)
+    between = total / np.maximum(np.bincount(ends, minlength=count), 1)
+    return np.concatenate([stiff, between])
+
+
+def _slower(steric: spec.Steric) -> spec.Steric:
+    """Return repulsion at half the speed, in cells a step."""
+    half = {name: 0.5 * getattr(steric, name) for name in ("strength", "limit")}
+    return steric.model_copy(update=half)
 
 
 def _scaled(limit: float | None, factor: float) -> float | None:

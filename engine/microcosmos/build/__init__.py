@@ -18,6 +18,7 @@ from .scene import (
     build_stroke,
     build_task,
     build_world,
+    matching_of,
 )
 from .surroundings import build_flow, build_start, build_surroundings
 from .tables import build_crowd, build_gaits, build_scaling

@@ -1,5 +1,7 @@
 """Build the world, the body and the task of a scene."""
 
+from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import jax.numpy as jnp
@@ -34,6 +36,7 @@ MAGIC = {"capped": fluid.capped_magic, "fixed": fluid.fixed_magic}
 SMOOTHING = {"gaussian": fields.gaussian, "binomial": fields.binomial}
 ROOM = (8, 8)
 """Default number of nodes and connections of networks that are not varied."""
+Matching = Callable[[bodies.Body, float, Any, Any], filaments.Layout | None]
 GOALS = {"displacement": (1.0, 0.0), "energy": (0.0, 1.0), "displacement+energy": (1.0, 1.0)}
 
 
@@ -50,7 +53,8 @@ def build_task(
     by the one that a genotype has grown.
     """
     body = spec.shape(scene.body) if body is None else body
-    box = build_world(scene.world, scene.coupling, body, dtype)
+    matching = matching_of(scene.body)
+    box = build_world(scene.world, scene.coupling, body, dtype, matching=matching)
     middle = np.array([scene.world.width, scene.world.height]) / 2
     positions = body.positions - body.positions.mean(0) + middle
     start = build_start(scene.world, box, positions)
@@ -118,10 +122,20 @@ def build_placements(box: spec.World) -> jnp.ndarray | None:
     return jnp.asarray(shifts, jnp.int32)
 
 
+def matching_of(body: spec.Body) -> Matching:
+    """Return what builds the shape matching of a body; one that a plan grew has soft joints."""
+    return build_soft_matching if isinstance(body, spec.GrownBody) else build_matching
+
+
 def build_world(
-    box: spec.World, form: spec.Coupling, body: bodies.Body, dtype: Any = jnp.float32
+    box: spec.World,
+    form: spec.Coupling,
+    body: bodies.Body,
+    dtype: Any = jnp.float32,
+    *,
+    matching: Matching | None = None,
 ) -> world.World:
-    """Build the box of fluid around bodies."""
+    """Build the box of fluid around bodies; `matching` is `build_matching` if left out."""
     size = (box.width, box.height)
     return world.World(
         viscosity=jnp.asarray(box.viscosity, dtype),
@@ -140,7 +154,7 @@ def build_world(
             fluid=box.fluid,
         ),
         limits=build_limits(form, box.viscosity, dtype),
-        layout=build_matching(body, form.theta_feedback, form.nu_c, dtype),
+        layout=(matching or build_matching)(body, form.theta_feedback, form.nu_c, dtype),
         nu_c=_scalar(form.nu_c, dtype),
         steric=build_steric(box.steric, dtype),
         barrier=build_barrier(box, dtype),
@@ -161,6 +175,15 @@ def build_matching(
     small = len(body.positions) <= MAX_NODES
     matched = stiff and small and nu_c is None and theta_feedback == 1
     return build_layout(body, dtype) if matched else None
+
+
+def build_soft_matching(
+    body: bodies.Body, theta_feedback: float, nu_c: Any, dtype: Any = jnp.float32
+) -> filaments.Layout:
+    """Build shape matching in which each joint bends as softly as the body has it."""
+    found = build_layout(body, dtype)
+    soft = bool(np.any(body.bend < 1))
+    return replace(found, bend=jnp.asarray(body.bend, dtype)) if soft else found
 
 
 def build_layout(body: bodies.Body, dtype: Any = jnp.float32) -> filaments.Layout:

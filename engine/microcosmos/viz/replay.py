@@ -25,7 +25,7 @@ from ..device import device_kind
 from ..filaments import Rest
 from ..fluid import vorticity
 from ..genomes import Drive
-from ..spec import Gait, Scene, Task, shape
+from ..spec import Gait, Scene, Task
 from ..spec.creature import fitness_of
 from ..spec.estimate import placements, simulation_bytes
 from .replay_file import REPLAY_FORMAT, solid_runs
@@ -62,7 +62,7 @@ def record(file: Mapping[str, Any]) -> bytes:
         needed = "a creature whose simulation stays finite"
         raise creature.CreatureError("identity", needed, "one that diverges")
     present = film.present
-    edges, joints = graph_among(scene, present)
+    edges, joints = graph_among(film.edges, film.joints, present)
     planes = {name: getattr(film, name) for name in LEVELS}
     scales = {n: float(np.max(np.abs(x), initial=0.0)) or 1.0 for n, x in planes.items()}
     header = {
@@ -84,7 +84,7 @@ def record(file: Mapping[str, Any]) -> bytes:
     }
     if (solid := scene.world.solid) is not None:
         header["solid"] = solid_runs(solid)
-    there = present_parts(scene, present)
+    there = present_parts(film.edges, film.joints, present)
     return _pack(
         header,
         np.asarray(film.positions[:, present], "<f4"),
@@ -131,20 +131,22 @@ def unmeasured(scene: Scene) -> Scene:
     return scene.model_copy(update={"task": task, "plugins": {}})
 
 
-def present_parts(scene: Scene, present: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def present_parts(
+    edges: np.ndarray, joints: np.ndarray, present: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Return masks of the edges and joints whose nodes are all present."""
-    body = shape(scene.body)
-    edges = np.all(present[body.edges], axis=1)
-    return edges, np.all(edges[body.joints], axis=1)
+    there = np.all(present[edges], axis=1)
+    return there, np.all(there[joints], axis=1)
 
 
-def graph_among(scene: Scene, present: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def graph_among(
+    edges: np.ndarray, joints: np.ndarray, present: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Return edges (edge, 2) and joints (joint, 2) that are present, renumbered."""
-    edges, joints = present_parts(scene, present)
-    body = shape(scene.body)
+    there, bending = present_parts(edges, joints, present)
     return (
-        (np.cumsum(present) - 1)[body.edges[edges]],
-        (np.cumsum(edges) - 1)[body.joints[joints]],
+        (np.cumsum(present) - 1)[edges[there]],
+        (np.cumsum(there) - 1)[joints[bending]],
     )
 
 
@@ -196,6 +198,8 @@ class Recording(eqx.Module):
     """Rest shapes of the step before each frame; for the first frame, of the first step."""
     present: Array
     """Nodes that have grown."""
+    edges: Array
+    joints: Array
 
 
 @lru_cache(maxsize=16)
@@ -250,7 +254,10 @@ def _filmed(
     before = np.maximum(np.arange(frames + 1) * every - 1, 0)
     rest = jax.tree.map(lambda x: x[before], seen.rest)
     present = world.grown_nodes(driven.world)
-    return Recording(positions, curl, velocity, energy, rest, present), end, seen
+    rods = driven.world.rods
+    assert rods.joints is not None
+    parts = rest, present, rods.edges, rods.joints
+    return Recording(positions, curl, velocity, energy, *parts), end, seen
 
 
 def _mean_motion(task: search.Task, actuator: search.Actuator) -> dict[str, Any]:

@@ -111,7 +111,7 @@ def test_a_replay_holds_the_rest_shapes_as_they_were_applied(film, best):
     scene = creature.scene_of(best)
     encoding = build_encoding(scene, creature.room(best))
     task = build_task(scene)
-    genes = genomes.read(best["identity"]["genome"], encoding.room)
+    genes = genomes.read(best["identity"]["genome"], encoding)
     genotype = jax.tree.map(jnp.asarray, genes)
     rest = search.drive(task, genotype).inputs
     steps = np.maximum(np.arange(film.frames) * film.header["every"] - 1, 0)

@@ -1,0 +1,86 @@
+"""A body that a plan grew is built again with the same joints, stiffness and rest shapes."""
+
+from functools import cache
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from grown_bodies import ROOM, genotype_of, grown_file, grown_scene
+
+from microcosmos import bodies, search
+from microcosmos.audit.physics import audit
+from microcosmos.audit.variants import at_full_strength, body_of, refine, with_limits
+from microcosmos.build import build_task
+from microcosmos.filaments import Rest
+
+SOFT = 0.05
+
+
+@cache
+def rebuilt(softest):
+    """Simulate the creature: its scene, drive and path, the body built again, its rest."""
+    scene = grown_scene(softest=softest)
+    task = build_task(scene, room=ROOM)
+    driven = search.drive(task, jax.tree.map(jnp.asarray, genotype_of(scene)))
+    _, seen = search.simulate(driven)
+    body, joints, edges = body_of(scene, driven)
+    rest = Rest(seen.rest.angle[:, joints], seen.rest.length[:, edges])
+    return scene, driven, np.asarray(seen.centre), body, rest
+
+
+@pytest.mark.parametrize("softest", [1.0, SOFT])
+def test_a_grown_body_that_is_built_again_moves_as_before(softest):
+    scene, _, centre, body, rest = rebuilt(softest)
+    assert len(body.positions) == 22
+    # A tree has an edge less than nodes, a joint less than edges; a ring one and two more.
+    assert (len(body.edges), len(body.joints)) == (22, 22)
+    task = with_limits(scene, body, 1.0)
+    layout = task.world.layout
+    assert layout is not None
+    assert (layout.bend is None) == (softest == 1)
+    _, seen = search.simulate(search.drive(task, rest))
+    moved = np.abs(centre - centre[0]).max()
+    np.testing.assert_allclose(seen.centre, centre, atol=1e-2 * moved)
+
+
+def test_rest_angles_are_those_of_the_body_as_it_starts():
+    *_, body, _ = rebuilt(SOFT)
+    laid_out = bodies.layout(body)
+    turn = laid_out.angle[body.joints[:, 1]] - laid_out.angle[body.joints[:, 0]]
+    error = (turn - body.rest_angle + np.pi) % (2 * np.pi) - np.pi
+    np.testing.assert_allclose(error, 0, atol=1e-6)
+    np.testing.assert_allclose(body.rest_length, 1, atol=1e-5)
+
+
+def test_soft_joints_and_repulsion_act_in_the_same_time_on_a_finer_grid():
+    scene, driven, _, body, rest = rebuilt(SOFT)
+    fine = refine(scene, rest, body)[0].world
+    assert fine.layout is not None
+    assert fine.layout.bend is not None
+    half = bodies.subdivided(body)
+    # Four of the shorter steps leave what one leaves.
+    kept = (1 - np.asarray(fine.layout.bend, float)) ** 4
+    np.testing.assert_allclose(kept[half.joints], 1 - body.bend, atol=1e-5)
+    between = np.delete(np.asarray(fine.layout.bend), half.joints)
+    assert 0 < between.min() < 0.5
+    now, then = driven.world.steric, fine.steric
+    assert now is not None
+    assert then is not None
+    assert (2 * then.strength, 2 * then.limit) == (now.strength, now.limit)
+
+
+def test_a_reciprocal_gait_is_simulated_with_stiff_joints():
+    scene, _, _, body, _ = rebuilt(SOFT)
+    layout = at_full_strength(scene, body).world.layout
+    assert layout is not None
+    assert layout.bend is None
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("softest", [1.0, SOFT])
+def test_every_row_of_an_audit_has_a_value_for_a_branched_body_with_a_ring(softest):
+    rows = {row["name"]: row for row in audit(grown_file(grown_scene(softest=softest)))["rows"]}
+    assert all(row["value"] is not None for row in rows.values())
+    for name in ("wider limits", "no limits"):
+        assert rows[name]["value"] == pytest.approx(1, abs=0.05)
