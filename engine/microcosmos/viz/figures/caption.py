@@ -6,7 +6,7 @@ import numpy as np
 
 from ...archive.variety import KIND
 from ...spec import Chain
-from ...spec.body import PluginBody, SwimmerBody, shape
+from ...spec.body import GrownBody, PluginBody, SwimmerBody, shape
 from ...spec.emitters import PopulationEmitter
 from .axes import Axis, chosen
 from .groups import Group
@@ -16,6 +16,12 @@ from .strips import Strip
 
 NAMES = {"best": "best fitness", "mean": "mean fitness", "qd_score": "QD score"}
 """Names of curves that differ from those of their columns."""
+ENCODINGS = {
+    "cppn": "CPPN",
+    "cppn-body": "CPPN for body and control",
+    "body-graph": "CPPN that knows the place of each node",
+}
+"""Controllers whose names differ from those of their encodings."""
 
 
 def of_archive(found: Archive, names: list[str] | None) -> str:
@@ -133,6 +139,8 @@ def _body(spec: Search) -> str:
     body = spec.body
     if isinstance(body, PluginBody):
         return f"the body “{body.plugin.title}” ({body.builder})"
+    if isinstance(body, GrownBody):
+        return f"bodies of up to {body.nodes} nodes that grow from plans"
     nodes = len(shape(body).positions)
     if isinstance(body, Chain):
         return f"a filament of {nodes} nodes"
@@ -141,8 +149,8 @@ def _body(spec: Search) -> str:
 
 
 def _control(spec: Search) -> str:
-    control, names = spec.control, {"cppn": "CPPN", "cppn-body": "CPPN for body and control"}
-    name = names.get(control.encoding, f"{control.encoding} encoding")
+    control = spec.control
+    name = ENCODINGS.get(control.encoding, f"{control.encoding} encoding")
     timer = getattr(control, "timer", "sine-cosine")
     period = f"period {control.period:g} steps" if timer == "sine-cosine" else "linear timer"
     return f"controlled by a {name} ({period})"
