@@ -36,17 +36,24 @@ NODES = 16
 """Least nodes of a body whose stride counts."""
 CONTROL_GENERATIONS = 200
 """Generations of the controls, and at which evolving bodies are compared with them."""
+TASK_GENERATIONS = 100
+"""Generations of searches for bodies that solve a task."""
 FROZEN = {"body_rate": 0.0, "shape_rate": 0.0}
 """Rates with which plans stay as they were drawn."""
-CHANNEL: dict[str, Any] = {"flow": {"kind": "poiseuille", "speed": 0.005}}
-POSTS: dict[str, Any] = {
-    "width": 96,
-    "obstacles": [
-        {"kind": "post", "x": 72.0, "y": y, "radius": 2.5} for y in (8.0, 24.0, 40.0)
-    ],
+POSTS = [{"kind": "post", "x": 64.0, "y": y, "radius": 2.5} for y in (0.0, 16.0, 32.0)]
+PLACES: dict[str, dict[str, Any]] = {
+    "upstream": {
+        "world": {"flow": {"kind": "poiseuille", "speed": 0.005}},
+        "task": {"fitness": "upstream"},
+    },
+    "through": {
+        "world": {"width": 96, "obstacles": POSTS},
+        "task": {"fitness": "through", "steps": 4000},
+    },
 }
-PLACES = {"upstream": CHANNEL, "through": POSTS}
-"""Worlds that ask for bodies, by the task in each."""
+"""Parts of the spec that ask for bodies, by task."""
+SHORT = {"length": 24.0}
+"""Bodies between whose start and the posts there is room."""
 
 
 def bodies(product: Installation) -> bool:
@@ -184,10 +191,8 @@ def at_generation(product: Installation, run: dict, figure: str) -> float:
 
 def solves(product: Installation, task: str, plain: list[dict]) -> bool:
     """Tell whether the fittest evolved for a task beats every fittest of `standard` there."""
-    zoo = PRESETS["zoo"][1]
-    parts = {"world": PLACES[task], "task": {"fitness": task}}
-    parts["search"] = {"generations": CONTROL_GENERATIONS}
-    run = carry_out(product, seeded(zoo, 0, **parts), f"zoo, {task}")
+    parts = {"body": SHORT, "search": {"generations": TASK_GENERATIONS}, **PLACES[task]}
+    run = carry_out(product, seeded(PRESETS["zoo"][1], 0, **parts), f"zoo, {task}")
     put = [fitness_there(product, one, task) for one in plain]
     rich.print(f"{task}: evolved {run['best']:.3f}, the fittest of standard {summary(put)}")
     return run["best"] > max(put)
@@ -196,8 +201,7 @@ def solves(product: Installation, task: str, plain: list[dict]) -> bool:
 def fitness_there(product: Installation, run: dict, task: str) -> float:
     """The fitness of a run's fittest elite in the world of a task; −inf if infeasible."""
     file = chosen(product, run["id"])[0]
-    document = seeded(PRESETS["standard"][1], 0, world=PLACES[task], task={"fitness": task})
-    there = parse(document)
+    there = parse(seeded(PRESETS["standard"][1], 0, **PLACES[task]))
     genotype = actuator_of(creature.parse(file), there.scene)
     block = jax.tree.map(lambda x: jnp.asarray(x)[None], genotype)
     found = judged(jax.device_get(build_block(there.scene, room_of(there))(block)))
