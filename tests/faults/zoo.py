@@ -159,15 +159,15 @@ def controls(product: Installation, runs: list[dict]) -> bool:
     evaluations, with rank tests; tell whether they are better than both."""
     zoo = PRESETS["zoo"][1]
     short = {"generations": CONTROL_GENERATIONS}
-    chain = PRESETS["standard"][1].model_dump(mode="json")
-    parts = {name: chain[name] for name in ("body", "control", "genome")}
+    chain, place = PRESETS["standard"][1], zoo.model_dump(mode="json")
+    parts = {name: place[name] for name in ("world", "archive")}
     others = {
         "frozen": [
             carry_out(product, seeded(zoo, s, genome=FROZEN, search=short), f"frozen, seed {s}")
             for s in SEEDS
         ],
         "chains": [
-            carry_out(product, seeded(zoo, s, **parts, search=short), f"chains, seed {s}")
+            carry_out(product, seeded(chain, s, **parts, search=short), f"chains, seed {s}")
             for s in SEEDS
         ],
     }
