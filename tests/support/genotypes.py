@@ -41,6 +41,14 @@ def any_network(control: Any, rng: np.random.Generator) -> genomes.CPPN:
     return network_of(links, inputs, kinds, biases, room=(first + 4, len(links) + 2))
 
 
+def padded(network: genomes.CPPN, room: tuple[int, int]) -> genomes.CPPN:
+    """Return a network with room for more genes."""
+    larger = genomes.empty(*room)
+    for name, column in vars(network).items():
+        getattr(larger, name)[: len(column)] = column
+    return jax.tree.map(jnp.asarray, larger)
+
+
 def any_genotype(
     scene: spec.Scene, encoding: genomes.Encoding, rng: np.random.Generator
 ) -> genomes.CPPN | genomes.Vector:

@@ -1,0 +1,178 @@
+"""Grown bodies in a fluid: momentum, lengths, soft joints, and the kernel beside JAX."""
+
+from functools import cache
+
+import body_plans
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from genotypes import any_network, padded
+
+from microcosmos import fluid, genomes, spec, units, world
+from microcosmos.build import build_task
+from microcosmos.neat import plans
+from microcosmos.search.simulation import drive
+
+ROOM = (40, 120)
+STEPS = 100
+PLANS = 20
+BODY = spec.GrownBody(
+    builder="grown", nodes=24, length=18.0, segments=6, segment_nodes=10, rings=2
+)
+ROUNDING = {1: 4, 10: 16, 100: 64}
+"""Differences of the kernel and JAX after so many steps, in roundings of a position."""
+
+
+def task_of(softest=1.0, *, limits=True, **box):
+    control = spec.BodyGraph(length_scale=0.0, period=40.0, softest=softest, max_speed=None)
+    scene = spec.Scene(
+        world=spec.World(**{"width": 40, "height": 40} | box),
+        coupling=spec.Coupling(limits=limits),
+        body=BODY,
+        control=control,
+        task=spec.Task(steps=STEPS),
+    )
+    return build_task(scene, room=ROOM), control
+
+
+@pytest.fixture(scope="module")
+def population():
+    """Plans that have mutated, those with rings among them."""
+    rates = plans.PlanRates(BODY.genes, structure=0.7, values=0.4, vary=0.9)
+    keys = jax.random.split(jax.random.key(1), PLANS)
+    return jax.jit(jax.vmap(lambda key: body_plans.mutated(key, 8, rates)))(keys)
+
+
+@pytest.fixture(scope="module")
+def swum(population):
+    """A function that simulates all plans with random networks, as JAX and the kernel do."""
+
+    @cache
+    def swim(softest, limits):
+        task, control = task_of(softest, limits=limits)
+        random = np.random.default_rng(0)
+
+        @jax.jit
+        def run(genotype):
+            driven = drive(task, genotype, differentiable=True)
+            given = driven.world, driven.start, driven.inputs
+
+            def observe(state, measures):
+                momentum = fluid.momentum(state.populations)
+                return measures, jnp.stack([jnp.sum(one) for one in momentum])
+
+            _, found = world.rollout(*given, observe)
+            return _arrays(driven, *found, world.native.rollout(*given)[1])
+
+        networks = [padded(any_network(control, random), ROOM) for _ in range(PLANS)]
+        genotypes = [
+            genomes.BodyGraph(body_plans.member(population, index), network)
+            for index, network in enumerate(networks)
+        ]
+        return [jax.device_get(run(one)) for one in genotypes]
+
+    return swim
+
+
+@pytest.mark.parametrize("softest", [1.0, 0.1])
+def test_grown_bodies_give_the_fluid_no_impulse(swum, softest):
+    impulses = [np.hypot(*momentum.T).max() for *_, momentum, _ in swum(softest, True)]
+    assert max(impulses) <= units.MAX_IMPULSE
+    assert max(impulses) > 0
+
+
+@pytest.mark.parametrize("softest", [1.0, 0.1])
+def test_the_kernel_moves_grown_bodies_as_jax_does(swum, softest):
+    pytest.importorskip("microcosmos_kernels")
+    for _, _, measures, _, native in swum(softest, True):
+        for name in ("positions", "force", "speed", "curvature", "centre"):
+            ours, theirs = np.asarray(getattr(native, name)), getattr(measures, name)
+            unit = np.finfo(np.float32).eps * (32 + np.abs(theirs).max())
+            for steps, most in ROUNDING.items():
+                assert np.abs(ours - theirs)[:steps].max() <= most * unit, (name, steps)
+
+
+def test_edges_keep_their_rest_length(swum):
+    """But for those of bent rings, whose joints disagree."""
+    rings = 0
+    for boned, rest, measures, *_ in swum(1.0, False):
+        edges, there = boned
+        ends = measures.positions[:, edges]
+        length = np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=-1)
+        closed = there[BODY.nodes :].any()
+        rings += closed
+        most = 0.1 if closed else 2e-4
+        assert np.abs(length - rest.length)[:, there].max() < most
+    assert 0 < rings < PLANS
+
+
+def test_bodies_move_and_stay_in_the_middle_as_they_start(swum):
+    moved = []
+    for (edges, there), _, measures, *_ in swum(1.0, True):
+        present = np.unique(edges[there])
+        positions = measures.positions[:, present]
+        moved.append(np.abs(positions[-1] - positions[0]).max())
+        np.testing.assert_allclose(positions[0].mean(0), [20, 20], atol=0.05)
+        assert np.isfinite(measures.positions).all()
+    assert np.median(moved) > 0.1
+
+
+ROOTS = {
+    "a chain": ({"nodes": 9},),
+    "a star": ({"nodes": 5}, {"nodes": 5, "copies": 3}),
+    "a limb": ({"nodes": 9}, {"nodes": 5, "place": 0.5, "angle": 1.5}),
+}
+
+
+@pytest.mark.parametrize("native", [False, True])
+@pytest.mark.parametrize("root", ROOTS)
+def test_soft_joints_relax_exponentially(root, native):
+    """In a world without fluid the error is (1 − k)ᵗ of the first, k being the stiffness."""
+    if native:
+        pytest.importorskip("microcosmos_kernels")
+    softest, stiffness, turn = 0.1, 0.4, 0.3
+    task, control = task_of(softest, limits=False, fluid=False)
+    plan = body_plans.plan_of(
+        *({"stiffness": stiffness} | one for one in ROOTS[root]), rows=BODY.segments
+    )
+    network = padded(any_network(control, np.random.default_rng(0)), ROOM)
+    genotype = genomes.BodyGraph(body_plans.to_jax(plan), network)
+    driven = drive(task, genotype, differentiable=True)
+    box, start = driven.world, driven.start
+    layout, joints = box.layout, np.asarray(box.rods.joints)
+    rest = jax.tree.map(lambda one: jnp.repeat(one[:1], 40, 0), driven.inputs)
+    tip = np.asarray(box.rods.bend > 0)
+    # A joint that is bent alone: the second to last of the root.
+    bent = int(np.flatnonzero(tip)[1])
+    rest = type(rest)(
+        jnp.broadcast_to(layout.rest_angle, rest.angle.shape).at[:, bent].add(turn), rest.length
+    )
+    way = world.native.rollout if native else _observed
+    measures = jax.jit(way)(box, start, rest)[1]
+    ends = np.asarray(measures.positions)[:, np.asarray(box.rods.edges)]
+    v = ends[:, :, 1] - ends[:, :, 0]
+    angle = np.arctan2(v[..., 1], v[..., 0])
+    angles = angle[:, joints[:, 1]] - angle[:, joints[:, 0]] - np.asarray(layout.rest_angle)
+    error = turn - (angles - 2 * np.pi * np.round(angles / (2 * np.pi)))[:, bent]
+    rate = softest ** (1 - stiffness)
+    expected = turn * (1 - rate) ** np.arange(1, 41)
+    np.testing.assert_allclose(error, expected, atol=2e-5)
+
+
+def test_stiff_joints_have_no_error_to_keep(population):
+    task, _ = task_of()
+    assert task.encoding.softest == 1
+    plan = body_plans.member(population, 0)
+    network = task.encoding.newcomer(key=jax.random.key(0)).network
+    driven = drive(task, genomes.BodyGraph(plan, network), differentiable=True)
+    assert driven.layout.bend is None
+
+
+def _observed(box, start, rest):
+    return world.rollout(box, start, rest, lambda state, measures: measures)
+
+
+def _arrays(driven, measures, momentum, native):
+    rods = driven.world.rods
+    return (rods.edges, rods.stretch > 0), driven.inputs, measures, momentum, native
