@@ -60,6 +60,19 @@ SPECS = {
     | {"experiment": "neuroevolution", "control": {"period": 20}, "search": LEARNING}
     | {"neat": {"backend": "tensorneat", "preset": "tensorneat"}},
 }
+SPECS["zoo"] = SMALL | {
+    "body": {"builder": "grown", "nodes": 16, "length": 14.0, "segments": 4, "rings": 1}
+    | {"segment_nodes": 8, "limbs": 6},
+    "control": {"encoding": "body-graph", "period": 20, "softest": 0.5},
+    "genome": {"max_nodes": 16, "max_connections": 40},
+    "archive": {
+        "descriptors": [
+            {"name": "limbs", "low": -0.5, "high": 5.5, "bins": 6},
+            {"name": "form_aspect", "bins": 6},
+        ]
+    },
+    "task": {"steps": 30, "fitness": "displacement"},
+}
 PACKAGES = {"cma-me": "qdax", "tensorneat": "tensorneat"}
 """Optional packages that some runs need."""
 

@@ -15,7 +15,7 @@ from microcosmos.spec import parse
 
 LONG = ("lamarckian", "cma-me", "tensorneat")
 LEARNERS = ("cma-mae", "cma-mega", "lamarckian", "cma-me", "tensorneat")
-COMPUTED = ("quality-diversity", "neuroevolution", "folding", "refinement", "gaits")
+COMPUTED = ("quality-diversity", "neuroevolution", "folding", "refinement", "gaits", "zoo")
 OTHER = {
     "quality-diversity": {"task": {"steps": 61}},
     "neuroevolution": {"seed": 6},
