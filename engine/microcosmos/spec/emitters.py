@@ -190,6 +190,11 @@ def refuse_unfit_emitters(emitters: tuple[Emitter, ...], encoding: str) -> None:
                 f"`control.encoding` is {encoding!r}, got {emitter.operator!r}"
             )
     foreign = [getattr(emitter, "backend", None) == "tensorneat" for emitter in emitters]
+    if any(foreign) and encoding == "body-graph":
+        raise ValueError(
+            "`backend` of a population must be 'microcosmos' where `control.encoding` is "
+            "'body-graph': TensorNEAT has no body plans, got 'tensorneat'"
+        )
     numbering = [
         emitter.operator for emitter in emitters if emitter.operator in NETWORK_OPERATORS
     ]

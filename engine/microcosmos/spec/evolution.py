@@ -12,7 +12,7 @@ from .coupling import Coupling, refuse_without_feasible
 from .emitters import Emitter, PopulationEmitter, gradients, refuse_unfit_emitters
 from .encodings import Controller, refuse_cramped
 from .placement import refuse_blocked
-from .scene import Scene, refuse_misfit, refuse_senseless
+from .scene import Scene, refuse_misfit, refuse_senseless, refuse_swept
 from .search import Archive, Generations, Task
 from .world import Steric, World
 
@@ -67,6 +67,7 @@ class Evolution(Part, Generic[Name, SearchSpec]):
     @model_validator(mode="after")
     def check_scene(self) -> Self:
         refuse_misfit(self.world, self.body, self.control)
+        refuse_swept(self.coupling, self.body)
         refuse_cramped(self.control, self.genome)
         refuse_blocked(self.world, self.body, self.task)
         refuse_senseless(self.world, self.control, self.task)

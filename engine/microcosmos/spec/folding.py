@@ -7,7 +7,7 @@ from pydantic import Field, Tag, model_validator
 
 from . import reverse
 from .base import Part, field, name_in, one_of, sourced
-from .body import Body, Walk, estimated_shape, is_unavailable, resolved
+from .body import Body, GrownBody, Walk, estimated_shape, is_unavailable, resolved
 from .coupling import Coupling
 from .scene import Fold, Scene
 from .search import Task
@@ -135,6 +135,8 @@ class Folding(Part):
         names = [target.name for target in self.targets]
         if len(set(names)) < len(names):
             raise ValueError(f"`targets` must have different names, got {names}")
+        if isinstance(self.body, GrownBody):
+            raise ValueError("`body` must have a fixed graph to be folded, got 'grown'")
         if not len(estimated_shape(self.body).joints):
             raise ValueError("`body` must have a joint")
         if (needed := self.gradient_bytes / 2**30) > self.memory:

@@ -8,7 +8,7 @@ from pydantic.json_schema import SkipJsonSchema
 
 from ..bodies import extent
 from .base import ENCODINGS, Part, field, name_in, one_of
-from .body import SUPPORT, Body, Chain, Swimmer, is_unavailable, shape
+from .body import SUPPORT, Body, Chain, GrownBody, Swimmer, is_unavailable, shape
 from .control import Control, NetworkInputs
 from .coupling import Coupling
 from .encodings import (
@@ -80,6 +80,9 @@ class Scene(Part):
     @model_validator(mode="after")
     def check(self) -> Self:
         refuse_senseless(self.world, self.control, self.task)
+        if isinstance(self.control, Fold) and isinstance(self.body, GrownBody):
+            raise ValueError("`body` must have a fixed graph to be folded, got 'grown'")
+        refuse_swept(self.coupling, self.body)
         if isinstance(self.control, Fold):  # It may overlap itself and reach around the box.
             return self
         refuse_blocked(self.world, self.body, self.task)
@@ -95,6 +98,19 @@ class Scene(Part):
                 f"got {self.body.builder!r}"
             )
         return self
+
+
+def refuse_swept(coupling: Coupling, body: Body) -> None:
+    """Raise `ValueError` where a grown body would need sweeps over its constraints."""
+    if not isinstance(body, GrownBody):
+        return
+    for name, needed in (("nu_c", None), ("theta_feedback", 1)):
+        if (found := getattr(coupling, name)) != needed:
+            raise ValueError(
+                f"`coupling.{name}` must be {'empty' if needed is None else needed} where "
+                f"`body.builder` is 'grown': its constraints are met in closed form, got "
+                f"{found:g}"
+            )
 
 
 def refuse_misfit(world: World, body: Body, control: Controller) -> None:

@@ -1,12 +1,15 @@
 """Bodies that grow from plans: drawings, estimates and the graph of a creature."""
 
+import re
 from io import BytesIO
 
 import h5py
 import jax
 import jax.numpy as jnp
 import numpy as np
+import pytest
 from grown_bodies import genotype_of, grown_file, grown_scene
+from pydantic import ValidationError
 
 from microcosmos import bodies
 from microcosmos.archive import creature_h5
@@ -75,3 +78,28 @@ def test_the_estimate_grows_with_the_most_nodes_of_a_body():
         for nodes in (24, 96)
     )
     assert large > small
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        (
+            {"search": {"emitters": [{"operator": "population", "backend": "tensorneat"}]}},
+            "`backend` of a population must be 'microcosmos' where `control.encoding` is",
+        ),
+        ({"coupling": {"nu_c": 1.0}}, "`coupling.nu_c` must be empty where `body.builder`"),
+        (
+            {"coupling": {"projection": "force", "theta_feedback": 0}},
+            "`coupling.theta_feedback` must be 1 where `body.builder` is 'grown'",
+        ),
+        (
+            {"experiment": "folding", "control": {}, "genome": None},
+            "`body` must have a fixed graph to be folded",
+        ),
+    ],
+    ids=["tensorneat", "nu_c", "theta_feedback", "folding"],
+)
+def test_what_a_grown_body_cannot_have_is_refused(changes, reason):
+    given = {name: value for name, value in (ZOO | changes).items() if value is not None}
+    with pytest.raises(ValidationError, match=re.escape(reason)):
+        parse(given)
