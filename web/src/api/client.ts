@@ -115,6 +115,10 @@ export const readCreature = (sha: string) =>
 export const readNetwork = (sha: string) =>
   typed<wire.NetworkPositions>(client.GET("/creatures/{sha}/network.json", creature(sha)));
 
+/** The body plan of a creature, and the body at rest. */
+export const readPlan = (sha: string) =>
+  typed<wire.PlanDrawing>(client.GET("/creatures/{sha}/plan.json", creature(sha)));
+
 const CHILDLESS: wire.Children = { total: 0, items: [] };
 
 /** Ancestors of `depth` generations, and children; a share contains no children. */

@@ -81,9 +81,9 @@ export type Values = { [name: string]: Value };
 export type ResultRow = Values & { creature: string | null };
 export type Results = With<Wire["ResultsRead"], { rows: ResultRow[]; summary: Values | null }>;
 
-/** A network of nodes and connections; `cppn-body` grows the body too. */
+/** A network of nodes and connections; `cppn-body` grows the body too, and `body-graph` has a plan for it. */
 export interface Genes {
-  encoding: "cppn" | "cppn-body";
+  encoding: "cppn" | "cppn-body" | "body-graph";
   control: Spec;
   inputs: string[];
   outputs: string[];
@@ -95,6 +95,8 @@ export interface Genes {
     enabled: boolean[];
     weight: string;
   };
+  /** Columns of the genes of segments. */
+  plan?: Record<string, unknown>;
 }
 
 /** A gait designed by hand, in place of genes. */
@@ -120,6 +122,8 @@ export interface Vector {
 export type Genome = Genes | Vector | Gait;
 
 export type NetworkPositions = Wire["NetworkPositions"];
+export type PlanDrawing = Wire["PlanDrawing"];
+export type PlanSegment = Wire["PlanSegment"];
 export type Relative = Wire["Relative"];
 export type Ancestors = Wire["Ancestors"];
 export type Children = Wire["Children"];

@@ -18,6 +18,7 @@ import { FamilyCard } from "./FamilyCard";
 import { ForkLink } from "../ui/links";
 import { GenomeCard } from "./GenomeCard";
 import { Downloads } from "./Downloads";
+import { PlanCard } from "./PlanCard";
 import { RemeasureCard } from "./RemeasureCard";
 import { PublishButton } from "../publish/PublishButton";
 import { RefineButton } from "./RefineButton";
@@ -97,6 +98,7 @@ export function CreatureView({ creature, query, audit }: ViewProps) {
         </div>
         <div class="stack">
           {replay && <SpaceTimeCard {...{ replay, query, playhead }} />}
+          {"plan" in identity.genome && <PlanCard sha={sha} />}
           <GenomeCard {...{ creature, playhead }} every={replay?.header.every ?? null} />
           <FamilyCard {...{ creature, query }} />
           {creature.measured && <RemeasureCard sha={sha} />}

@@ -46,6 +46,22 @@ describe("a creature file", () => {
     });
   });
 
+  it("of a body that grows from a plan names its form", () => {
+    const genome = { encoding: "body-graph", control: {} };
+    const measures = { limbs: 3, total_length: 22, form_symmetry: 0.75 };
+    const measured = { fitness: 0, descriptors: {}, measures, block: 1, device: "cpu" };
+    const body = { builder: "grown", nodes: 48 };
+    const grown = { ...bare, identity: { ...identity, genome, body }, measured } as unknown as Creature;
+    expect(factsOf(grown)).toMatchObject({
+      Genome: "a plan that grows the body, and a network that drives it",
+      Body: "Grown, at most 48 nodes",
+      "Free ends": "3",
+      "Total length": "22 cells",
+      "Mirror symmetry at rest": "0.75",
+    });
+    expect(groupsOf(grown).map(({ title }) => title)).toEqual(["Result", "Body at rest"]);
+  });
+
   it("of a gait names swimmer and period, and measures with their units", () => {
     const genome = { encoding: "gait", swimmer: "worm", period: 600, ramp: 1 };
     const measured = {

@@ -19,10 +19,13 @@ interface Plugin {
   source: string;
 }
 
+const FORM = ["segments", "limbs", "rings", "total_length", "form_symmetry", "form_aspect", "ungrown"];
+
 /** Groups of measures; all others belong to the result. */
 const GROUPS: [title: string, names: string[]][] = [
   [text.control, ["bending_effort", "stretching_effort", "power", "efficiency"]],
   [text.shapeGroup, ["curvature_mean", "curvature_spread", "symmetry", "rotation", "turning", "nodes"]],
+  [text.formGroup, FORM],
   [text.network, ["hidden_nodes", "connections"]],
   [text.flow, ["reynolds", "sperm", "mach", "limited", "impulse"]],
 ];
@@ -109,7 +112,8 @@ function genomeRows(genome: Genome): Row[] {
 function bodyOf({ builder, nodes }: Spec): string {
   const count = Array.isArray(nodes) ? nodes.length : nodes;
   const name = words(String(builder ?? "chain"));
-  return typeof count === "number" ? text.bodyOf(name, count) : name;
+  if (typeof count !== "number") return name;
+  return builder === "grown" ? text.grownBody(name, count) : text.bodyOf(name, count);
 }
 
 function worldOf({ width, height, viscosity, steric, energy, fluid }: Spec): string {
