@@ -10,6 +10,7 @@ import { isForkField, useFork } from "./ForkCard";
 import { schemaErrors, messagesByPath, withValue } from "./form/document";
 import type { FormState } from "./form/Entry";
 import { type Section, formOf } from "./form/fields";
+import { type Note, withPartner } from "./form/partners";
 import { withoutInitial } from "./initialCreatures";
 import { type SweepForm, isSweep, useSweepForm } from "./sweep";
 import { text } from "./text";
@@ -44,7 +45,7 @@ export function useEditor(draft: DraftState, current: Draft, experiment: Experim
     original: base.spec as Json,
     changed: draft.changed,
     messages: messagesByPath(errors, form, spec),
-    change: (path, value) => draft.change((now) => withValue(now, path, value) as Spec),
+    ...usePartners(draft, form, base.spec as Json, spec as Json),
     closed,
     close,
   };
@@ -62,6 +63,24 @@ export function useEditor(draft: DraftState, current: Draft, experiment: Experim
 }
 
 export type EditorState = ReturnType<typeof useEditor>;
+
+/** Changes of the spec, after which the form may change another choice too. */
+function usePartners(
+  draft: DraftState,
+  form: Section,
+  original: Json,
+  shown: Json,
+): Pick<FormState, "change" | "note"> {
+  const [note, setNote] = useState<Note | null>(null);
+  const changed = (now: Json, path: string, value: Json) =>
+    withPartner(form, original, now, withValue(now, path, value));
+  const change = (path: string, value: Json) => {
+    const made = changed(shown, path, value).note;
+    if (made) setNote(made);
+    draft.change((now) => changed(now as Json, path, value).document as Spec);
+  };
+  return { change, note };
+}
 
 /** Errors of a sweep about its spec, by the fields of the spec. */
 const specErrors = (errors: readonly FieldError[]): FieldError[] =>

@@ -5,6 +5,7 @@ import { count, number } from "../../ui/format";
 import { Term } from "../../ui/Term";
 import { valueAt, typed, typedJson, typedList } from "./document";
 import type { Leaf, NumberField, Range, Choice, Multiple } from "./fields";
+import type { Note } from "./partners";
 import { text } from "./text";
 import { useEffect, useState } from "preact/hooks";
 import { Options } from "../../ui/Select";
@@ -14,6 +15,8 @@ export interface FormState {
   original: Json;
   changed: ReadonlySet<string>;
   messages: ReadonlyMap<string, string[]>;
+  /** The last change that the form made by itself. */
+  note: Note | null;
   change: (path: string, value: Json) => void;
   closed: ReadonlySet<string>;
   close: (path: string, closed: boolean) => void;

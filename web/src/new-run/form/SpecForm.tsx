@@ -8,6 +8,7 @@ import { words } from "../../ui/format";
 import { countWithin, isOff, isApplicable, partOf, valueAt, withChoice } from "./document";
 import type { Field, Rows, Section, Union } from "./fields";
 import { type FormState, Entry, EntryName, Messages } from "./Entry";
+import { messageOf } from "./partners";
 import { text } from "./text";
 
 /** Sections of a form; the first one holds the values outside all others. */
@@ -105,6 +106,7 @@ function KindSelect({ union, state }: { union: Union; state: FormState }) {
   const original = valueAt(state.original, union.path);
   // Parts with other fields are reset as a whole, parts with the same fields by their name.
   const at = state.changed.has(path) ? path : union.path;
+  const note = messageOf(state.note, state.document, union.path);
   const choose = (name: string) => {
     const before = valueAt(state.original, path) === name;
     state.change(union.path, before ? original : union.parts.get(name)!.initial!);
@@ -123,6 +125,11 @@ function KindSelect({ union, state }: { union: Union; state: FormState }) {
       <p id={`field-${path}-about`} class="help about">
         {union.parts.get(String(value))?.help}
       </p>
+      {note && (
+        <p class="about note small" role="status">
+          {note}
+        </p>
+      )}
     </div>
   );
 }

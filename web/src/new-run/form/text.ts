@@ -25,6 +25,8 @@ export const text = {
   tooFew: (least: number) => `Needs at least ${least} ${least === 1 ? "number" : "numbers"}.`,
   tooManyNumbers: (most: number) => `Needs at most ${most} numbers.`,
   selectMore: (least: number) => `Select at least ${least}.`,
+  partner: (choice: string, selected: string, cause: string) =>
+    `The ${choice} is now ${selected}: body-graph and grown need each other, and you selected ${cause}.`,
   low: (open: boolean | undefined, low: string) => `${open ? "more than" : "at least"} ${low}`,
   high: (open: boolean | undefined, high: string) => `${open ? "less than" : "at most"} ${high}`,
   range: (low: string, high: string) => `${low} to ${high}`,
