@@ -111,6 +111,13 @@ CASES: dict[str, dict[str, Any]] = {
         body={"nodes": 8},
     ),
     "in a shear": scene({}, box={"flow": {"kind": "shear"}}, body={"nodes": 8}),
+    "a row": scene({}, box={"copies": {"arrangement": "row", "spacing": 9}}, body={"nodes": 6}),
+    "a grid": scene(
+        {},
+        box={"copies": {"count": 3, "arrangement": "grid", "spacing": 8}},
+        body={"nodes": 5},
+    ),
+    "a column": scene({}, box={"copies": {"count": 3, "spacing": 5}}, body={"nodes": 8}),
     "tables of genes without fluid": scene(
         {"encoding": "direct", "waveform": "table", "timer": "linear"},
         {"fitness": "displacement"},

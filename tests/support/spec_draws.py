@@ -61,6 +61,11 @@ NUMBERS: dict[str, Draw] = {
     "World.width": between(24, 52),
     "World.height": between(24, 52),
     "World.viscosity": scaled(2e-3, 1.5),
+    "World.obstacles": one_of([], [{"kind": "post", "x": 2, "y": 3, "radius": 1.5}]),
+    "Flow.speed": scaled(1e-3, 0.05),
+    "Flow.vortices": one_of(2, 4),
+    "Copies.count": between(2, 4),
+    "Copies.spacing": between(4.0, 20.0),
     "Steric.strength": scaled(0.5, 12.0),
     "Steric.limit": scaled(0.02, 0.4),
     "Energy.packets": between(1, 8),
@@ -131,6 +136,7 @@ TRAITS = {
 
 SELDOM: dict[tuple[str, Any], float] = {
     ("World.fluid", False): 0.2,
+    ("World.copies", spec.Copies): 0.3,
     ("Coupling.limits", False): 0.2,
     ("Scene.control", spec.Fold): 0.3,
     ("Scene.control", spec.PluginControl): 0.3,

@@ -260,10 +260,16 @@ class Summary {
   }
 
   void symmetry() {
-    const int J = m_.joints, count = int(joints_);
+    const int J = m_.joints;
     Doubles mean(J), product(J), square(J), change(J), mirrored(J);
     std::vector<int> mirror;
-    for (int j = 0; j < J; j++) mirror.push_back((count - 1 - j + J) % J);
+    std::vector<int> order;  // Joints that are present.
+    for (int j = 0; j < J; j++)
+      if (joint_here_[j] > 0) order.push_back(j);
+    for (int j = 0, rank = 0; j < J; j++) {
+      mirror.push_back(joint_here_[j] > 0 ? order[order.size() - 1 - rank] : j);
+      rank += joint_here_[j] > 0;
+    }
     for (int t = 0; t < m_.steps; t++)
       for (int j = 0; j < J; j++) mean[j] += m_.curvature[t * size_t(J) + j];
     for (double& one : mean) one /= m_.steps;

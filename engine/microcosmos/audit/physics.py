@@ -21,6 +21,7 @@ from ..filaments import Rest
 from ..genomes import Drive
 from ..viz.replay import CELL_STEPS, actuator_of, unmeasured
 from .variants import (
+    alone,
     at_full_strength,
     body_of,
     other_delta,
@@ -81,7 +82,7 @@ def audit(file: Mapping[str, Any]) -> dict[str, Any]:
     Raises `creature.CreatureError` for a file that is invalid, too large, or diverges.
     """
     file = creature.parse(file)
-    scene = unmeasured(creature.scene_of(file))
+    scene = alone(unmeasured(creature.scene_of(file)))
     work = COST_RATIO * scene.world.width * scene.world.height * scene.task.steps
     if work > CELL_STEPS:
         needed = f"at most {CELL_STEPS // COST_RATIO:.1e} cell steps for an audit"

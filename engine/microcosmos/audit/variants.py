@@ -13,6 +13,12 @@ from ..genomes import Drive
 from ..viz.replay import graph_among, present_parts
 
 
+def alone(scene: spec.Scene) -> spec.Scene:
+    """Return the scene with one copy of the creature."""
+    box = scene.world.model_copy(update={"copies": None})
+    return scene.model_copy(update={"world": box})
+
+
 def body_of(scene: spec.Scene, driven: Drive) -> tuple[bodies.Body, np.ndarray, np.ndarray]:
     """Return the developed body, and masks of its world's joints and edges that it has.
 

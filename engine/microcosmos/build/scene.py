@@ -67,6 +67,7 @@ def build_task(
         build_goal(scene.task),
         extent(body),
         placements=build_placements(scene.world),
+        places=build_places(scene.world, dtype),
         plugin_measures=build_measures(scene),
         actuators=build_actuators(scene.control, body, dtype),
         period=build_period(scene.control),
@@ -125,6 +126,11 @@ def build_placements(box: spec.World) -> jnp.ndarray | None:
 def matching_of(body: spec.Body) -> Matching:
     """Return what builds the shape matching of a body; one that a plan grew has soft joints."""
     return build_soft_matching if isinstance(body, spec.GrownBody) else build_matching
+
+
+def build_places(box: spec.World, dtype: Any) -> jnp.ndarray | None:
+    """Build the places of the copies of a creature; None if it is alone."""
+    return None if box.copies is None else jnp.asarray(box.copies.places, dtype)
 
 
 def build_world(

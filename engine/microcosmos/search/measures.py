@@ -158,13 +158,15 @@ def symmetry(found: Curvature, kept: Bool[Array, "joint"] | None = None) -> Scal
 
     Σ c(t, j) c(t, J − 1 − j) / Σ c(t, j)², with the curvature c less its mean over time.
     1: both halves bend alike at all times, like a jellyfish; −1: they bend oppositely, in S
-    shapes; about 0: a wave runs along the body. Joints count in their order, which is that
-    along a filament.
+    shapes; about 0: a wave runs along the body. Joints that are present count in their
+    order, which is that along a filament.
     """
     change = found - jnp.mean(found, 0)[None]
     joints = found.shape[1]
-    count = joints if kept is None else jnp.sum(kept)
-    mirror = jnp.mod(count - 1 - jnp.arange(joints), joints)
+    mirror = jnp.arange(joints)[::-1]
+    if kept is not None:
+        order, rank = jnp.argsort(~kept, stable=True), jnp.cumsum(kept) - 1
+        mirror = order[jnp.mod(jnp.sum(kept) - 1 - rank, joints)]
     product = change * change[:, mirror]
     square = change * change
     if kept is not None:

@@ -13,6 +13,7 @@ from ..genomes import Drive, carried_out
 from ..portable import cosine, sine
 from ..world import Measures, State, follow, keep_memory, native, rollout
 from .measures import observe
+from .school import schooled
 from .task import Actuator, Task
 
 
@@ -24,10 +25,16 @@ def shift_energy(driven: Drive, shift: Int[Array, "2"]) -> Drive:
 
 
 def drive(task: Task, actuator: Actuator, *, differentiable: bool = False) -> Drive:
-    """Return the simulation of a genotype, or of a body that follows rest shapes.
+    """Return the simulation of a genotype, or of a body that follows rest shapes, and of all
+    its copies.
 
     The native kernel develops what it can, unless the result has to be `differentiable`.
     """
+    driven = _alone(task, actuator, differentiable)
+    return driven if task.places is None else schooled(driven, task.places)
+
+
+def _alone(task: Task, actuator: Actuator, differentiable: bool) -> Drive:
     if isinstance(actuator, Rest) or task.encoding is None:
         return Drive(task.world, task.start, actuator)
     driven = task.encoding.drive(task.world, task.start, actuator, task.phase)

@@ -48,6 +48,8 @@ class Task(eqx.Module):
     """Measures of the form of a body that does not grow."""
     actuators: Actuators | None = None
     """Bounds on what the controllers of genotypes command; None: none."""
+    places: Float[Array, "copy 2"] | None = None
+    """Places of copies of the creature about the start, in cells; None: it is alone."""
     plugin_measures: tuple[Measure, ...] = eqx.field(static=True, default=())
     """Measures of plug-ins, beside the usual ones."""
 

@@ -3,6 +3,7 @@
 from .base import Part, field_path
 from .body import Body, Chain, GrownBody, PluginBody, SwimmerBody, is_unavailable, shape
 from .control import OUTPUTS, Control, Genome
+from .copies import Copies
 from .coupling import Coupling
 from .drawing import Drawing, drawing
 from .emitters import Emitter

@@ -13,6 +13,7 @@ from .evolution import Evolution
 from .experiments import Spec
 from .folding import Folding
 from .gaits import Gaits
+from .placement import places
 from .refinement import Refinement, parsed
 from .reverse import FLOAT
 from .scaling import Scaling
@@ -60,7 +61,7 @@ def _(spec: Evolution) -> Estimate:
     if isinstance(spec.body, GrownBody):
         rows += SEGMENT * spec.body.segments
     genome = FLOAT * (gene_count(spec.control, estimated_shape(spec.body)) or rows)
-    count = node_count(spec.body)
+    count = simulated_nodes(spec.scene)
     archive = 4 * (spec.archive.cells + 2 * search.batch) * (genome + 160)
     archive += 2 * spec.archive.cells * (POSE * count + PATH)
     vary = 4 * search.batch * spec.genome.max_nodes**2 * FLOAT
@@ -143,15 +144,20 @@ def cell_steps_of(scene: Scene) -> int:
 
 def gradient_bytes(scene: Scene, segment: int | None) -> int:
     """Return the bytes that one creature's gradient keeps."""
-    count = node_count(scene.body)
+    count = simulated_nodes(scene)
     step = reverse.step_bytes(scene.world, scene.coupling, count)
     state = reverse.state_bytes(scene.world, count)
     return reverse.total_bytes(scene.task.steps, segment, step, state)
 
 
+def simulated_nodes(scene: Scene) -> int:
+    """Return the nodes of all copies of a creature, also those that may not grow."""
+    return node_count(scene.body) * len(places(scene.world))
+
+
 def simulation_bytes(scene: Scene, network_nodes: int) -> int:
-    """Return the bytes of one simulated creature."""
-    count = node_count(scene.body)
+    """Return the bytes of one simulated creature, or of its school."""
+    count = simulated_nodes(scene)
     # A batched choice among activations computes all of them.
     width = max(network_nodes, _width(scene.control)) + 2
     controls = 10 * scene.task.steps * count * width * FLOAT

@@ -11,7 +11,7 @@ from .control import Control, Genome
 from .coupling import Coupling, refuse_without_feasible
 from .emitters import Emitter, PopulationEmitter, gradients, refuse_unfit_emitters
 from .encodings import Controller, refuse_cramped
-from .placement import refuse_blocked
+from .placement import refuse_blocked, refuse_crowded
 from .scene import Scene, refuse_misfit, refuse_senseless, refuse_swept
 from .search import Archive, Generations, Task
 from .world import Steric, World
@@ -69,13 +69,15 @@ class Evolution(Part, Generic[Name, SearchSpec]):
         refuse_misfit(self.world, self.body, self.control)
         refuse_swept(self.coupling, self.body)
         refuse_cramped(self.control, self.genome)
+        refuse_crowded(self.world, self.body, self.task)
         refuse_blocked(self.world, self.body, self.task)
         refuse_senseless(self.world, self.control, self.task)
         again = self.search.reevaluation
-        if again is not None and again.pose and self.world.solid is not None:
+        posed = self.world.solid is None and self.world.copies is None
+        if again is not None and again.pose and not posed:
             raise ValueError(
-                "`search.reevaluation.pose` must be false where the world has obstacles or "
-                "walls, which a body at a random place may start in; got true"
+                "`search.reevaluation.pose` must be false where the world has obstacles, walls "
+                "or copies, which a body in a random pose may start in; got true"
             )
         refuse_unfit_emitters(self.emitters, self.control.encoding)
         if self.search.feasible:

@@ -127,10 +127,10 @@ class Folding(Part):
             )
         if self.world.energy is not None:
             raise ValueError("`world.energy` must be empty: folding collects no energy")
-        if not self.world.open:
+        if not self.world.open or self.world.copies is not None:
             raise ValueError(
-                "`world.obstacles` and `world.flow` must be empty: filaments fold in an open "
-                "box of fluid at rest"
+                "`world.obstacles`, `world.flow` and `world.copies` must be empty: a filament "
+                "folds alone in an open box of fluid at rest"
             )
         names = [target.name for target in self.targets]
         if len(set(names)) < len(names):

@@ -1,4 +1,4 @@
-"""Where bodies start in the box, and refusal of those that start in an obstacle."""
+"""Where bodies start in the box, and refusal of those that lack room there."""
 
 import numpy as np
 
@@ -6,6 +6,9 @@ from .body import Body, GrownBody, is_unavailable, shape
 from .obstacles import crowded
 from .search import Task
 from .world import World
+
+GAP = 3
+"""Least distance between copies at the start, in cells."""
 
 CLEARANCE = 2
 """Least distance of a node at the start from the middle of a solid cell, in cells."""
@@ -20,22 +23,48 @@ def headings(task: Task) -> np.ndarray:
     return np.pi / 4 * np.arange(task.trials)
 
 
-def starts(world: World, body: Body, task: Task) -> np.ndarray:
-    """Return the places (trial, node, 2) of nodes at the start of each trial, in cells.
+def arms(body: Body, task: Task) -> np.ndarray:
+    """Return nodes (trial, node, 2) about their mean at the start of each trial, in cells.
 
     A body that grows may have any direction: its longest filament is put in all of them.
     """
     found = shape(body).positions
     if isinstance(body, GrownBody):
-        found = np.concatenate([_turned(found, angle) for angle in EVERY_WAY])
-    middle = np.array([world.width, world.height]) / 2
-    return np.stack([_turned(found, angle) + middle for angle in headings(task)])
+        found = found - found.mean(0)
+        found = np.concatenate([found @ _turn(angle) for angle in EVERY_WAY])
+    return (found - found.mean(0))[None] @ np.stack([_turn(one) for one in headings(task)])
 
 
-def _turned(positions: np.ndarray, angle: float) -> np.ndarray:
-    """Return positions turned about their mean, relative to it."""
+def _turn(angle: float) -> np.ndarray:
     c, s = np.cos(angle), np.sin(angle)
-    return (positions - positions.mean(0)) @ np.array([[c, s], [-s, c]])
+    return np.array([[c, s], [-s, c]])
+
+
+def places(world: World) -> np.ndarray:
+    """Return the places (copy, 2) of the middles of bodies at the start, in cells."""
+    about = np.zeros((1, 2)) if world.copies is None else world.copies.places
+    return about + np.array([world.width, world.height]) / 2
+
+
+def refuse_crowded(world: World, body: Body, task: Task) -> None:
+    """Raise `ValueError` where copies, in any trial, start too near each other."""
+    copies = world.copies
+    if copies is None or is_unavailable(body):  # A worker that can build it checks it.
+        return
+    reach = np.ptp(arms(body, task), axis=1).max(0)
+    for axis, (count, side) in enumerate(zip(copies.shape, ("width", "height"), strict=True)):
+        needed = reach[axis] + GAP
+        if count > 1 and copies.spacing < needed:
+            raise ValueError(
+                f"`world.copies.spacing` must be at least {needed:.4g} cells for a `body` that "
+                f"reaches {reach[axis]:.4g} cells along the {side}; got {copies.spacing:g}"
+            )
+        needed += (count - 1) * copies.spacing
+        if getattr(world, side) < needed:
+            raise ValueError(
+                f"`world.{side}` must be at least {needed:.4g} cells for {copies.count} "
+                f"`world.copies`; got {getattr(world, side)}"
+            )
 
 
 def refuse_blocked(world: World, body: Body, task: Task) -> None:
@@ -43,7 +72,9 @@ def refuse_blocked(world: World, body: Body, task: Task) -> None:
     solid = world.solid
     if solid is None or is_unavailable(body):  # A worker that can build it checks it.
         return
-    for number, nodes in enumerate(starts(world, body, task)):
+    middles = places(world)[:, None]
+    for number, one in enumerate(arms(body, task)):
+        nodes = (middles + one[None]).reshape(-1, 2)
         blocked = np.flatnonzero(crowded(nodes, solid, CLEARANCE))
         if len(blocked):
             x, y = nodes[blocked[0]]

@@ -21,7 +21,7 @@ from .encodings import (
     max_stretch,
     refuse_unfit,
 )
-from .placement import refuse_blocked
+from .placement import refuse_blocked, refuse_crowded
 from .plugins import OR_PLUGIN, MaybePlugin, PluginVersions, complete_plugin
 from .search import STROKED, Task
 from .world import World
@@ -85,6 +85,7 @@ class Scene(Part):
         refuse_swept(self.coupling, self.body)
         if isinstance(self.control, Fold):  # It may overlap itself and reach around the box.
             return self
+        refuse_crowded(self.world, self.body, self.task)
         refuse_blocked(self.world, self.body, self.task)
         if not isinstance(self.control, Gait):
             refuse_misfit(self.world, self.body, self.control)
@@ -136,6 +137,11 @@ def refuse_too_large(world: World, body: Body, stretch: float) -> None:
 def refuse_senseless(world: World, control: Controller | Gait | Fold, task: Task) -> None:
     """Raise `ValueError` where the task or the controller needs what the world lacks."""
     senses = isinstance(control, NetworkInputs) and control.sense_energy
+    if senses and world.copies is not None:
+        raise ValueError(
+            "`control.sense_energy` must be false where `world.copies` is set: copies have the "
+            "commands of one; got true"
+        )
     if task.fitness in STROKED and getattr(control, "timer", "") == "linear":
         raise ValueError(
             f"`task.fitness` must not be {task.fitness!r} where `control.timer` is 'linear': "

@@ -6,6 +6,7 @@ import numpy as np
 from pydantic import model_validator
 
 from .base import Part, field, sourced
+from .copies import Copies
 from .flow import Flow
 from .obstacles import Obstacle, solid_cells
 from .sources import LATTICE, OURS, PAPER, TRT
@@ -85,6 +86,8 @@ class World(Part):
     empty: none."""
     flow: Flow | None = None
     """A flow that the creature swims in; empty: the fluid starts at rest."""
+    copies: Copies | None = None
+    """A school of copies of the creature; empty: it swims alone."""
 
     @property
     def open(self) -> bool:

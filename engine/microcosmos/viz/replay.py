@@ -85,6 +85,9 @@ def record(file: Mapping[str, Any]) -> bytes:
     if (solid := scene.world.solid) is not None:
         header["solid"] = solid_runs(solid)
     there = present_parts(film.edges, film.joints, present)
+    if (copies := scene.world.copies) is not None:
+        member = np.repeat(np.arange(copies.count), len(present) // copies.count)
+        header["member"] = member[present].tolist()
     return _pack(
         header,
         np.asarray(film.positions[:, present], "<f4"),
