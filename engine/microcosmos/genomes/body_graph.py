@@ -22,7 +22,7 @@ from ..bodies.growth import (
     skeleton,
 )
 from ..groups import single
-from ..world import State, World, at_rest
+from ..world import State, World, with_bodies
 from .commands import network_commands
 from .control import drive_feed_forward, network_size
 from .cppn import evaluate, minimal
@@ -114,7 +114,7 @@ class BodyGraphEncoding:
         # What has not grown rests in the middle.
         centred = jnp.where(grown.present[:, None], centred, 0.0)
         placed = centred + jnp.mean(start.positions, 0)[None]
-        return world, replace(at_rest(world, placed), energy=start.energy)
+        return world, with_bodies(world, start, placed)
 
     def _bend(self, bones: Skeleton) -> Array:
         """Return the share of each joint's error that a step removes."""

@@ -8,7 +8,7 @@ from jaxtyping import Array, Bool, Float
 
 from ..bodies import Layout
 from ..portable import cosine, product, sine
-from ..world import State, World, at_rest, centre, grown_rods
+from ..world import State, World, centre, grown_rods, with_bodies
 from .development import Controls
 
 Traits = Mapping[str, Array]
@@ -58,7 +58,7 @@ def shaped(
         rest_angle=jnp.asarray(controls.rest_angle, dtype) + turned[second] - turned[first],
         rest_length=length,
     )
-    start = replace(at_rest(world, positions), energy=start.energy)
+    start = with_bodies(world, start, positions)
     return Shaped(world, start, controls)
 
 

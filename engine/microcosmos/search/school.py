@@ -115,4 +115,5 @@ def _layout(layout: Layout, copies: int) -> Layout:
             copies * pieces.count,
             pieces.ascending,
         ),
+        bend=None if layout.bend is None else jnp.tile(layout.bend, copies),
     )

@@ -2,7 +2,7 @@
 
 from . import native
 from .controller import Actuators, Controller, Network, Series
-from .model import Form, Limits, Measures, State, World, at_rest, flow
+from .model import Form, Limits, Measures, State, World, at_rest, flow, with_bodies
 from .nodes import repel, sense
 from .present import centre, edges_there, grown_nodes, grown_rods, joints_there, mean
 from .rolling import follow, keep_memory, rollout

@@ -1,7 +1,7 @@
 """A world: its parameters, which stay fixed, and its state, which changes."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -112,6 +112,13 @@ def at_rest(world: World, positions: Vectors) -> State:
     if world.energy is None:
         return State(planes, positions, angles)
     return State(planes, positions, angles, world.energy.start, jnp.zeros_like(positions[:, 0]))
+
+
+def with_bodies(world: World, start: State, positions: Vectors) -> State:
+    """Return a start with the bodies of `world` at `positions`, in the same fluid."""
+    angles = filaments.edge_angles(positions, world.rods)
+    collected = None if start.collected is None else jnp.zeros_like(positions[:, 0])
+    return replace(start, positions=positions, angles=angles, collected=collected)
 
 
 def flow(world: World, state: State) -> fluid.Vectors:
