@@ -152,7 +152,12 @@ def _form(grown: Grown, bones: Skeleton) -> dict[str, Array]:
 
 
 def _loop(count: int, step: Any, state: Any) -> Any:
-    return jax.lax.fori_loop(0, count, step, state)
+    def kept(number, before):
+        # JAX widens sums of whole numbers where it has 64 bits.
+        after = step(number, before)
+        return jax.tree.map(lambda one, old: one.astype(old.dtype), after, before)
+
+    return jax.lax.fori_loop(0, count, kept, state)
 
 
 def _among(grown: Grown, values: Array) -> Array:
