@@ -46,7 +46,8 @@ def mutated(key: Any, times: int, rates: plans.PlanRates = RATES) -> growth.Plan
         child, varied = plans.mutate_plan(plan, rates, key=key)
         new = jnp.arange(rates.limits.rows) == varied.novelty.row
         number = jnp.where(new, 1 + growth.FIRST_LIMBS + time, child.number)
-        return child._replace(number=number)
+        genes = zip(child._replace(number=number), plan, strict=True)
+        return growth.Plan(*(one.astype(old.dtype) for one, old in genes))  # Not of 64 bits.
 
     return jax.lax.fori_loop(0, times, step, random_plan(first, rates.limits))
 
@@ -100,4 +101,9 @@ def graph(grown: growth.Grown, bones: growth.Skeleton) -> bodies.Body:
 
 
 def loop(count: int, step: Any, state: Any) -> Any:
-    return jax.lax.fori_loop(0, count, step, state)
+    def kept(number, before):
+        # JAX widens sums of whole numbers where it has 64 bits.
+        after = step(number, before)
+        return jax.tree.map(lambda one, old: one.astype(old.dtype), after, before)
+
+    return jax.lax.fori_loop(0, count, kept, state)

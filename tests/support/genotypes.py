@@ -2,11 +2,13 @@
 
 from typing import Any
 
+import body_plans
 import jax
 import jax.numpy as jnp
 import numpy as np
 
 from microcosmos import genomes, spec
+from microcosmos.neat import PlanRates
 
 
 def network_of(links, inputs, activations, biases, *, dtype="float32", room=(12, 16)):
@@ -51,8 +53,14 @@ def padded(network: genomes.CPPN, room: tuple[int, int]) -> genomes.CPPN:
 
 def any_genotype(
     scene: spec.Scene, encoding: genomes.Encoding, rng: np.random.Generator
-) -> genomes.CPPN | genomes.Vector:
+) -> genomes.Genotype:
     """Draw a genotype of a scene."""
+    if isinstance(scene.control, spec.BodyGraph):
+        assert isinstance(scene.body, spec.GrownBody)
+        rates = PlanRates(scene.body.genes, structure=0.7, values=0.3, vary=0.9)
+        key = jax.random.key(int(rng.integers(2**31)))
+        plan = jax.jit(lambda key: body_plans.mutated(key, 8, rates))(key)
+        return genomes.BodyGraph(plan, any_network(scene.control, rng))
     if isinstance(scene.control, spec.Control | spec.Grown):
         return any_network(scene.control, rng)
     genes = encoding.newcomer(key=jax.random.key(0)).values.shape

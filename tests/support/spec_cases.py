@@ -147,6 +147,11 @@ CASES: dict[str, dict[str, Any]] = {
         box={"energy": CONSUMED},
         body={"nodes": 7},
     ),
+    "a body from a plan": scene(
+        {"encoding": "body-graph", "softest": 0.2},
+        body={"builder": "grown", "nodes": 14, "length": 9.0, "segments": 4, "rings": 2}
+        | {"segment_nodes": 7, "copies": 3, "limbs": 5, "spacing": 0.9},
+    ),
     "plug-ins": scene(
         {"encoding": "movers.pulse"},
         {"fitness": "movers.way"},

@@ -96,6 +96,14 @@ NUMBERS: dict[str, Draw] = {
     "Polyline.points": points,
     "Graph.nodes": lambda rng: PLACES,
     "Graph.edges": branches,
+    "GrownBody.nodes": between(8, 20),
+    "GrownBody.length": between(6.0, 16.0),
+    "GrownBody.segments": between(1, 6),
+    "GrownBody.segment_nodes": between(6, 9),
+    "GrownBody.copies": between(1, 4),
+    "GrownBody.limbs": between(1, 8),
+    "GrownBody.rings": between(1, 3),
+    "GrownBody.spacing": between(0.7, 1.5),
     "PluginBody.builder": one_of("movers.stick"),
     "Coupling.forcing_iterations": between(1, 5),
     "Coupling.constraint_iterations": between(1, 12),
@@ -116,6 +124,7 @@ NUMBERS: dict[str, Draw] = {
     "Weights.hidden": lambda rng: rng.integers(2, 7, rng.integers(1, 4)).tolist(),
     "Weights.scale": scaled(0.5, 4.0),
     "Grown.min_nodes": between(3, 9),
+    "BodyGraph.softest": or_none(scaled(0.05, 1.0), 1.0),
     "PluginControl.encoding": one_of("movers.pulse"),
     "Gait.period": between(20, 300),
     "Gait.ramp": or_none(between(0.1, 3.0), 0.0),
@@ -140,8 +149,10 @@ SELDOM: dict[tuple[str, Any], float] = {
     ("Coupling.limits", False): 0.2,
     ("Scene.control", spec.Fold): 0.3,
     ("Scene.control", spec.PluginControl): 0.3,
-    ("Scene.control", spec.Gait): 0.6,
+    ("Scene.control", spec.BodyGraph): 0.5,
+    ("Scene.control", spec.Gait): 0.7,
     ("Scene.body", spec.PluginBody): 0.3,
+    ("Scene.body", spec.GrownBody): 0.0,  # It stands with its encoding alone.
 }
 """Weights below 1 of choices."""
 
@@ -166,6 +177,8 @@ def document(control: type[spec.Part], rng: Random) -> dict[str, Any]:
     parts = drawn(spec.Scene, rng) | {"control": drawn(control, rng)}
     if control is spec.Grown:
         parts["body"] = drawn(spec.Chain, rng)
+    if control is spec.BodyGraph:
+        parts["body"] = drawn(spec.GrownBody, rng)
     if control is spec.Gait:
         swimmer = parts["control"]["swimmer"]
         if rng.random() < 0.2:
