@@ -69,7 +69,7 @@ def gradient(
     of: Annotated[str, Option(help="fitness, or a measure.")] = "fitness",
     by: Annotated[
         list[str] | None,
-        Option(help="genes (default), rest_angle, rest_length, stretch, viscosity …"),
+        Option(help="genes (default), rest_angle, stretch, segment_curl, viscosity …"),
     ] = None,
     starts: Annotated[int, Option(min=1, help="Number of other starts to compare with.")] = 8,
     out: Report = None,

@@ -57,9 +57,9 @@ def wrap(angle: Float[Array, "*shape"]) -> Float[Array, "*shape"]:
 
 
 def edge_angles(positions: Positions, rods: Rods) -> Angles:
-    """Return the direction of every edge, in radians."""
-    v = positions[rods.edges[:, 1]] - positions[rods.edges[:, 0]]
-    return arctangent(v[:, 1], v[:, 0])
+    """Return the direction of every edge, in radians; 0 without a length."""
+    x, y = (positions[rods.edges[:, 1]] - positions[rods.edges[:, 0]]).T
+    return arctangent(y, jnp.where((x == 0) & (y == 0), 1.0, x))
 
 
 def normals(

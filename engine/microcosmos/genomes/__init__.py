@@ -9,6 +9,7 @@ from .direct import Direct
 from .encoding import Drive, Encoding
 from .fold import FoldEncoding, added, scaled
 from .genotype import (
+    SEGMENT,
     Genotype,
     Graph,
     Vector,

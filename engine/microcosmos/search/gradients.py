@@ -15,15 +15,17 @@ from jaxtyping import Array, Bool, Float
 
 from ..bodies.growth import FORMS
 from ..filaments import Rest
-from ..genomes import CPPN, BodyGraph, Drive, Genotype, Vector
+from ..genomes import CPPN, SEGMENT, BodyGraph, Drive, Genotype, Vector
 from ..world import State, World
 from .blocks import mapped
 from .evaluation import fitness_of, in_trials, motion_of
 from .simulation import drive, shift_energy, simulate
 from .task import Actuator, Task
 
-PARTS = ("genes", "rest_angle", "rest_length", "stretch", "shear", "bend", "viscosity")
-"""Parts of a creature that derivatives are taken by."""
+SHAPED = ("angle", "curl", "stiffness")
+"""Genes of segments on which a body depends smoothly, between plans that grow differently."""
+
+STIFFNESSES = ("stretch", "shear", "bend")
 
 CONSTANT = ("hidden_nodes", "connections", "nodes", "limited", "trial_spread", *FORMS)
 """Measures without a derivative."""
@@ -31,29 +33,32 @@ CONSTANT = ("hidden_nodes", "connections", "nodes", "limited", "trial_spread", *
 Values = dict[str, Float[Array, "..."]]
 
 
-def parts(task: Task, actuator: Actuator, names: tuple[str, ...] = PARTS) -> Values:
-    """Return the present values of parts of a creature.
+def parts(task: Task, actuator: Actuator, names: tuple[str, ...] | None = None) -> Values:
+    """Return the present values of parts of a creature; None: of all that it has.
 
     `genes` are the weights, then the biases of a network, or a vector's numbers.
     `rest_angle` in rad is added to every joint's rest angle and `rest_length` to the logarithm
-    of every edge's rest length, at all times: both are 0 as the creature is.
+    of every edge's rest length, at all times: both are 0 as the creature is. A plan has
+    `segment_angle`, `segment_curl` and `segment_stiffness` in place of a body's stiffnesses.
     """
-    rods = task.world.rods
     dtype = task.start.positions.dtype
+    rods = jax.eval_shape(lambda: drive(task, actuator, differentiable=True).world.rods)
     found = {
         "rest_angle": jnp.zeros(rods.bend.shape, dtype),
         "rest_length": jnp.zeros(rods.stretch.shape, dtype),
-        "stretch": rods.stretch,
-        "shear": rods.shear,
-        "bend": rods.bend,
         "viscosity": task.world.viscosity,
     }
+    if isinstance(actuator, BodyGraph):
+        genes = ((name, jnp.asarray(getattr(actuator.plan, name), dtype)) for name in SHAPED)
+        found |= {SEGMENT + name: values for name, values in genes}
+    else:
+        found |= {name: getattr(task.world.rods, name) for name in STIFFNESSES}
     if not isinstance(actuator, Rest):
         found["genes"] = genes_of(actuator).astype(dtype)
-    unknown = [name for name in names if name not in found]
+    unknown = [name for name in names or () if name not in found]
     if unknown:
         raise ValueError(f"`by` must be of {', '.join(found)}, got {', '.join(unknown)}")
-    return {name: found[name] for name in names}
+    return {name: found[name] for name in names or found}
 
 
 def changed(task: Task, actuator: Actuator, values: Values) -> Drive:
@@ -62,13 +67,16 @@ def changed(task: Task, actuator: Actuator, values: Values) -> Drive:
     Stiffnesses are those of the body before a genotype grows it.
     """
     world, rods = task.world, task.world.rods
-    stiffness = {n: values[n] for n in ("stretch", "shear", "bend") if n in values}
+    stiffness = {n: values[n] for n in STIFFNESSES if n in values}
     if stiffness:  # Softer bodies are swept.
         world = replace(world, rods=replace(rods, **stiffness), layout=None)
     if "viscosity" in values:
         world = replace(world, viscosity=values["viscosity"])
     if "genes" in values:
         actuator = with_genes(actuator, values["genes"])
+    if isinstance(actuator, BodyGraph):
+        shaped = {name: values[SEGMENT + name] for name in SHAPED if SEGMENT + name in values}
+        actuator = replace(actuator, plan=actuator.plan._replace(**shaped))
     driven = drive(replace(task, world=world), actuator, differentiable=True)
     if not {"rest_angle", "rest_length"} & values.keys():
         return driven

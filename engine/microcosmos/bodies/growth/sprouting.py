@@ -185,8 +185,8 @@ def _sprout(plan: Plan, capacity: Capacity, gene: Any, state: State, xp: Any) ->
     grown = Grown(*(xp.where(room, a, b) for a, b in zip(joined, state.grown, strict=True)))
     left = (state.grown.ungrown + (used & ~room)).astype(np.int32)
     grown = grown._replace(ungrown=left)
-    length, filled = plan.nodes[gene], xp.sum(state.copies)
-    row = xp.arange(len(state.limbs.gene)) - filled
+    length, filled = plan.nodes[gene], xp.sum(state.copies).astype(np.int32)
+    row = xp.arange(len(state.limbs.gene), dtype=np.int32) - filled
     mine = room & (row >= 0) & (row < count)
     at = xp.clip(row, 0, capacity.limbs - 1)
     limbs = Limb(
