@@ -8,11 +8,16 @@ import { text } from "./text";
 export function BodyDrawing({ drawing }: { drawing: Drawing | null }) {
   if (!drawing) return <p class="body-drawing quiet">{text.noDrawing}</p>;
   const { width, height, bodies, pictures } = drawing;
+  const view = viewOf(drawing);
+  const cut = view.side < Math.min(width, height);
   return (
     <figure class="body-drawing">
-      <div class="worlds" style={{ "--worlds": Math.min(3, bodies.length) }}>
-        {bodies.map((body) => (
-          <World key={body.name} {...{ body, drawing }} />
+      <div
+        class={`worlds ${bodies.length > MAX_WHOLE ? "many" : ""}`}
+        style={{ "--worlds": Math.min(3, bodies.length) }}
+      >
+        {bodies.map((body, i) => (
+          <World key={i} {...{ body, drawing, view }} id={`world-${i}`} />
         ))}
       </div>
       {pictures.length > 0 && (
@@ -22,20 +27,46 @@ export function BodyDrawing({ drawing }: { drawing: Drawing | null }) {
           ))}
         </div>
       )}
-      <figcaption class="quiet small">{text.worldScale(count(width), count(height), GRID)}</figcaption>
+      <figcaption class="quiet small">
+        {text.worldScale(count(width), count(height), GRID)}
+        {cut && text.viewScale(count(view.side))}
+      </figcaption>
     </figure>
   );
 }
 
-function World({ body, drawing }: { body: DrawnBody; drawing: Drawing }) {
+/** More bodies than these are drawn without most of the water around them. */
+const MAX_WHOLE = 6;
+/** Water around a body in such a drawing, in cells. */
+const MARGIN = 2;
+
+/** The part of every world that is drawn, in cells: all of it, or a square around the middle with all bodies. */
+export function viewOf({ width, height, bodies }: Drawing) {
+  const whole = { x: 0, y: 0, width, height, side: Math.max(width, height) };
+  if (bodies.length <= MAX_WHOLE) return whole;
+  const reach = bodies
+    .flatMap(({ positions }) => positions)
+    .reduce((most, [x, y]) => Math.max(most, Math.abs(x! - width / 2), Math.abs(y! - height / 2)), 0);
+  const side = 2 * Math.ceil(reach + MARGIN);
+  if (side >= Math.min(width, height)) return whole;
+  return { x: (width - side) / 2, y: (height - side) / 2, width: side, height: side, side };
+}
+
+interface WorldProps {
+  body: DrawnBody;
+  drawing: Drawing;
+  view: ReturnType<typeof viewOf>;
+  id: string;
+}
+
+function World({ body, drawing, view, id: clip }: WorldProps) {
   const { width, height, picture_size: side } = drawing;
   // Width of a thin line, in cells.
-  const thin = (Math.max(width, height) / 300) * Math.min(2, drawing.bodies.length);
-  const clip = `world-${body.name.replace(/\W/g, "-")}`;
+  const thin = (view.side / 300) * Math.min(2, drawing.bodies.length);
   const label = `${words(body.name)}: ${caption(body)}`;
   return (
     <div class="world">
-      <svg viewBox={`0 0 ${width} ${height}`} role="img" aria-label={label}>
+      <svg viewBox={`${view.x} ${view.y} ${view.width} ${view.height}`} role="img" aria-label={label}>
         <defs>
           <pattern id={`${clip}-grid`} width={GRID} height={GRID} patternUnits="userSpaceOnUse">
             <path class="grid" d={`M0 0H${GRID}M0 0V${GRID}`} stroke-width={thin} />

@@ -3,7 +3,7 @@ import type { DrawnBody, Estimate } from "../api/types";
 import { type Draft, addressOf, discardDraft, loadDraft, saveDraft } from "../store/draft";
 import { EXPERIMENTS, experiment } from "./form/form.fixture";
 import { load, baseOfPreset, titleOfBase } from "./sources";
-import { branchesOf, dotsOf, linesOf, periodicShifts } from "./BodyDrawing";
+import { branchesOf, dotsOf, linesOf, periodicShifts, viewOf } from "./BodyDrawing";
 import { timeText, estimateBasis, roughDuration, waitText } from "./Costs";
 
 describe("a draft", () => {
@@ -108,6 +108,16 @@ describe("the drawing of a body", () => {
   it("has no dots if they would touch or nodes are left out", () => {
     expect(dotsOf(fork, 2.1)).toBe("");
     expect(dotsOf({ ...fork, nodes: 9 }, 1)).toBe("");
+  });
+
+  it("leaves out the water around many small bodies, but never a part of a body", () => {
+    const world = { width: 48, height: 64, pictures: [], picture_size: 0 };
+    const at = (x: number) => ({ ...fork, positions: [[x, 32]] });
+    const many = (x: number) => ({ ...world, bodies: [...Array(11).fill(at(24)), at(x)] });
+    const whole = { x: 0, y: 0, width: 48, height: 64 };
+    expect(viewOf({ ...world, bodies: [at(24)] })).toMatchObject(whole);
+    expect(viewOf(many(32.5))).toEqual({ x: 13, y: 21, width: 22, height: 22, side: 22 });
+    expect(viewOf(many(47))).toMatchObject(whole);
   });
 
   it("is repeated on the other side of its periodic world", () => {

@@ -21,6 +21,7 @@ export const text = {
   targets: "Target pictures",
   worldScale: (width: string, height: string, grid: number) =>
     `${width} × ${height} cells, periodic; grid line every ${grid} cells`,
+  viewScale: (side: string) => `; only the middle ${side} × ${side} cells are shown`,
   caption: (nodes: string, filaments: string | null) =>
     `${nodes} nodes${filaments === null ? "" : `; ${filaments} filaments shown`}`,
   picture: (name: string) => `Picture ${name}`,
