@@ -96,13 +96,10 @@ class Segments(Part):
 
     def grow(self, body: GrownBody, softest: float) -> bodies.Body:
         """Return the body that the plan grows into, in the sizes of `body`."""
-        found = {name: np.zeros(body.segments, kind) for name, kind in growth.TYPES.items()}
-        for name in type(self).model_fields:
-            given = getattr(self, name)
-            column = decode(given) if isinstance(given, str) else given
-            found[name][: len(column)] = column
-        found["used"][: len(self.number)] = True
-        return growth.grown_body(growth.Plan(**found), body.capacity, softest)
+        columns = {name: getattr(self, name) for name in type(self).model_fields}
+        found = {name: decode(x) if isinstance(x, str) else x for name, x in columns.items()}
+        plan = growth.plan_of(found, body.segments)
+        return growth.grown_body(plan, body.capacity, softest)
 
     def refuse_unfit(self, body: GrownBody) -> None:
         """Raise `ValueError` where a plan has more than its body allows."""
