@@ -149,12 +149,15 @@ SELDOM: dict[tuple[str, Any], float] = {
     ("Coupling.limits", False): 0.2,
     ("Scene.control", spec.Fold): 0.3,
     ("Scene.control", spec.PluginControl): 0.3,
-    ("Scene.control", spec.BodyGraph): 0.5,
-    ("Scene.control", spec.Gait): 0.7,
+    ("Scene.control", spec.BodyGraph): 0.0,  # See `PLANNED`.
+    ("Scene.control", spec.Gait): 0.8,
     ("Scene.body", spec.PluginBody): 0.3,
     ("Scene.body", spec.GrownBody): 0.0,  # It stands with its encoding alone.
 }
 """Weights below 1 of choices."""
+
+PLANNED = 12
+"""One of so many scenes has a body that grows from a plan."""
 
 OMITTED = ("plugin", "plugins")
 """Versions of plug-ins, which a scene completes."""
@@ -165,6 +168,8 @@ def any_scene(seed: int) -> spec.Scene:
     """Return a random valid scene. The plug-ins are those of `movers.py`."""
     rng = np.random.default_rng(seed)
     control = choice(spec.Scene, "control", rng)
+    if seed % PLANNED == PLANNED - 1:
+        control = spec.BodyGraph
     while True:
         try:
             return spec.Scene.model_validate(document(control, rng))
