@@ -61,6 +61,12 @@ describe("a body plan", () => {
     expect(numberPlace(plan, picture, 2)).toBeNull();
   });
 
+  it("numbers a segment away from a branch", () => {
+    expect(namedNode(plan, 0)).toBe(1);
+    const branched: PlanDrawing = { ...plan, edges: [...plan.edges, [1, 5]] };
+    expect(namedNode(branched, 0)).toBe(0);
+  });
+
   it("says why a segment has not grown", () => {
     expect(plan.segments.map((segment) => grownOf(segment, plan))).toEqual([
       "1",

@@ -57,10 +57,17 @@ export function numberPlace(
   return { x: x - (outward * BESIDE * dy) / length, y: y + (outward * BESIDE * dx) / length };
 }
 
-/** The node beside which a segment is named: the middle one of its first copy; null if it has not grown. */
-export function namedNode({ nodes }: PlanDrawing, segment: number): number | null {
+/**
+ * The node beside which a segment is named: near the middle of its first copy, away from branches if it can
+ * be; null if the segment has not grown.
+ */
+export function namedNode({ nodes, edges }: PlanDrawing, segment: number): number | null {
   const rows = nodes.flatMap((node, row) => (node.segment === segment && node.copy === 0 ? [row] : []));
-  return rows[Math.floor(rows.length / 2)] ?? null;
+  const middle = rows[Math.floor(rows.length / 2)] ?? null;
+  if (middle === null) return null;
+  const plain = rows.filter((row) => edges.filter((ends) => ends.includes(row)).length <= 2);
+  const nearest = plain.sort((a, b) => Math.abs(a - middle) - Math.abs(b - middle));
+  return nearest[0] ?? middle;
 }
 
 export const nameOf = (segment: number) => (segment === 0 ? text.root : text.segment(segment + 1));
