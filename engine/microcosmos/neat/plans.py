@@ -11,7 +11,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 
-from ..bodies.growth import SEGMENT_DRAWS, Plan, Segments, random_segment
+from ..bodies.growth import LEAST_RING, SEGMENT_DRAWS, Plan, Segments, random_segment
 from .distance import Coefficients
 from .rng import Uniform, below, draws, rescaled
 from .rows import NONE, choose, match, put
@@ -21,8 +21,6 @@ OPERATIONS = ("add", "split", "remove", "mirror", "repeat", "close", "attach")
 SPLIT, ADD = OPERATIONS.index("split"), OPERATIONS.index("add")
 LEAST_SPLIT = 4
 """Least nodes of a segment that is split."""
-LEAST_RING = 7
-"""Least nodes of a segment that is closed."""
 MOST_CURL = 6.0
 """Largest curl in rad."""
 VALUES = ("place", "angle", "nodes", "curl", "stiffness")

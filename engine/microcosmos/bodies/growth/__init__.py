@@ -1,9 +1,10 @@
 """Bodies that grow from genes: plans, their growth, and the kinematics of what has grown."""
 
+from .body import Grown, State
 from .columns import plan_of
 from .form import FORMS, form
 from .graph import grown_body
-from .plan import Capacity, Plan
+from .plan import LEAST_RING, Capacity, Plan
 from .random import (
     FIRST_LIMBS,
     PLAN_DRAWS,
@@ -14,4 +15,4 @@ from .random import (
     random_segment,
 )
 from .skeleton import Skeleton, colours, skeleton
-from .sprouting import Grown, State, grow, sprout
+from .sprouting import grow, sprout

@@ -3,6 +3,9 @@
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+LEAST_RING = 9
+"""Least nodes of a ring, without its base: the fluid does not resolve smaller ones."""
+
 
 class Plan(NamedTuple):
     """The genes of a body plan, one row for each segment; used rows come first.

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from .plan import Plan
+from .plan import LEAST_RING, Plan
 
 SEGMENT_DRAWS = 12
 """Uniform numbers that a random segment takes."""
@@ -55,19 +55,22 @@ def random_segment(uniform: Any, rows: Any, limits: Segments, xp: Any = np) -> P
     """
     low, high = LIMB_NODES
     end = xp.where(uniform[1] < 0.25, 0.0, 1.0)
+    closed = uniform[10] < 0.12
+    nodes = low + xp.floor(uniform[4] * (high - low + 1))
+    nodes = xp.where(closed, xp.maximum(nodes, LEAST_RING), nodes)
     return _row(
         xp,
         parent=xp.floor(uniform[0] * rows),
         place=xp.where(uniform[1] < 0.5, end, uniform[2]),
         angle=2.4 * (2 * uniform[3] - 1),
-        nodes=xp.minimum(low + xp.floor(uniform[4] * (high - low + 1)), limits.nodes),
+        nodes=xp.minimum(nodes, limits.nodes),
         curl=2 * (uniform[5] + uniform[6] - 1),
         stiffness=uniform[11],
         mirrored=uniform[7] < 0.45,
         copies=xp.minimum(
             xp.where(uniform[8] < 0.7, 1, 2 + xp.floor(uniform[9] * 3)), limits.copies
         ),
-        closed=uniform[10] < 0.12,
+        closed=closed,
     )
 
 

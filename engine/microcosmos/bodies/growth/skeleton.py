@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .body import Grown
 from .plan import Capacity
-from .sprouting import Grown
 
 MOST_COLOURS = 8
 """Colours that suffice for edges and for joints of nodes with six edges at most."""
@@ -49,40 +49,9 @@ def skeleton(
     grown: Grown, capacity: Capacity, xp: Any = np, loop: Callable | None = None
 ) -> Skeleton:
     """Return the edges, joints and kinematics of a grown body of arrays of `xp`."""
-    nodes, rings = capacity.nodes, capacity.rings
     reals = grown.positions.dtype
-    empty = nodes - 1
-    node = xp.arange(nodes, dtype=np.int32)
-    ring = grown.ring_first >= 0
-    ring_edge = xp.arange(rings, dtype=np.int32) + nodes - 1
-    last = xp.where(ring, grown.ring_last, empty)
-    closing = xp.stack([last, xp.where(ring, grown.ring_base, empty)], 1)
-    grown_to = xp.where(grown.present[1:, None], xp.stack([grown.before, node], 1)[1:], empty)
-    edges = xp.concatenate([grown_to, closing]).astype(np.int32)
-    there = xp.concatenate([grown.present[1:], ring])
-
-    corners = (grown.ring_last - grown.ring_first + 2).astype(reals)
-    turn = grown.hand[last] * (xp.asarray(2 * np.pi, reals) * (1 / corners))
-    angle = xp.concatenate([grown.heading[1:], xp.where(ring, grown.heading[last] + turn, 0)])
-
-    # The joint of a node's edge with the one before; the root's other edges join its first.
-    absent = xp.asarray(empty - 1, np.int32)
-    earlier = xp.maximum(grown.before - 1, 0)
-    first = xp.where(grown.present, earlier, absent)[2:]
-    second = xp.where(grown.present, node - 1, absent)[2:]
-    into = xp.where(ring, grown.ring_last - 1, absent)
-    out = xp.where(ring, grown.ring_first - 1, absent)
-    closes = xp.where(ring, ring_edge, absent)
-    joints = xp.concatenate(
-        [
-            xp.stack([first, second], 1),
-            xp.stack([into, closes], 1),
-            xp.stack([closes, out], 1),
-        ]
-    ).astype(np.int32)
-    driver = xp.concatenate([node[2:], last, xp.where(ring, grown.ring_first, empty)])
-    driver = driver.astype(np.int32)
-    bends = xp.concatenate([grown.present[2:], ring, ring])
+    edges, there, angle = _edges(grown, capacity, xp)
+    joints, bends, driver = _joints(grown, capacity, xp)
     rest = _wrapped(angle[joints[:, 1]] - angle[joints[:, 0]], xp)
     return Skeleton(
         edges=edges,
@@ -94,9 +63,47 @@ def skeleton(
         angle=xp.where(there, angle, 0).astype(reals),
         rest_angle=xp.where(bends, rest, 0).astype(reals),
         stiffness=grown.stiffness[driver],
-        turned=_turned(grown, joints, there, bends, xp, loop),
+        turned=_turned(grown, there, bends, xp, loop),
         placed=_placed(grown, there, xp, loop),
     )
+
+
+def _edges(grown: Grown, capacity: Capacity, xp: Any) -> tuple[Any, Any, Any]:
+    """Return the edges of all nodes but the first and of rings, which are there, and their
+    directions."""
+    nodes, empty = capacity.nodes, capacity.nodes - 1
+    reals, node = grown.positions.dtype, xp.arange(nodes, dtype=np.int32)
+    ring = grown.ring_first >= 0
+    last = xp.where(ring, grown.ring_last, empty)
+    closing = xp.stack([last, xp.where(ring, grown.ring_base, empty)], 1)
+    grown_to = xp.where(grown.present[1:, None], xp.stack([grown.before, node], 1)[1:], empty)
+    corners = (grown.ring_last - grown.ring_first + 2).astype(reals)
+    turn = grown.hand[last] * (xp.asarray(2 * np.pi, reals) * (1 / corners))
+    return (
+        xp.concatenate([grown_to, closing]).astype(np.int32),
+        xp.concatenate([grown.present[1:], ring]),
+        xp.concatenate([grown.heading[1:], xp.where(ring, grown.heading[last] + turn, 0)]),
+    )
+
+
+def _joints(grown: Grown, capacity: Capacity, xp: Any) -> tuple[Any, Any, Any]:
+    """Return the joints of a node's edge with the one before and those that close rings, which
+    are there, and their drivers. The root's other edges join its first."""
+    nodes, rings, empty = capacity.nodes, capacity.rings, capacity.nodes - 1
+    node, ring = xp.arange(nodes, dtype=np.int32), grown.ring_first >= 0
+    absent = xp.asarray(empty - 1, np.int32)
+    earlier = xp.maximum(grown.before - 1, 0)
+    first = xp.where(grown.present, earlier, absent)[2:]
+    second = xp.where(grown.present, node - 1, absent)[2:]
+    into = xp.where(ring, grown.ring_last - 1, absent)
+    out = xp.where(ring, grown.ring_first - 1, absent)
+    closes = xp.where(ring, xp.arange(rings, dtype=np.int32) + nodes - 1, absent)
+    pairs = ((first, second), (into, closes), (closes, out))
+    joints = xp.concatenate([xp.stack(pair, 1) for pair in pairs])
+    last = xp.where(ring, grown.ring_last, empty)
+    driver = xp.concatenate([node[2:], last, xp.where(ring, grown.ring_first, empty)])
+    there = xp.concatenate([grown.present[2:], ring, ring])
+    return joints.astype(np.int32), there, driver.astype(np.int32)
 
 
 def ancestors(before: Any, xp: Any, loop: Callable | None) -> Any:
@@ -149,7 +156,7 @@ def _placed(grown: Grown, there: Any, xp: Any, loop: Callable | None) -> Any:
     return _least_squares(way & grown.present[:, None], member, grown.present, xp)
 
 
-def _turned(grown: Grown, joints: Any, there: Any, bends: Any, xp: Any, loop: Any) -> Any:
+def _turned(grown: Grown, there: Any, bends: Any, xp: Any, loop: Any) -> Any:
     """Return the factors by which joints turn edges."""
     nodes, rings = len(grown.before), len(grown.ring_first)
     # Edges of the root hang on its first, as the tree of joints has it.

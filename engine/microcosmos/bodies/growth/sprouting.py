@@ -11,12 +11,13 @@ program. Both give the same bits in single precision, without fused multiply-add
 """
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from .plan import Capacity, Plan
-from .trigonometry import cosine, sine
+from .body import Grown, Limb, State
+from .placing import Bases, New, bases_of, nodes_of
+from .plan import LEAST_RING, Capacity, Plan
 
 CLEARANCE = 2.0
 """Least distance of two nodes of a body at rest, in spacings."""
@@ -24,69 +25,6 @@ FOLDED = 0.4
 """The same as a share of their distance along the body, where that is short."""
 MOST_EDGES = 6
 """Most edges of a node."""
-LEAST_RING = 5
-"""Least nodes of a ring, without its base."""
-
-
-class Limb(NamedTuple):
-    """Rows of grown copies of segments."""
-
-    gene: Any
-    start: Any
-    """First node that the copy added."""
-    base: Any
-    """Node that it is attached to."""
-    nodes: Any
-
-
-class Grown(NamedTuple):
-    """A grown body; positions are in cells, relative to the first node."""
-
-    present: Any
-    """(node,)"""
-    positions: Any
-    """(node, 2)"""
-    before: Any
-    """(node,) the node before it on the way to the first node."""
-    heading: Any
-    """(node,) direction of the edge that leads to it, in rad."""
-    hand: Any
-    """(node,) −1 in mirror images, otherwise 1."""
-    side: Any
-    """(node,) −1, 0 or 1: the side of the limb that the node belongs to."""
-    limb: Any
-    """(node,) number of the copy, from −1 to 1; 0 where there is one."""
-    along: Any
-    """(node,) place along its segment, from −1 to 1."""
-    distance: Any
-    """(node, node) along the body, in spacings."""
-    stiffness: Any
-    """(node,) of the joint between its edge and the one before."""
-    degree: Any
-    """(node,) number of edges."""
-    ring_base: Any
-    """(ring,) the node at which a ring begins and ends."""
-    ring_first: Any
-    """(ring,) the first node behind it; −1: no ring."""
-    ring_last: Any
-    """(ring,)"""
-    segments: Any
-    """Number of copies of segments that have grown."""
-    ungrown: Any
-    """Number of genes without room to grow."""
-
-
-class State(NamedTuple):
-    """Growth after some genes."""
-
-    grown: Grown
-    limbs: Limb
-    first: Any
-    """(gene,) row of the first copy of a gene."""
-    copies: Any
-    """(gene,) number of copies that have grown."""
-    nodes: Any
-    rings: Any
 
 
 def grow(plan: Plan, capacity: Capacity, xp: Any = np, loop: Callable | None = None) -> Grown:
@@ -178,8 +116,8 @@ def _sprout(plan: Plan, capacity: Capacity, gene: Any, state: State, xp: Any) ->
     parents = xp.where(root, 1, state.copies[parent])
     count = parents * sides * copies
     limb = xp.arange(capacity.limbs)
-    bases = _bases(plan, capacity, gene, state, limb, sides, copies, xp)
-    new = _nodes(plan, capacity, gene, state, bases, count, xp)
+    bases = bases_of(plan, capacity, gene, state, limb, sides, copies, xp)
+    new = nodes_of(plan, capacity, gene, state, bases, count, xp)
     room = used & (count >= 1) & _fits(plan, capacity, gene, state, new, count, xp)
     joined = _joined(plan, capacity, gene, state, bases, new, count, xp)
     grown = Grown(*(xp.where(room, a, b) for a, b in zip(joined, state.grown, strict=True)))
@@ -204,112 +142,6 @@ def _sprout(plan: Plan, capacity: Capacity, gene: Any, state: State, xp: Any) ->
         nodes=xp.where(room, state.nodes + count * length, state.nodes),
         rings=xp.where(room & plan.closed[gene], state.rings + count, state.rings),
     )
-
-
-class Bases(NamedTuple):
-    """Where the copies of a gene begin, one row for each copy."""
-
-    node: Any
-    heading: Any
-    hand: Any
-    side: Any
-    limb: Any
-
-
-def _bases(plan, capacity, gene, state: State, limb, sides, copies, xp) -> Bases:
-    grown, reals = state.grown, plan.curl.dtype
-    root, parent = xp.asarray(gene == 0), plan.parent[gene]
-    row = state.first[parent] + limb // (sides * copies)
-    row = xp.clip(row, 0, len(state.limbs.gene) - 1)
-    copy, image = limb // sides % copies, limb % sides
-    length = state.limbs.nodes[row]
-    # XLA multiplies by the reciprocal of a single number, so NumPy has to.
-    part, reach = 1 / copies.astype(reals), length.astype(reals)
-    share = (copy + 1).astype(reals) * part
-    ring = plan.closed[parent]
-    # Around a ring all copies are alike; along a filament they end at the place.
-    evenly = copy.astype(reals) * (reach + 1) * part
-    around = xp.floor(plan.place[gene] * reach + evenly).astype(np.int32)
-    along = xp.rint(plan.place[gene] * share * reach).astype(np.int32)
-    place = xp.where(ring, around % (length + 1), along)
-    node = xp.where(place == 0, state.limbs.base[row], state.limbs.start[row] + place - 1)
-    node = xp.where(root, 0, xp.clip(node, 0, capacity.nodes - 1))
-    # At the base of a limb its own first edge gives the direction.
-    ahead = xp.where(place == 0, state.limbs.start[row], node)
-    ahead = xp.clip(ahead, 0, capacity.nodes - 1)
-    hand = grown.hand[ahead] * xp.where(image == 1, -1, 1).astype(reals)
-    radial = (parent == 0) & (place == 0) & (copies > 1) & ~ring
-    turn = xp.asarray(2 * np.pi, reals) * (1 / (copies + 1).astype(reals))
-    angle = xp.where(radial, turn * (copy + 1).astype(reals), plan.angle[gene])
-    # On a ring 0 is straight outwards; at its base, from the edge that leaves it.
-    corner = xp.asarray(np.pi, reals) / (reach + 1)
-    corner = xp.where(place == 0, -corner, corner)
-    out = xp.where(ring & ~root, corner - xp.asarray(np.pi / 2, reals), 0).astype(reals)
-    spread = (2 * copy - (copies - 1)).astype(reals)
-    spread = spread * (1 / xp.maximum(copies - 1, 1).astype(reals))
-    ahead_of = grown.heading[ahead] + grown.hand[ahead] * out
-    return Bases(
-        node=node.astype(np.int32),
-        heading=xp.where(root, 0, ahead_of + hand * angle).astype(reals),
-        hand=xp.where(root, 1, hand).astype(reals),
-        side=xp.where(sides == 2, 1 - 2 * image, grown.side[ahead]).astype(reals),
-        limb=xp.where(copies > 1, spread, grown.limb[ahead]).astype(reals),
-    )
-
-
-class New(NamedTuple):
-    """Nodes of the copies of a gene, in the rows that they would have."""
-
-    here: Any
-    copy: Any
-    steps: Any
-    """Steps along the segment from its base, from 1."""
-    around: Any
-    """Steps from the base, by the shorter way of a ring."""
-    base: Any
-    positions: Any
-    heading: Any
-    distance: Any
-    """(node, node) of all nodes, old and new."""
-
-
-def _nodes(plan, capacity: Capacity, gene, state: State, bases: Bases, count, xp) -> New:
-    grown, reals = state.grown, plan.curl.dtype
-    length, closed = plan.nodes[gene], plan.closed[gene]
-    slot = xp.arange(capacity.nodes, dtype=np.int32) - state.nodes
-    here = (slot >= 0) & (slot < count * length)
-    copy = xp.clip(slot // length, 0, capacity.limbs - 1)
-    steps = slot % length + 1
-    base = xp.where(here, bases.node[copy], xp.arange(capacity.nodes, dtype=np.int32))
-    corners = (length + 1).astype(reals)
-    bend = plan.curl[gene] / xp.maximum(length - 1, 1).astype(reals)
-    turn = xp.where(closed, xp.asarray(2 * np.pi, reals) / corners, bend).astype(reals)
-    hand = bases.hand[copy]
-    # The middle of a ring lies in the direction of its base.
-    aside = xp.where(closed, turn / 2 - xp.asarray(np.pi / 2, reals), 0).astype(reals)
-    outset = bases.heading[copy] + hand * aside
-    heading = outset + hand * turn * (steps - 1).astype(reals)
-    chord = outset + hand * turn * ((steps - 1).astype(reals) / 2)
-    # The sum of unit vectors that turn evenly: sin(n t / 2) / sin(t / 2) along their mean.
-    flat = xp.abs(turn) < 1e-3
-    half = xp.where(flat, xp.asarray(1, reals), turn / 2).astype(reals)
-    wide = sine(steps.astype(reals) * half, xp) * (1 / sine(half, xp))
-    reach = xp.where(flat, steps.astype(reals), wide) * xp.asarray(capacity.spacing, reals)
-    offset = reach[:, None] * xp.stack([cosine(chord, xp), sine(chord, xp)], 1)
-    positions = xp.where(here[:, None], grown.positions[base] + offset, grown.positions)
-    around = xp.where(closed, xp.minimum(steps, length + 1 - steps), steps).astype(reals)
-    distance = _distances(grown, here, copy, steps, around, base, length, closed, xp)
-    return New(here, copy, steps, around, base, positions, heading, distance)
-
-
-def _distances(grown: Grown, here, copy, steps, around, base, length, closed, xp):
-    """Return distances along the body between all nodes, old and new."""
-    from_base = xp.where(here, around, 0)
-    between = grown.distance[base][:, base] + from_base[:, None] + from_base[None]
-    apart = xp.abs(steps[:, None] - steps[None])
-    apart = xp.where(closed, xp.minimum(apart, length + 1 - apart), apart)
-    same = here[:, None] & here[None] & (copy[:, None] == copy[None])
-    return xp.where(same, apart.astype(grown.distance.dtype), between)
 
 
 def _fits(plan, capacity: Capacity, gene, state: State, new: New, count, xp):

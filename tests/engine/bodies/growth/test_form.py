@@ -45,8 +45,8 @@ def test_independent_loops_are_rings_also_in_several_bodies():
     assert form_of(pair, pieces=2)["rings"] == 2
     spectacles = plan_of(
         {"nodes": 9},
-        {"nodes": 7, "closed": True, "angle": np.pi},
-        {"nodes": 7, "closed": True, "place": 1.0},
+        {"nodes": 11, "closed": True, "angle": np.pi},
+        {"nodes": 11, "closed": True, "place": 1.0},
     )
     grown, bones = in_numpy(spectacles)
     given = grown.positions, bones.edges, grown.present, bones.there

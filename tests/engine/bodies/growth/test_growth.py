@@ -93,7 +93,7 @@ def test_copies_at_the_base_of_the_root_make_a_star(nodes_of, copies):
 
 
 def test_a_ring_at_a_limb_stands_straight_ahead(nodes_of):
-    ring = nodes_of(ROOT, {"nodes": 7, "place": 1.0, "closed": True})[5:]
+    ring = nodes_of(ROOT, {"nodes": 9, "place": 1.0, "closed": True})[5:]
     middle = np.concatenate([[[4, 0]], ring]).mean(0)
     close(middle, [4 + 0.5 / np.sin(np.pi / 8), 0])
 
