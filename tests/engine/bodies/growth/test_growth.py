@@ -95,7 +95,7 @@ def test_copies_at_the_base_of_the_root_make_a_star(nodes_of, copies):
 def test_a_ring_at_a_limb_stands_straight_ahead(nodes_of):
     ring = nodes_of(ROOT, {"nodes": 9, "place": 1.0, "closed": True})[5:]
     middle = np.concatenate([[[4, 0]], ring]).mean(0)
-    close(middle, [4 + 0.5 / np.sin(np.pi / 8), 0])
+    close(middle, [4 + 0.5 / np.sin(np.pi / 10), 0])
 
 
 def test_copies_of_a_parent_have_each_their_limbs(nodes_of):
