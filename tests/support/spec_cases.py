@@ -152,6 +152,11 @@ CASES: dict[str, dict[str, Any]] = {
         body={"builder": "grown", "nodes": 14, "length": 9.0, "segments": 4, "rings": 2}
         | {"segment_nodes": 7, "copies": 3, "limbs": 5, "spacing": 0.9},
     ),
+    "a body from a plan that senses": scene(
+        {"encoding": "body-graph", "sense_energy": True},
+        box={"energy": ENERGY},
+        body={"builder": "grown", "nodes": 14, "length": 9.0, "segments": 4},
+    ),
     "plug-ins": scene(
         {"encoding": "movers.pulse"},
         {"fitness": "movers.way"},

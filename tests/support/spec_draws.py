@@ -150,7 +150,7 @@ SELDOM: dict[tuple[str, Any], float] = {
     ("Scene.control", spec.Fold): 0.3,
     ("Scene.control", spec.PluginControl): 0.3,
     ("Scene.control", spec.BodyGraph): 0.0,  # See `PLANNED`.
-    ("Scene.control", spec.Gait): 0.8,
+    ("Scene.control", spec.Gait): 0.9,
     ("Scene.body", spec.PluginBody): 0.3,
     ("Scene.body", spec.GrownBody): 0.0,  # It stands with its encoding alone.
 }

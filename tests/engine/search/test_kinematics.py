@@ -108,7 +108,7 @@ def test_poses_are_the_positions_at_those_steps(float64):
     positions = jnp.asarray(20 + random.normal(size=(300, 5, 2)))
     centre, kept = positions.mean(1), jnp.arange(5) != 3
     last = window(jnp.arange(1.0, 301) / 100)
-    found = poses(jnp.zeros(2), centre, positions, kept, last, 4.0)
+    found = poses(jnp.zeros(2), centre, positions, kept, jnp.zeros((0, 2), int), last, 4.0)
     cells = np.asarray(found.origin) + np.asarray(found.scale) * np.asarray(found.positions)
     shown = np.asarray(positions)[np.asarray(last.places())]
     np.testing.assert_allclose(cells[:, kept], shown[:, kept], atol=float(found.scale))

@@ -37,11 +37,11 @@ def test_genes_are_in_degrees_and_the_root_has_no_parent():
 
 
 def test_a_ring_is_closed_by_an_edge_of_its_last_node():
-    ring = FINS | {"number": 7, "nodes": 6, "place": 1.0, "angle": 0.0, "mirrored": False}
+    ring = FINS | {"number": 7, "nodes": 9, "place": 1.0, "angle": 0.0, "mirrored": False}
     drawn = plan_drawing(plan_identity(ROOT, ring | {"closed": True}))
-    assert (8, 14) in [tuple(sorted(edge)) for edge in drawn.edges]
+    assert (8, 17) in [tuple(sorted(edge)) for edge in drawn.edges]
     owners = Counter(drawn.nodes[max(edge)].segment for edge in drawn.edges)
-    assert owners == {0: 8, 1: 7}
+    assert owners == {0: 8, 1: 10}
     assert (drawn.segments[1].ring, drawn.segments[1].number) == (True, 7)
 
 
