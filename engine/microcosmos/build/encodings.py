@@ -93,6 +93,7 @@ def _encoding(
                 segments=grown.genes,
                 inputs=len(control.inputs),
                 waves=control.waves,
+                unit=control.position == "unit",
                 softest=control.softest,
             )
         case spec.Grown():

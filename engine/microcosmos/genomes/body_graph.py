@@ -43,6 +43,8 @@ class BodyGraphEncoding:
     inputs: int
     waves: float | None = None
     """Waves of the travelling inputs from the first node to the farthest."""
+    unit: bool = False
+    """Whether positions along segments are from 0 to 1, not from −1."""
     softest: float = 1.0
     """Share of a joint's error that a step removes at stiffness 0; 1: all joints are stiff."""
 
@@ -132,7 +134,8 @@ class BodyGraphEncoding:
         high = jnp.max(jnp.where(there, grown.positions, -jnp.inf), 0)
         half = jnp.maximum(jnp.max(high - low) / 2, 1e-6)
         x, y = ((grown.positions - (low + high)[None] / 2) / half).T
-        sites = jnp.stack([grown.along, share, grown.side, grown.limb, x, y])
+        along = 0.5 * (1 + grown.along) if self.unit else grown.along
+        sites = jnp.stack([along, share, grown.side, grown.limb, x, y])
         return replace(
             self.controls,
             sites=jnp.where(grown.present[None], sites, 0.0),

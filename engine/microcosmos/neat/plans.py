@@ -34,10 +34,10 @@ class PlanRates:
     limits: Segments
     structure: float
     """A child's plan has a structural mutation."""
-    values: float
-    """A number of a segment varies, where the plan's structure does not."""
     vary: float
-    """The numbers of a child's plan vary at all."""
+    """Numbers of a child's plan vary, where its structure does not."""
+    values: float
+    """One of them does, where they vary at all."""
 
 
 class PlanNovelty(eqx.Module):
@@ -103,7 +103,7 @@ def plan_distance(a: Plan, b: Plan, coefficients: Coefficients) -> Float[Array, 
     row = match(a.number, a.used, b.number, b.used)
     unlike = (
         jnp.abs(a.place - b.place[row])
-        + jnp.abs(a.angle - b.angle[row]) / jnp.pi
+        + jnp.abs(_within_half_a_turn(a.angle - b.angle[row])) / jnp.pi
         + jnp.abs(a.nodes - b.nodes[row]) / 8
         + jnp.abs(a.curl - b.curl[row]) / jnp.pi
         + jnp.abs(a.stiffness - b.stiffness[row])
@@ -253,6 +253,10 @@ def _varied(
             new = jnp.clip(column + 0.2 * step, 0.0, 1.0)
         found[name] = jnp.where(chosen, new, column).astype(column.dtype)
     return plan._replace(**found)
+
+
+def _within_half_a_turn(angle: Float[Array, "..."]) -> Float[Array, "..."]:
+    return angle - 2 * jnp.pi * jnp.round(angle / (2 * jnp.pi))
 
 
 def _step(uniform: Uniform) -> Float[Array, "..."]:

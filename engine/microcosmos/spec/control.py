@@ -110,7 +110,7 @@ class Genome(Part):
     """Probability that the structure of a body plan changes, by one segment; the network then
     stays."""
     shape_rate: float = field(0.35, ge=0.0, le=1.0, source=OURS)
-    """Probability that numbers of a body plan vary."""
+    """Probability that numbers of a body plan vary, where its structure does not change."""
     segment_rate: float = field(0.25, ge=0.0, le=1.0, source=OURS)
     """Probability that one of them does: a segment's place, angle, nodes, curl, stiffness."""
 

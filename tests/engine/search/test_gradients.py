@@ -50,7 +50,7 @@ def test_derivatives_by_every_part_are_those_of_finite_differences(creature):
     backward = partial(gradients.value_and_jacobian, task, genotype, of=OF, segment=15)
     found, rows = jax.jit(backward)(values)
     np.testing.assert_allclose(found, value(values), rtol=1e-10)
-    random = np.random.default_rng(0)
+    random = np.random.default_rng(1)
     for name, at in values.items():
         along = jnp.asarray(random.normal(size=at.shape))
         slope = np.asarray(jnp.tensordot(rows[name], along, along.ndim))
