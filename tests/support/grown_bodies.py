@@ -18,14 +18,14 @@ PLAN = {
     "parent": (0, 0, 0),
     "place": (0.0, 0.5, 1.0),
     "angle": (0.0, 1.1, -0.6),
-    "nodes": (7, 4, 9),
+    "nodes": (8, 4, 9),
     "curl": (0.3, -0.4, 0.0),
     "stiffness": (0.5, 0.2, 1.0),
     "mirrored": (False, True, False),
     "copies": (1, 1, 1),
     "closed": (False, False, True),
 }
-"""25 nodes: 8 of the root, 2 limbs of 4 and a ring of 9 more."""
+"""26 nodes: 9 of the root, 2 limbs of 4 and a ring of 9 more."""
 
 
 def plan(rows: int) -> Plan:

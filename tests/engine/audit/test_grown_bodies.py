@@ -32,9 +32,9 @@ def rebuilt(softest):
 @pytest.mark.parametrize("softest", [1.0, SOFT])
 def test_a_grown_body_that_is_built_again_moves_as_before(softest):
     scene, _, centre, body, rest = rebuilt(softest)
-    assert len(body.positions) == 25
+    assert len(body.positions) == 26
     # A tree has an edge less than nodes, a joint less than edges; a ring one and two more.
-    assert (len(body.edges), len(body.joints)) == (25, 25)
+    assert (len(body.edges), len(body.joints)) == (26, 26)
     task = with_limits(scene, body, 1.0)
     layout = task.world.layout
     assert layout is not None

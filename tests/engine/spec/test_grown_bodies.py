@@ -39,7 +39,7 @@ def test_a_search_for_bodies_is_drawn_by_random_plans_of_its_seed():
 def test_a_refined_creature_is_drawn_as_it_has_grown():
     file = grown_file(grown_scene())
     (body,) = drawing(parse({"experiment": "refinement", "creature": file})).bodies
-    assert (body.nodes, len(body.edges)) == (25, 25)
+    assert (body.nodes, len(body.edges)) == (26, 26)
 
 
 def test_the_graph_of_a_creature_is_the_body_that_is_simulated():
@@ -67,8 +67,8 @@ def test_an_hdf5_file_holds_the_grown_body_and_its_plan():
     assert creature_h5.load(data) == creature_h5.parse(file)
     with h5py.File(BytesIO(data), "r") as tree:
         plan = tree["genome/plan"]
-        assert tree["body/positions"].shape == (25, 2)
-        np.testing.assert_array_equal(plan["nodes"], [7, 4, 6])
+        assert tree["body/positions"].shape == (26, 2)
+        np.testing.assert_array_equal(plan["nodes"], [8, 4, 9])
         np.testing.assert_allclose(plan["angle"], [0, 1.1, -0.6], rtol=1e-6)
 
 

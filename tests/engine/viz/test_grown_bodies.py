@@ -20,6 +20,6 @@ def test_a_replay_holds_the_grown_body_and_its_rest_shapes():
     assert film.drive is not None
     # The drive rises from the body at rest.
     np.testing.assert_allclose(film.drive.angles[0], body.rest_angle, atol=0.1)
-    assert film.drive.lengths.shape == (film.frames, 25)
+    assert film.drive.lengths.shape == (film.frames, 26)
     assert np.abs(film.drive.angles - body.rest_angle[None]).max() > 0.1
     assert frame(film, film.frames - 1, width=160).std() > 0
