@@ -184,6 +184,7 @@ def document(control: type[spec.Part], rng: Random) -> dict[str, Any]:
         parts["body"] = drawn(spec.Chain, rng)
     if control is spec.BodyGraph:
         parts["body"] = drawn(spec.GrownBody, rng)
+        parts["coupling"]["limits"] = True  # Without them any motion is drawn, and may blow up.
     if control is spec.Gait:
         swimmer = parts["control"]["swimmer"]
         if rng.random() < 0.2:

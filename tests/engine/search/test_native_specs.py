@@ -104,10 +104,18 @@ def motion(task, actuator):
         driven = search.shift_energy(driven, task.placements[-1])
     end, observed = search.simulate(driven)
     found = {name: getattr(observed, name) for name in OBSERVED}
-    found |= {"rest angle": observed.rest.angle, "rest length": observed.rest.length}
+    found |= {
+        "rest angle": among(observed.rest.angle, world.joints_there(driven.world)),
+        "rest length": among(observed.rest.length, world.edges_there(driven.world)),
+    }
     found |= {"clock": clock_of(driven, len(observed.power))}
     last = {"flow": jnp.stack(end.populations), "energy": end.energy}
     return found | last | {"collected": end.collected, "held": observed.held}
+
+
+def among(values, there):
+    """Return commands with 0 for joints or edges that have not grown."""
+    return values if there is None else jnp.where(there[None], values, 0.0)
 
 
 def creature_of(seed):
