@@ -53,13 +53,11 @@ def mutated(key: Any, times: int, rates: plans.PlanRates = RATES) -> growth.Plan
 
 
 def developed(plan: growth.Plan, capacity: growth.Capacity = CAPACITY) -> tuple[Any, ...]:
-    """Return a grown body, its skeleton, the colours of edges and joints, and its form."""
+    """Return a grown body, its skeleton, and its form."""
     grown = growth.grow(plan, capacity, jnp, loop)
     bones = growth.skeleton(grown, capacity, jnp, loop)
-    edges = growth.colours(bones.edges, bones.there, capacity.nodes, jnp, loop)
-    joints = growth.colours(bones.joints, bones.bends, capacity.edges, jnp, loop)
     given = grown.positions, bones.edges, grown.present, bones.there
-    return grown, bones, edges, joints, growth.form(*given, jnp)
+    return grown, bones, growth.form(*given, jnp)
 
 
 def different(after: growth.Plan, before: growth.Plan) -> list[set[str]]:

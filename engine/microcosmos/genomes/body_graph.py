@@ -15,7 +15,6 @@ from ..bodies.growth import (
     Grown,
     Segments,
     Skeleton,
-    colours,
     form,
     grow,
     random_plan,
@@ -92,8 +91,8 @@ class BodyGraphEncoding:
         ones, stiff = bones.there.astype(dtype), bones.bends.astype(dtype)
         rods = filaments.Rods(
             edges=bones.edges,
-            edge_colours=_pairings(bones.edges, bones.there, self.capacity.nodes, dtype),
-            joint_colours=_pairings(bones.joints, bones.bends, self.capacity.edges, dtype),
+            edge_colours=(),  # Shapes are matched, and no constraint is swept.
+            joint_colours=(),
             stretch=ones,
             shear=ones,
             bend=self._bend(bones).astype(dtype) * stiff,
@@ -170,25 +169,3 @@ def _among(grown: Grown, values: Array) -> Array:
         shape[axis] = -1
         values = jnp.where(grown.present.reshape(shape), values, 0.0)
     return values
-
-
-def _pairings(
-    pairs: Array, there: Array, members: int, dtype: Any
-) -> tuple[filaments.Pairing, ...]:
-    """Return the colours of constraints as data; those of absent ones touch nothing."""
-    colour = colours(pairs, there, members, jnp, _loop)
-    found = []
-    number = jnp.arange(len(pairs), dtype=jnp.int32)
-    for one in range(8):
-        mine = there & (colour == one)
-        first, second = (jnp.where(mine, pairs[:, end], members) for end in (0, 1))
-        partner = jnp.arange(members, dtype=jnp.int32)
-        partner = partner.at[first].set(pairs[:, 1], mode="drop")
-        partner = partner.at[second].set(pairs[:, 0], mode="drop")
-        constraint = jnp.zeros(members, jnp.int32)
-        constraint = constraint.at[first].set(number, mode="drop")
-        constraint = constraint.at[second].set(number, mode="drop")
-        sign = jnp.zeros(members, dtype).at[first].set(1, mode="drop")
-        sign = sign.at[second].set(-1, mode="drop")
-        found.append(filaments.Pairing(partner, constraint, sign))
-    return tuple(found)

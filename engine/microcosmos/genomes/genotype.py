@@ -100,7 +100,7 @@ def read(genes: Mapping[str, Any], encoding: Encoding) -> Genotype:
     has them."""
     room = encoding.room
     if room is not None and encoding.segments is not None:
-        plan = from_segments(genes["plan"], encoding.segments.rows)
+        plan = plan_of(genes["plan"], encoding.segments.rows)
         return BodyGraph(plan, from_genes(genes, *room))
     if room is not None:
         return from_genes(genes, *room)
@@ -115,13 +115,6 @@ def to_segments(plan: Plan) -> dict[str, Any]:
         name: encode(column) if column.dtype == np.float32 else column.tolist()
         for name, column in columns.items()
     }
-
-
-def from_segments(genes: Mapping[str, Any], rows: int) -> Plan:
-    """Return the plan of a parsed creature file, with room for more segments."""
-    columns = {name: genes[name] for name in Plan._fields[1:]}
-    found = {name: decode(x) if isinstance(x, str) else x for name, x in columns.items()}
-    return plan_of(found, rows)
 
 
 def to_genes(network: CPPN) -> dict[str, Any]:

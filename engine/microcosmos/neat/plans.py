@@ -18,7 +18,6 @@ from .rows import NONE, choose, match, put
 
 OPERATIONS = ("add", "split", "remove", "mirror", "repeat", "close", "attach")
 """Structural mutations of a plan, by number."""
-SPLIT, ADD = OPERATIONS.index("split"), OPERATIONS.index("add")
 LEAST_SPLIT = 4
 """Least nodes of a segment that is split."""
 MOST_CURL = 6.0
@@ -55,7 +54,7 @@ class Varied(NamedTuple):
 
     novelty: PlanNovelty
     changed: Bool[Array, ""]
-    """True if it was structural."""
+    """True if the structure differs."""
 
 
 def mutate_plan(plan: Plan, rates: PlanRates, *, key: PRNGKeyArray) -> tuple[Plan, Varied]:
@@ -85,7 +84,9 @@ def mutate_plan(plan: Plan, rates: PlanRates, *, key: PRNGKeyArray) -> tuple[Pla
     # A new segment stands behind the one it is attached to, or split from.
     of = jnp.where(row >= 0, found.number[found.parent[row]], NONE)
     novelty = PlanNovelty(row, of, jnp.where(row >= 0, operation, NONE))
-    return found, Varied(novelty, changes)
+    # A root alone cannot be mirrored, nor a full plan split: such a child is like its parent.
+    differs = [jnp.any(one != old) for one, old in zip(found, plan, strict=True)]
+    return found, Varied(novelty, changes & jnp.any(jnp.stack(differs)))
 
 
 def crossover_plan(fitter: Plan, other: Plan, *, key: PRNGKeyArray) -> Plan:
@@ -108,6 +109,7 @@ def plan_distance(a: Plan, b: Plan, coefficients: Coefficients) -> Float[Array, 
         + jnp.abs(a.curl - b.curl[row]) / jnp.pi
         + jnp.abs(a.stiffness - b.stiffness[row])
         + jnp.abs(a.copies - b.copies[row])
+        + (a.number[a.parent] != b.number[b.parent[row]])
         + (a.mirrored != b.mirrored[row])
         + (a.closed != b.closed[row])
     )
@@ -242,11 +244,11 @@ def _varied(
         if name == "place":
             new = jnp.clip(column + 0.2 * step, 0.0, 1.0)
         elif name == "angle":
-            new = column + 0.4 * step
-            new = new - 2 * jnp.pi * jnp.round(new / (2 * jnp.pi))
+            new = _within_half_a_turn(column + 0.4 * step)
         elif name == "nodes":
             by = jnp.where(step < 0, -1, 1) * (1 + (jnp.abs(step) > 1.0))
-            new = jnp.clip(column + by, 1, limits.nodes)
+            least = jnp.where(plan.closed, min(LEAST_RING, limits.nodes), 1)
+            new = jnp.clip(column + by, least, limits.nodes)
         elif name == "curl":
             new = jnp.clip(column + 0.5 * step, -MOST_CURL, MOST_CURL)
         else:

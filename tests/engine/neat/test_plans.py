@@ -15,6 +15,7 @@ from microcosmos.neat import plans
 
 COEFFICIENTS = neat.Coefficients(1.0, 1.0, 0.5)
 SMALL = Segments(rows=3, nodes=6, copies=2)
+ADD, SPLIT = (plans.OPERATIONS.index(name) for name in ("add", "split"))
 LIMITS_OF = {"many": LIMITS, "few": SMALL}
 
 
@@ -128,7 +129,7 @@ def test_a_structural_mutation_is_alone_and_has_a_novelty(some):
     new, operation = varied.novelty.row >= 0, varied.novelty.operation
     assert 0.4 < varied.changed.mean() < 0.6
     assert not (new & ~varied.changed).any()
-    assert set(operation[new].tolist()) == {plans.ADD, plans.SPLIT}
+    assert set(operation[new].tolist()) == {ADD, SPLIT}
     assert (operation[~new] == -1).all()
     assert (varied.novelty.of[~new] == -1).all()
     for index in np.flatnonzero(new):
@@ -171,7 +172,7 @@ def test_equal_mutations_of_a_generation_share_a_number():
     for index in np.flatnonzero(novelty.row >= 0):
         who = int(novelty.of[index]), int(novelty.operation[index])
         numbers.setdefault(who, set()).add(int(children.number[index, novelty.row[index]]))
-    assert set(numbers) == {(of, way) for of in (0, 2) for way in (plans.ADD, plans.SPLIT)}
+    assert set(numbers) == {(of, way) for of in (0, 2) for way in (ADD, SPLIT)}
     assert all(len(found) == 1 for found in numbers.values())
     assert set().union(*numbers.values()) == set(range(10, 10 + used))
     assert used == 4

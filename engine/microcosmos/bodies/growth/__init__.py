@@ -14,5 +14,5 @@ from .random import (
     random_plan,
     random_segment,
 )
-from .skeleton import Skeleton, colours, skeleton
+from .skeleton import Skeleton, skeleton
 from .sprouting import grow, sprout

@@ -45,8 +45,6 @@ class Grown(NamedTuple):
     """(ring,) the first node behind it; −1: no ring."""
     ring_last: Any
     """(ring,)"""
-    segments: Any
-    """Number of copies of segments that have grown."""
     ungrown: Any
     """Number of genes without room to grow."""
 

@@ -9,6 +9,31 @@ from .plan import Capacity
 from .trigonometry import cosine, sine
 
 
+class Images(NamedTuple):
+    """How often a segment stands on each copy of its parent."""
+
+    sides: Any
+    """2 with a mirror image, else 1."""
+    copies: Any
+    around: Any
+    """Whether the copies stand evenly around the base of the root."""
+
+
+def images_of(plan, gene, xp) -> Images:
+    """Return the images of a gene. At the base of another limb than the root they would all
+    coincide, so there is one copy."""
+    root, parent = xp.asarray(gene == 0), plan.parent[gene]
+    reach = plan.nodes[parent].astype(plan.place.dtype)
+    base = ~plan.closed[parent] & (xp.rint(plan.place[gene] * reach) == 0) & ~root
+    around = base & (parent == 0) & (plan.copies[gene] > 1)
+    one = xp.ones_like(plan.copies[gene])
+    return Images(
+        sides=xp.where(root | around, one, one + plan.mirrored[gene]),
+        copies=xp.where(root | (base & ~around), one, plan.copies[gene]),
+        around=around,
+    )
+
+
 class Bases(NamedTuple):
     """Where the copies of a gene begin, one row for each copy."""
 
@@ -19,8 +44,10 @@ class Bases(NamedTuple):
     limb: Any
 
 
-def bases_of(plan, capacity, gene, state: State, limb, sides, copies, xp) -> Bases:
-    grown, reals = state.grown, plan.curl.dtype
+def bases_of(plan, capacity: Capacity, gene, state: State, images: Images, xp) -> Bases:
+    """Return where the copies of a gene begin."""
+    grown, reals, limb = state.grown, plan.curl.dtype, xp.arange(capacity.limbs)
+    sides, copies, _ = images
     root, parent = xp.asarray(gene == 0), plan.parent[gene]
     row = state.first[parent] + limb // (sides * copies)
     row = xp.clip(row, 0, len(state.limbs.gene) - 1)
@@ -41,9 +68,8 @@ def bases_of(plan, capacity, gene, state: State, limb, sides, copies, xp) -> Bas
     ahead = xp.where(place == 0, state.limbs.start[row], node)
     ahead = xp.clip(ahead, 0, capacity.nodes - 1)
     hand = grown.hand[ahead] * xp.where(image == 1, -1, 1).astype(reals)
-    radial = (parent == 0) & (place == 0) & (copies > 1) & ~ring
     turn = xp.asarray(2 * np.pi, reals) * (1 / (copies + 1).astype(reals))
-    angle = xp.where(radial, turn * (copy + 1).astype(reals), plan.angle[gene])
+    angle = xp.where(images.around, turn * (copy + 1).astype(reals), plan.angle[gene])
     # On a ring 0 is straight outwards; at its base, from the edge that leaves it.
     corner = xp.asarray(np.pi, reals) / (reach + 1)
     corner = xp.where(place == 0, -corner, corner)
@@ -67,8 +93,6 @@ class New(NamedTuple):
     copy: Any
     steps: Any
     """Steps along the segment from its base, from 1."""
-    around: Any
-    """Steps from the base, by the shorter way of a ring."""
     base: Any
     positions: Any
     heading: Any
@@ -77,6 +101,7 @@ class New(NamedTuple):
 
 
 def nodes_of(plan, capacity: Capacity, gene, state: State, bases: Bases, count, xp) -> New:
+    """Return the nodes that the copies of a gene would add."""
     grown, reals = state.grown, plan.curl.dtype
     length, closed = plan.nodes[gene], plan.closed[gene]
     slot = xp.arange(capacity.nodes, dtype=np.int32) - state.nodes
@@ -102,7 +127,7 @@ def nodes_of(plan, capacity: Capacity, gene, state: State, bases: Bases, count, 
     positions = xp.where(here[:, None], grown.positions[base] + offset, grown.positions)
     around = xp.where(closed, xp.minimum(steps, length + 1 - steps), steps).astype(reals)
     distance = _distances(grown, here, copy, steps, around, base, length, closed, xp)
-    return New(here, copy, steps, around, base, positions, heading, distance)
+    return New(here, copy, steps, base, positions, heading, distance)
 
 
 def _distances(grown: Grown, here, copy, steps, around, base, length, closed, xp):

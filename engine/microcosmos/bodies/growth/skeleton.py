@@ -14,9 +14,6 @@ import numpy as np
 from .body import Grown
 from .plan import Capacity
 
-MOST_COLOURS = 8
-"""Colours that suffice for edges and for joints of nodes with six edges at most."""
-
 
 class Skeleton(NamedTuple):
     """A body of fixed sizes; what is absent belongs to the last node, which is empty."""
@@ -120,26 +117,6 @@ def ancestors(before: Any, xp: Any, loop: Callable | None) -> Any:
     for row in range(nodes):
         own[row] |= own[before[row]]
     return own
-
-
-def colours(pairs: Any, there: Any, members: int, xp: Any, loop: Callable | None) -> Any:
-    """Return the colour of each pair, greedily: pairs of one colour share no member."""
-    masks = 1 << xp.arange(MOST_COLOURS)
-
-    def step(row, state):
-        used, found = state
-        taken = used[pairs[row, 0]] | used[pairs[row, 1]]
-        colour = xp.argmax((taken & masks) == 0).astype(np.int32)
-        mine = (xp.arange(members)[:, None] == pairs[row][None]).any(1) & there[row]
-        used = xp.where(mine, used | (1 << colour), used)
-        return used, xp.where(xp.arange(len(pairs)) == row, colour, found)
-
-    state = xp.zeros(members, np.int32), xp.zeros(len(pairs), np.int32)
-    if loop is not None:
-        return loop(len(pairs), step, state)[1]
-    for row in range(len(pairs)):
-        state = step(row, state)
-    return state[1]
 
 
 def _placed(grown: Grown, there: Any, xp: Any, loop: Callable | None) -> Any:

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from .body import Grown, Limb, State
-from .placing import Bases, New, bases_of, nodes_of
+from .placing import Bases, New, bases_of, images_of, nodes_of
 from .plan import LEAST_RING, Capacity, Plan
 
 CLEARANCE = 2.0
@@ -99,7 +99,6 @@ def _seed(plan: Plan, capacity: Capacity, xp: Any) -> State:
         ring_base=xp.zeros(rings, np.int32),
         ring_first=xp.full(rings, -1, np.int32),
         ring_last=xp.zeros(rings, np.int32),
-        segments=number,
         ungrown=number,
     )
     empty = xp.zeros(rows, np.int32)
@@ -110,13 +109,10 @@ def _seed(plan: Plan, capacity: Capacity, xp: Any) -> State:
 def _sprout(plan: Plan, capacity: Capacity, gene: Any, state: State, xp: Any) -> State:
     """Grow all copies of a gene if there is room for them."""
     used, root = plan.used[gene], xp.asarray(gene == 0)
-    parent = plan.parent[gene]
-    sides = xp.where(root, 1, 1 + plan.mirrored[gene])
-    copies = xp.where(root, 1, plan.copies[gene])
-    parents = xp.where(root, 1, state.copies[parent])
-    count = parents * sides * copies
-    limb = xp.arange(capacity.limbs)
-    bases = bases_of(plan, capacity, gene, state, limb, sides, copies, xp)
+    images = images_of(plan, gene, xp)
+    parents = xp.where(root, 1, state.copies[plan.parent[gene]])
+    count = parents * images.sides * images.copies
+    bases = bases_of(plan, capacity, gene, state, images, xp)
     new = nodes_of(plan, capacity, gene, state, bases, count, xp)
     room = used & (count >= 1) & _fits(plan, capacity, gene, state, new, count, xp)
     joined = _joined(plan, capacity, gene, state, bases, new, count, xp)
@@ -206,6 +202,5 @@ def _joined(
         ring_base=xp.where(mine, bases.node[copy], old.ring_base).astype(np.int32),
         ring_first=xp.where(mine, start, old.ring_first).astype(np.int32),
         ring_last=xp.where(mine, start + length - 1, old.ring_last).astype(np.int32),
-        segments=(old.segments + count).astype(np.int32),
         ungrown=old.ungrown,
     )

@@ -97,8 +97,7 @@ class Segments(Part):
     def grow(self, body: GrownBody, softest: float) -> bodies.Body:
         """Return the body that the plan grows into, in the sizes of `body`."""
         columns = {name: getattr(self, name) for name in type(self).model_fields}
-        found = {name: decode(x) if isinstance(x, str) else x for name, x in columns.items()}
-        plan = growth.plan_of(found, body.segments)
+        plan = growth.plan_of(columns, body.segments)
         return growth.grown_body(plan, body.capacity, softest)
 
     def refuse_unfit(self, body: GrownBody) -> None:

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from ...bodies.growth import Plan, State, plan_of, skeleton, sprout
-from ...naming import decode
 from ..body import GrownBody
 
 
@@ -70,15 +69,11 @@ def plan_drawing(identity: Mapping[str, Any]) -> PlanDrawing:
     genome = identity["genome"]
     if "plan" not in genome:
         raise ValueError(f"`genome.encoding` must hold a plan, got {genome['encoding']!r}")
-    columns = {
-        name: decode(column) if isinstance(column, str) else column
-        for name, column in genome["plan"].items()
-    }
     capacity = GrownBody.model_validate(identity["body"]).capacity
-    plan = plan_of(columns, capacity.segments)
+    plan = plan_of(genome["plan"], capacity.segments)
     state = sprout(plan, capacity)
     bones = skeleton(state.grown, capacity)
-    rows = range(len(columns["number"]))
+    rows = range(int(plan.used.sum()))
     return PlanDrawing(
         nodes=_nodes(state),
         edges=[(int(a), int(b)) for a, b in bones.edges[bones.there]],

@@ -140,11 +140,23 @@ def test_a_segment_without_room_is_silent_as_are_its_descendants(nodes_of, reaso
     close(more[5:], line((2, 0), (0, 1), 2))
 
 
+def test_copies_around_the_base_of_the_root_have_no_mirror_images(nodes_of):
+    star = nodes_of({"nodes": 4}, {"nodes": 4, "copies": 3})
+    again = nodes_of({"nodes": 4}, {"nodes": 4, "copies": 3, "mirrored": True})
+    close(again, star)
+
+
+def test_copies_at_the_base_of_a_limb_are_one(nodes_of):
+    limb = {"nodes": 8, "place": 0.5, "angle": RIGHT}
+    toe = {"parent": 1, "nodes": 3, "angle": np.pi}
+    close(nodes_of({"nodes": 8}, limb, toe | {"copies": 3}), nodes_of({"nodes": 8}, limb, toe))
+
+
 def test_nodes_know_their_place_in_the_body():
     limb = {"nodes": 4, "place": 0.1, "angle": 2.0, "mirrored": True, "stiffness": 0.25}
     fin = {"nodes": 2, "place": 1.0, "angle": RIGHT, "copies": 3}
     grown, bones = in_numpy(plan_of({"nodes": 9, "stiffness": 0.5}, limb, fin))
-    assert grown.segments == 6
+    assert grown.present.sum() == 10 + 8 + 6
     close(grown.side[:18], [0] * 10 + [1] * 4 + [-1] * 4)
     close(grown.hand[:18], [1] * 14 + [-1] * 4)
     close(grown.limb[18:24], [-1, -1, 0, 0, 1, 1])

@@ -1,4 +1,4 @@
-"""Kinematics of grown bodies: closed forms against least squares, colours, edges and angles."""
+"""Kinematics of grown bodies: closed forms against least squares, edges and angles."""
 
 import body_plans
 import numpy as np
@@ -6,7 +6,6 @@ import pytest
 from body_plans import CAPACITY
 
 from microcosmos import bodies
-from microcosmos.bodies.growth.skeleton import MOST_COLOURS
 
 
 @pytest.mark.parametrize("part", range(4))
@@ -52,19 +51,6 @@ def test_joints_are_of_edges_that_share_a_node_and_have_their_far_node_as_driver
     pairs = np.sort(bones.joints, -1) @ [CAPACITY.edges, 1]
     for mine, found in zip(bones.bends, pairs, strict=True):
         assert len(set(found[mine].tolist())) == mine.sum()
-
-
-def test_constraints_of_one_colour_share_no_member(population):
-    _, _, bones, edges, joints, _ = population
-    _require_proper(bones.edges, bones.there, edges, CAPACITY.nodes)
-    _require_proper(bones.joints, bones.bends, joints, CAPACITY.edges)
-
-
-def _require_proper(pairs, there, colour, members):
-    assert colour[there].max() < MOST_COLOURS
-    for mine, found, given in zip(there, colour, pairs, strict=True):
-        taken = given[mine] + members * found[mine, None]
-        assert len(np.unique(taken)) == taken.size
 
 
 def _wrapped(angle):
