@@ -94,7 +94,7 @@ def test_the_kernel_moves_grown_bodies_as_jax_does(swum, softest):
 
 
 def test_edges_keep_their_rest_length(swum):
-    """But for those of bent rings, whose joints disagree: these are as least squares has them."""
+    """But for those of bent rings, whose joints disagree: least squares gives these."""
     rings = 0
     for boned, rest, measures, *_ in swum(1.0, False):
         edges, there, shapes = boned
