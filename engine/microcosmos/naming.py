@@ -49,7 +49,7 @@ MeasureName = Literal[
     "advance",
     "trial_spread",
     "segments",
-    "limbs",
+    "free_ends",
     "rings",
     "total_length",
     "form_symmetry",

@@ -53,7 +53,7 @@ MEASURES: dict[str, Measure] = {
     "advance": Measure("Advance", "lengths/1,000 steps", -0.6, 0.6),
     "trial_spread": Measure("Spread over trials", "fitness", 0.0, 0.1),
     "segments": Measure("Segments", "", 0.5, 12.5),
-    "limbs": Measure("Free ends", "", -0.5, 11.5),
+    "free_ends": Measure("Free ends", "", -0.5, 11.5),
     "rings": Measure("Rings", "", -0.5, 3.5),
     "total_length": Measure("Total length", "cells", 0.0, 50.0),
     "form_symmetry": Measure("Mirror symmetry at rest", "", 0.0, 1.0),

@@ -55,7 +55,7 @@ PAPER = QualityDiversity(
 )
 
 FORM_AND_MOTION = (
-    Descriptor(name="limbs", low=-0.5, high=7.5, bins=8),
+    Descriptor(name="free_ends", low=-0.5, high=7.5, bins=8),
     Descriptor(name="form_aspect", bins=8),
     Descriptor(name="curvature_mean", bins=8),
 )

@@ -67,7 +67,7 @@ SPECS["zoo"] = SMALL | {
     "genome": {"max_nodes": 16, "max_connections": 40},
     "archive": {
         "descriptors": [
-            {"name": "limbs", "low": -0.5, "high": 5.5, "bins": 6},
+            {"name": "free_ends", "low": -0.5, "high": 5.5, "bins": 6},
             {"name": "form_aspect", "bins": 6},
         ]
     },

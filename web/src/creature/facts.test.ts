@@ -48,7 +48,7 @@ describe("a creature file", () => {
 
   it("of a body that grows from a plan names its form", () => {
     const genome = { encoding: "body-graph", control: {} };
-    const measures = { limbs: 3, total_length: 22, form_symmetry: 0.75 };
+    const measures = { free_ends: 3, total_length: 22, form_symmetry: 0.75 };
     const measured = { fitness: 0, descriptors: {}, measures, block: 1, device: "cpu" };
     const body = { builder: "grown", nodes: 48 };
     const grown = { ...bare, identity: { ...identity, genome, body }, measured } as unknown as Creature;

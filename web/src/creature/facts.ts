@@ -19,7 +19,7 @@ interface Plugin {
   source: string;
 }
 
-const FORM = ["segments", "limbs", "rings", "total_length", "form_symmetry", "form_aspect", "ungrown"];
+const FORM = ["segments", "free_ends", "rings", "total_length", "form_symmetry", "form_aspect", "ungrown"];
 
 /** Groups of measures; all others belong to the result. */
 const GROUPS: [title: string, names: string[]][] = [

@@ -225,7 +225,7 @@ export const text = {
     advance: ["Advance along x", "lengths / 1,000 steps"],
     trial_spread: ["Spread over trials", "fitness"],
     segments: ["Segments", ""],
-    limbs: ["Free ends", ""],
+    free_ends: ["Free ends", ""],
     rings: ["Rings", ""],
     total_length: ["Total length", "cells"],
     form_symmetry: ["Mirror symmetry at rest", ""],

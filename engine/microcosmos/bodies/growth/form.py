@@ -6,7 +6,7 @@ import numpy as np
 
 FORMS = (
     "segments",
-    "limbs",
+    "free_ends",
     "rings",
     "total_length",
     "form_symmetry",
@@ -22,12 +22,12 @@ def form(
     """Measure a body at rest: `positions` (node, 2) in cells, `edges` (edge, 2).
 
     `present` (node,) and `there` (edge,) mask what has grown. Segments are filaments between
-    ends and branches, limbs are free ends, rings are independent loops. The total length is in
-    cells. Symmetry is that of the best mirror through the mean node, along or across the first
-    axis, a principal axis or the way to the farthest node: 1 less the mean distance from a
-    mirrored node to the nearest node, over half the radius of gyration, at least 0. The aspect
-    is the width over the length, of second moments. No segment is `ungrown` for want of room
-    where no plan says so.
+    ends and branches, free ends are nodes with one edge, rings are independent loops. The total
+    length is in cells. Symmetry is that of the best mirror through the mean node, along or
+    across the first axis, a principal axis or the way to the farthest node: 1 less the mean
+    distance from a mirrored node to the nearest node, over half the radius of gyration, at
+    least 0. The aspect is the width over the length, of second moments. No segment is `ungrown`
+    for want of room where no plan says so.
     """
     reals = positions.dtype
     node = xp.arange(len(positions))
@@ -54,7 +54,7 @@ def form(
     unlike = xp.min(xp.stack(mirrored)) / (0.5 * radius)
     found = {
         "segments": xp.maximum(joined / 2, 1),
-        "limbs": xp.sum(degree == 1).astype(reals),
+        "free_ends": xp.sum(degree == 1).astype(reals),
         "rings": links - count + pieces,
         "total_length": xp.sum(lengths),
         "form_symmetry": xp.maximum(1 - unlike, 0),

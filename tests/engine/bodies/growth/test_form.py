@@ -34,7 +34,7 @@ def test_segments_limbs_and_rings_are_counted(name):
     found = form_of(body)
     if segments is not None:
         assert found["segments"] == segments
-    assert (found["limbs"], found["rings"]) == (limbs, rings)
+    assert (found["free_ends"], found["rings"]) == (limbs, rings)
     np.testing.assert_allclose(found["total_length"], body.rest_length.sum(), rtol=1e-6)
     assert found["ungrown"] == 0
 
@@ -51,7 +51,7 @@ def test_independent_loops_are_rings_also_in_several_bodies():
     grown, bones = in_numpy(spectacles)
     given = grown.positions, bones.edges, grown.present, bones.there
     found = growth.form(*given)
-    assert (found["segments"], found["limbs"], found["rings"]) == (3, 0, 2)
+    assert (found["segments"], found["free_ends"], found["rings"]) == (3, 0, 2)
     np.testing.assert_allclose(found["form_symmetry"], 1, atol=1e-4)
 
 
