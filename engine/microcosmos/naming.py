@@ -77,6 +77,11 @@ def decode(text: str) -> np.ndarray:
     return values
 
 
+def decoded(columns: Mapping[str, Any]) -> dict[str, Any]:
+    """Return columns of a creature file, with those in base64 decoded."""
+    return {n: decode(x) if isinstance(x, str) else x for n, x in columns.items()}
+
+
 def canonical(identity: Mapping[str, Any]) -> bytes:
     """Return the canonical JSON (RFC 8785), whose SHA-256 is the name."""
     return rfc8785.dumps(dict(identity))

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Array, Float, PRNGKeyArray, UInt32
 
 from ..bodies.growth import Plan, plan_of
-from ..naming import ACTIVATIONS, decode, encode
+from ..naming import ACTIVATIONS, decode, decoded, encode
 from .cppn import CPPN
 from .encoding import Encoding
 from .plan import BodyGraph
@@ -100,7 +100,7 @@ def read(genes: Mapping[str, Any], encoding: Encoding) -> Genotype:
     has them."""
     room = encoding.room
     if room is not None and encoding.segments is not None:
-        plan = plan_of(genes["plan"], encoding.segments.rows)
+        plan = plan_of(decoded(genes["plan"]), encoding.segments.rows)
         return BodyGraph(plan, from_genes(genes, *room))
     if room is not None:
         return from_genes(genes, *room)

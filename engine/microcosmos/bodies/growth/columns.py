@@ -5,20 +5,15 @@ from typing import Any
 
 import numpy as np
 
-from ...naming import decode
 from .plan import Plan
 from .random import TYPES
 
 
 def plan_of(columns: Mapping[str, Any], rows: int) -> Plan:
-    """Return a plan of NumPy arrays with genes by name, and with room for `rows` segments.
-
-    Numbers may be in the base64 of a creature file.
-    """
+    """Return a plan of NumPy arrays with genes by name, and with room for `rows` segments."""
     count = len(columns["number"])
     found = {name: np.zeros(rows, kind) for name, kind in TYPES.items()}
     found["used"][:count] = True
     for name in Plan._fields[1:]:
-        given = columns[name]
-        found[name][:count] = decode(given) if isinstance(given, str) else given
+        found[name][:count] = columns[name]
     return Plan(**found)

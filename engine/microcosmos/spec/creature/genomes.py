@@ -7,7 +7,7 @@ from pydantic import Field, field_validator, model_validator
 
 from ... import bodies
 from ...bodies import growth
-from ...naming import decode
+from ...naming import decode, decoded
 from .. import encodings, scene
 from ..base import Part
 from ..body import Body, GrownBody, shape
@@ -97,7 +97,7 @@ class Segments(Part):
     def grow(self, body: GrownBody, softest: float) -> bodies.Body:
         """Return the body that the plan grows into, in the sizes of `body`."""
         columns = {name: getattr(self, name) for name in type(self).model_fields}
-        plan = growth.plan_of(columns, body.segments)
+        plan = growth.plan_of(decoded(columns), body.segments)
         return growth.grown_body(plan, body.capacity, softest)
 
     def refuse_unfit(self, body: GrownBody) -> None:

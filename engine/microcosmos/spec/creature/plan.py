@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...bodies.growth import Plan, State, plan_of, skeleton, sprout
+from ...naming import decoded
 from ..body import GrownBody
 
 
@@ -70,7 +71,7 @@ def plan_drawing(identity: Mapping[str, Any]) -> PlanDrawing:
     if "plan" not in genome:
         raise ValueError(f"`genome.encoding` must hold a plan, got {genome['encoding']!r}")
     capacity = GrownBody.model_validate(identity["body"]).capacity
-    plan = plan_of(genome["plan"], capacity.segments)
+    plan = plan_of(decoded(genome["plan"]), capacity.segments)
     state = sprout(plan, capacity)
     bones = skeleton(state.grown, capacity)
     rows = range(int(plan.used.sum()))
