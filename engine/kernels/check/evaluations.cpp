@@ -27,7 +27,7 @@ struct Evaluation {
   Rollout r = {};
   Numbers parameters, planes[9], positions, angles, energy, collected, layout, matrix, stiffness,
       control, bias, weight, timer, ramp, site, gain, lag, body_angle, body_length, uniform_force,
-      sponge, sponge_velocity, smoothing;
+      force_x, force_y, away_x, away_y, sponge, sponge_velocity, smoothing;
   Indices ends, pairs, member, piece, present, edge_colour, joint_colour, activation, source,
       target, joint_node, walls;
   Numbers rest_angle, rest_length, clock, out[20];
@@ -42,6 +42,7 @@ struct Evaluation {
     r.fluid = random.below(8) != 0, r.energetic = random.below(2), r.repelled = random.below(2);
     const bool chain = random.below(3) != 0;
     r.matched = chain && random.below(2), r.laid_out = r.actuated = chain;
+    r.soft = r.matched && random.below(2);
     body(random, chain);
     controller(random);
     place(random);
@@ -107,7 +108,7 @@ struct Evaluation {
     colour(ends, r.nodes, edge_colour), colour(pairs, r.edges, joint_colour);
     member.assign(r.nodes, 0), piece.assign(r.nodes, 0), present.assign(r.nodes, 1);
     layout.assign(r.nodes, 0), matrix.assign(size_t(r.nodes) * r.nodes, 0);
-    stiffness.assign(r.edges, r.matched ? 1.0f : random.between(0.5f, 1.0f));
+    stiffness.assign(r.edges, r.matched && !r.soft ? 1.0f : random.between(0.5f, 1.0f));
     body_length.assign(r.edges, spacing);
     for (int j = 0; j < r.joints; j++)
       body_angle.push_back(angles[pairs[2 * j + 1]] - angles[pairs[2 * j]]);
@@ -160,16 +161,13 @@ struct Evaluation {
   }
 
   void place(Random& random) {
-    parameters = {random.between(0.02f, 0.5f),
-                  0,
-                  random.below(2) * 0.1f,
-                  random.below(2) * 0.05f,
-                  0.1f,
-                  0.1f,
-                  2,
-                  1,
-                  4,
-                  0.1f};
+    parameters.assign(STEP_LENGTHS, 0);
+    parameters[VISCOSITY] = random.between(0.02f, 0.5f);
+    parameters[ENERGY_RATE] = random.below(2) * 0.1f;
+    parameters[DIFFUSION] = random.below(2) * 0.05f;
+    parameters[DISPLACEMENT_LIMIT] = parameters[FORCE_LIMIT] = 0.1f;
+    parameters[FORCE_FACTOR] = 2, parameters[THETA_FEEDBACK] = 1, parameters[REPULSION] = 4;
+    parameters[REPULSION_LIMIT] = 0.1f, parameters[BARRIER_LIMIT] = 0.5f;
     for (int n = 0; n < r.iterations; n++) parameters.push_back(1);
     const size_t cells = size_t(r.height) * r.width, T = r.steps;
     for (int i = 0; i < 9; i++) {
@@ -207,18 +205,24 @@ struct Evaluation {
     r.smoothing_x = r.smoothing_y = smoothing.data();
   }
 
-  // A tenth of the cells are walls, another tenth a sponge.
+  // A tenth of the cells are walls, another tenth a sponge. What keeps bodies out and the forces
+  // differ from cell to cell.
   void surround(Random& random) {
     r.driven = random.below(3) == 0, r.walled = random.below(3) == 0;
-    r.damped = random.below(3) == 0;
+    r.damped = random.below(3) == 0, r.barred = random.below(3) == 0;
+    r.varied = random.below(3) == 0;
     uniform_force = {random.between(-5e-5f, 5e-5f), random.between(-5e-5f, 5e-5f)};
     sponge_velocity = {random.between(-0.05f, 0.05f), random.between(-0.05f, 0.05f)};
     for (int i = 0; i < r.height * r.width; i++) {
       walls.push_back(random.below(10) == 0);
       sponge.push_back(random.below(10) == 0 ? random.unit() : 0);
+      for (Numbers* away : {&away_x, &away_y}) away->push_back(random.between(-0.2f, 0.2f));
+      for (Numbers* force : {&force_x, &force_y}) force->push_back(random.between(-5e-5f, 5e-5f));
     }
     r.uniform_force = uniform_force.data(), r.walls = walls.data();
     r.sponge = sponge.data(), r.sponge_velocity = sponge_velocity.data();
+    r.away_x = away_x.data(), r.away_y = away_y.data();
+    r.force_x = force_x.data(), r.force_y = force_y.data();
   }
 };
 

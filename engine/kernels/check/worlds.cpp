@@ -196,6 +196,7 @@ class Fuzzed {
   void layout() {
     r.present = few() ? indices(r.nodes, 0, 2) : indices(r.nodes, 1 - few(), 2);
     r.laid_out = coin(), r.matched = r.laid_out && coin(), r.actuated = r.laid_out && coin();
+    r.soft = r.matched && coin();
     const size_t N = r.nodes, E = r.edges, J = r.joints, laid = r.laid_out;
     r.layout_angle = numbers(laid * E, -3, 3), r.layout_rest_angle = numbers(laid * J, -1, 1);
     r.turned = numbers(laid * E * J, -1, 1), r.placed = numbers(laid * N * E, -1, 1);
