@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import type { Genes } from "../api/types";
 import { decodeFloats } from "./floats";
 import { networkOf } from "./network";
-import { decodeReplay } from "./replay";
+import { decodeReplay, solidColumns } from "./replay";
 import { angles, header, lengths, positions, replayBytes } from "./replay.fixture";
 import { anglesOf, lengthsOf } from "./shape";
 
@@ -40,6 +40,21 @@ describe("a replay", () => {
     expect(() => decodeReplay(short)).toThrow(
       `2 frames need ${whole.byteLength} bytes, got ${short.byteLength}`,
     );
+  });
+
+  it("gives the solid cells as columns along y", () => {
+    const inWorld = (solid?: number[]) => solidColumns({ ...replay.header, size: [3, 4], solid });
+    expect(inWorld([1, 2, 4, 3, 2])).toEqual([
+      [0, 1, 2],
+      [1, 3, 1],
+      [2, 0, 2],
+    ]);
+    expect(inWorld([0, 12])).toEqual([
+      [0, 0, 4],
+      [1, 0, 4],
+      [2, 0, 4],
+    ]);
+    expect(inWorld(undefined)).toEqual([]);
   });
 
   it("of another format is refused", () => {

@@ -17,6 +17,8 @@ export interface Header {
   vorticity: { scale: number };
   velocity: { scale: number };
   energy: { scale: number; frames: number };
+  /** Lengths of runs of cells, in the order of planes, that are fluid, solid, fluid and so on. */
+  solid?: number[];
   /** `replayed` is null if the plug-in of the task was not loaded. */
   fitness: { recorded: number | null; replayed: number | null; difference: number | null };
 }
@@ -54,6 +56,23 @@ export function decodeReplay(buffer: ArrayBuffer): Replay {
   const packets = new Uint8Array(buffer, at - byteCounts[2]!, byteCounts[2]);
   const floats = { positions: positions!, angles: angles!, lengths: lengths! };
   return { header, ...floats, vorticity: vorticity!, velocity: velocity!, energy: packets };
+}
+
+/** The solid cells, as columns of neighbours along y: x, the first y, and how many. */
+export function solidColumns({ size: [, height], solid = [] }: Header): [number, number, number][] {
+  const columns: [number, number, number][] = [];
+  let at = 0;
+  solid.forEach((length, run) => {
+    const end = at + length;
+    while (run % 2 === 1 && at < end) {
+      const y = at % height;
+      const count = Math.min(end - at, height - y);
+      columns.push([Math.floor(at / height), y, count]);
+      at += count;
+    }
+    at = end;
+  });
+  return columns;
 }
 
 const sum = (values: number[]) => values.reduce((total, value) => total + value, 0);

@@ -1,6 +1,6 @@
-/** Draw a replay at one time: flow, path, body, and the copies of the body in neighbouring periods. */
+/** Draw a replay at one time: flow, obstacles, path, body, and the copies of the body in neighbouring periods. */
 
-import type { Replay } from "../decode/replay";
+import { type Replay, solidColumns } from "../decode/replay";
 import { type Size, type Theme, prepare } from "../ui/canvas";
 import type { FluidPainter } from "./fluid";
 import { type Point, BODY_INK, chainsOf, meanOf, positionsAt, splineOf } from "./motion";
@@ -14,6 +14,8 @@ interface Scene {
   /** Null if no field is shown. */
   painter: FluidPainter | null;
   chains: number[][];
+  /** In cells, y upwards. */
+  obstacles: Path2D;
   /** The body's mean position in each frame. */
   path: Point[];
   follow: boolean;
@@ -23,14 +25,33 @@ interface Scene {
 }
 
 const INK = {
-  light: { body: BODY_INK.light, halo: "rgb(255 255 255 / 0.85)", faint: "rgb(18 34 44 / 0.28)" },
-  dark: { body: BODY_INK.dark, halo: "rgb(4 10 14 / 0.75)", faint: "rgb(230 240 245 / 0.26)" },
+  light: {
+    body: BODY_INK.light,
+    halo: "rgb(255 255 255 / 0.85)",
+    faint: "rgb(18 34 44 / 0.28)",
+    solid: "rgb(128 140 148)",
+  },
+  dark: {
+    body: BODY_INK.dark,
+    halo: "rgb(4 10 14 / 0.75)",
+    faint: "rgb(230 240 245 / 0.26)",
+    solid: "rgb(92 104 112)",
+  },
 };
 
 export function sceneOf(replay: Replay, view: Pick<Scene, "painter" | "follow" | "theme">): Scene {
   const { frames, edges } = replay.header;
   const path = Array.from({ length: frames }, (_, frame) => meanOf(positionsAt(replay, frame)));
-  return { replay, chains: chainsOf(edges), path, ...view };
+  return { replay, chains: chainsOf(edges), obstacles: obstaclesOf(replay), path, ...view };
+}
+
+/** Solid cells; they overlap a little so that no seam shows. */
+function obstaclesOf(replay: Replay): Path2D {
+  const obstacles = new Path2D();
+  for (const [x, y, count] of solidColumns(replay.header)) {
+    obstacles.rect(x - 0.51, y - 0.51, 1.02, count + 0.02);
+  }
+  return obstacles;
 }
 
 export function drawScene(canvas: HTMLCanvasElement, size: Size, scene: Scene, time: number) {
@@ -46,6 +67,7 @@ export function drawScene(canvas: HTMLCanvasElement, size: Size, scene: Scene, t
   ];
   scene.painter?.paint(context, time, camera, scale);
   drawGrid(context, camera, [width, height], screen, INK[scene.theme].faint);
+  drawObstacles(context, scene, camera, scale);
   if (scene.tracers) {
     drawTracers(context, scene.tracers, { time, camera, scale, colour: INK[scene.theme].body });
   }
@@ -62,6 +84,24 @@ function periodicShifts(mean: Point, camera: Point, [width, height]: [number, nu
   const i = Math.round((camera[0] - mean[0]) / width);
   const j = Math.round((camera[1] - mean[1]) / height);
   return [-1, 0, 1].flatMap((di) => [-1, 0, 1].map((dj): Point => [(i + di) * width, (j + dj) * height]));
+}
+
+/** The obstacles of the periods that reach into the view. */
+function drawObstacles(context: CanvasRenderingContext2D, scene: Scene, camera: Point, scale: number) {
+  const [width, height] = scene.replay.header.size;
+  const [left, bottom] = [camera[0] - width / 2, camera[1] - height / 2];
+  context.fillStyle = INK[scene.theme].solid;
+  for (const i of [0, 1]) {
+    for (const j of [0, 1]) {
+      const x = (Math.floor((left + 0.5) / width) + i) * width - left;
+      const y = (Math.floor((bottom + 0.5) / height) + j) * height - bottom;
+      context.save();
+      context.translate(x * scale, (height - y) * scale);
+      context.scale(scale, -scale);
+      context.fill(scene.obstacles);
+      context.restore();
+    }
+  }
 }
 
 function drawGrid(
