@@ -155,7 +155,8 @@ def disagreements(found, expected, in_double_precision):
     beyond = [
         at
         for at, distance in between.items()
-        if not distance <= ROUNDING[at[1]] and not (diverged(found, at) and diverged(expected, at))
+        if not distance <= ROUNDING[at[1]]
+        and not (diverged(found, at) and diverged(expected, at))
     ]
     if not beyond:
         return []
