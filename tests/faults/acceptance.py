@@ -28,13 +28,22 @@ from swimming import swimming
 from uploads import all_cases, send, watched
 from zoo import bodies
 
+from microcosmos.spec.quality_diversity import PRESETS
+
 FAULTS = (kill_job, stop_worker, kill_job, pause_and_resume, kill_job)
 SETTINGS = {"MICROCOSMOS_DEMONSTRATION": "0", "MICROCOSMOS_CHECKPOINT_INTERVAL": "5"}
 
 
-def disturb(product: Installation, undisturbed: bytes) -> bool:
+DOCUMENTS = {
+    "chains": spec(SEEDS[0], "MAP-Elites, NEAT"),
+    "zoo-demo": PRESETS["zoo-demo"][1].model_dump(mode="json"),
+}
+"""Runs whose archives are compared byte for byte."""
+
+
+def disturb(product: Installation, document: dict, undisturbed: bytes) -> bool:
     """Tell whether a run disturbed at random moments ends with the same bytes."""
-    run = product.submit(spec(SEEDS[0], "MAP-Elites, NEAT"))
+    run = product.submit(document)
     moments = sorted(random.choices(range(1, 45), k=len(FAULTS)))
     faults = list(zip(moments, FAULTS, strict=True))
     interrupt(product, run, faults, seconds=2 * HOURS)
@@ -56,25 +65,32 @@ def searches(product: Installation) -> bool:
         for name in METHODS
     }
     good = compare(product, runs)
-    return disturb(product, product.archive(runs["MAP-Elites, NEAT"][0]["id"])) and good
+    undisturbed = product.archive(runs["MAP-Elites, NEAT"][0]["id"])
+    return disturb(product, DOCUMENTS["chains"], undisturbed) and good
 
 
 def databases(product: Installation) -> bool:
-    """Tell whether the same run ends with the same bytes on SQLite with the embedded Redis and,
+    """Tell whether the same runs end with the same bytes on SQLite with the embedded Redis and,
     with faults, on PostgreSQL with a Redis server."""
-    document = spec(SEEDS[0], "MAP-Elites, NEAT")
-    embedded = product.archive(carry_out(product, document, "SQLite, embedded Redis")["id"])
+    embedded = {
+        name: product.archive(carry_out(product, document, f"{name}, SQLite")["id"])
+        for name, document in DOCUMENTS.items()
+    }
+    good = []
     try:
         with (
             service_settings() as settings,
             running(product.folder.parent / "elsewhere", SETTINGS | settings) as other,
         ):
-            title = "PostgreSQL, Redis server"
-            archive = other.archive(carry_out(other, document, title)["id"])
-            return identical(archive, embedded, title) and disturb(other, embedded)
+            for name, document in DOCUMENTS.items():
+                title = f"{name}, PostgreSQL and a Redis server"
+                archive = other.archive(carry_out(other, document, title)["id"])
+                good.append(identical(archive, embedded[name], title))
+                good.append(disturb(other, document, embedded[name]))
     except Missing as missing:
         rich.print(f"NOT SHOWN: {missing}")
         return False
+    return all(good)
 
 
 def uploads(product: Installation) -> bool:

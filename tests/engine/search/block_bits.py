@@ -1,4 +1,5 @@
-"""Prints what one creature measures in several places of a block; run by `test_block`."""
+"""Prints what one creature measures in several places of a block; run by `test_block` with the
+number of devices and the kind of body."""
 
 import hashlib
 import json
@@ -16,16 +17,20 @@ from microcosmos import search  # noqa: E402
 from microcosmos.build import build_block, build_plan  # noqa: E402
 from microcosmos.spec import parse  # noqa: E402
 
-SPEC = parse(
-    {
-        "experiment": "quality-diversity",
-        "world": {"width": 32, "height": 32},
-        "body": {"nodes": 12},
-        "control": {"period": 30},
-        "task": {"steps": 60},
-        "search": {"batch": 32, "block": 8},
-    }
-)
+SMALL = {
+    "experiment": "quality-diversity",
+    "world": {"width": 32, "height": 32},
+    "task": {"steps": 60},
+    "search": {"batch": 32, "block": 8},
+}
+KINDS = {
+    "chain": {"body": {"nodes": 12}, "control": {"period": 30}},
+    "grown": {
+        "body": {"builder": "grown", "nodes": 20, "length": 16.0, "segments": 6},
+        "control": {"encoding": "body-graph", "period": 30, "softest": 0.5},
+    },
+}
+SPEC = parse(SMALL | KINDS[sys.argv[2]])
 
 
 def bits(evaluation: search.Evaluation, slot: int) -> str:
