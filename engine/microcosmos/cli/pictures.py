@@ -1,4 +1,4 @@
-"""Commands for the target pictures of folding runs."""
+"""Commands for pictures: targets of folding runs, and obstacles."""
 
 from hashlib import md5
 from pathlib import Path
@@ -9,8 +9,8 @@ import typer
 from typer import Argument, Option
 
 from ..archive.atomic import write_whole
+from ..spec import Pattern, targets
 from ..spec import picture as target
-from ..spec import targets
 from .app import app, console, fail, failing
 
 MNIST = "https://ossci-datasets.s3.amazonaws.com/mnist/"
@@ -37,8 +37,11 @@ def picture(
     text: Annotated[str | None, Option(help="Text to draw, instead of FILE.")] = None,
     font: Annotated[Path | None, Option(help="Font file for --text.")] = None,
     name: Annotated[str | None, Option(help="Name of the picture in the run.")] = None,
+    obstacle: Annotated[
+        bool, Option("--obstacle", help="Print an obstacle, for `world.obstacles`.")
+    ] = False,
 ) -> None:
-    """Print a picture as JSON, for `targets` of a folding spec."""
+    """Print a picture as JSON, for `targets` of a folding spec or for `world.obstacles`."""
     if (file is None) == (text is None):
         fail("picture needs FILE or --text, but not both")
     with failing():
@@ -48,7 +51,8 @@ def picture(
             ink, default = targets.mnist(file, number), f"{file.name} {number}"
         else:
             ink, default = targets.png(file), file.stem
-        print(target((name or default)[:64], ink).model_dump_json())
+        found = Pattern.of_ink(ink) if obstacle else target((name or default)[:64], ink)
+        print(found.model_dump_json())
 
 
 @data.command()

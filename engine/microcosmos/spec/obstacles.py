@@ -65,23 +65,10 @@ class Pattern(Part):
     fluid, as in ..#../.###."""
 
     @classmethod
-    def of_picture(cls, picture: np.ndarray) -> "Pattern":
-        """Return the pattern of a picture (row from the top, column) or (row, column, channel).
-
-        Grey, grey with opacity, RGB or RGBA, from 0 to 1 or to 255: what matplotlib and Pillow
-        read. Pixels darker than half are solid; transparent ones are white. Raises `ValueError`
-        for another shape.
-        """
-        pixels = np.asarray(picture)
-        scale = np.iinfo(pixels.dtype).max if pixels.dtype.kind in "iu" else 1
-        pixels = pixels[..., None] / scale if pixels.ndim == 2 else pixels / scale
-        if pixels.ndim != 3 or not pixels.size or pixels.shape[-1] > 4:
-            needed = "(rows, columns) or (rows, columns, 1 to 4 channels)"
-            raise ValueError(f"`picture` must have the shape {needed}, got {np.shape(picture)}")
-        shown = pixels.shape[-1] - (pixels.shape[-1] % 2 == 0)
-        opacity = pixels[..., shown] if shown < pixels.shape[-1] else 1.0
-        dark = opacity * (1 - pixels[..., :shown].mean(-1)) > 0.5
-        rows = "/".join("".join(row) for row in np.where(dark, SOLID, "."))
+    def of_ink(cls, ink: np.ndarray) -> "Pattern":
+        """Return the pattern of a picture's ink (row from the top, column), 0 to 1, as
+        `spec.targets` reads it from files: cells with more than half are solid."""
+        rows = "/".join("".join(row) for row in np.where(ink > 0.5, SOLID, "."))
         return cls(kind="pattern", rows=rows)
 
     @model_validator(mode="after")

@@ -16,6 +16,7 @@ from small_spec import SMALL_SCENE
 
 from microcosmos.archive.file import read_table
 from microcosmos.cli import pictures
+from microcosmos.spec import World
 
 run_command = import_module("microcosmos.cli.run")
 
@@ -140,6 +141,15 @@ def test_a_filament_folds_into_a_packed_picture_and_is_drawn(run, tmp_path):
     assert "a ring" in (tmp_path / "ring.svg").read_text()
     assert json.loads((tmp_path / "ring.best.json").read_text())["measured"] is None
     assert "FILE or --text" in finished(run("picture"), code=2)
+
+
+def test_words_become_an_obstacle(invoke):
+    packed = json.loads(invoke("picture", "--text", "o", "--obstacle"))
+    solid = World(width=64, height=64, obstacles=[packed]).solid
+    assert not solid[32, 32], "the hole of an o"
+    assert solid[:, 32].any()
+    assert solid[32].any()
+    assert not solid[0, 0]
 
 
 def test_mnist_is_fetched_once_and_verified(invoke, tmp_path, monkeypatch):

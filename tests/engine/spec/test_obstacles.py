@@ -34,20 +34,8 @@ def test_a_pattern_is_stretched_to_the_box_with_its_first_row_on_top():
     np.testing.assert_array_equal(solid, expected)
 
 
-def test_a_picture_becomes_a_pattern_of_its_dark_pixels():
-    white, grey, black = 1.0, 0.6, 0.0
-    drawn = np.array([[white, black, grey], [black, black, white]])
-    pattern = spec.Pattern.of_picture
-    rows = ".#./##."
-    assert pattern(drawn).rows == pattern(np.uint8(255 * drawn)).rows == rows
-    assert pattern(np.repeat(drawn[..., None], 3, -1)).rows == rows
-    clear = np.ones_like(drawn)
-    clear[0, 1] = 0
-    assert pattern(np.stack([drawn, clear], -1)).rows == ".../##."
-    assert pattern(np.stack([drawn, drawn, drawn, clear], -1)).rows == ".../##."
-    for shape in ((4,), (0, 3), (2, 2, 5)):
-        with pytest.raises(ValueError, match="`picture` must have the shape"):
-            pattern(np.zeros(shape))
+def test_the_ink_of_a_picture_becomes_a_pattern():
+    assert spec.Pattern.of_ink(np.array([[0, 1, 0.4], [0.6, 1, 0]])).rows == ".#./##."
 
 
 @pytest.mark.parametrize(
