@@ -3,9 +3,10 @@
 from collections.abc import Iterable
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import BeforeValidator, ConfigDict
 
-from microcosmos.spec import targets
+from microcosmos.spec import solid_runs, targets
 
 from ..core.schemas import Wire
 
@@ -61,8 +62,13 @@ def pictures(drawn: Iterable[tuple[str, Any]]) -> list[PictureRead]:
     ]
 
 
+def runs_of(solid: np.ndarray | None) -> list[int]:
+    """Return the runs of a mask, none where nothing is solid."""
+    return [] if solid is None else solid_runs(solid)
+
+
 class DrawingRead(Wire):
-    """Bodies, each in a world of its own, and the pictures that they fold into."""
+    """Bodies, each in a world of its own, obstacles, and the pictures that they fold into."""
 
     width: int
     height: int
@@ -70,3 +76,5 @@ class DrawingRead(Wire):
     pictures: Annotated[list[PictureRead], BeforeValidator(pictures)]
     picture_size: int
     """The longer side of a picture, in cells."""
+    solid: Annotated[list[int], BeforeValidator(runs_of)]
+    """Lengths of runs of cells (x, y) that are fluid, solid, fluid and so on; empty: none."""

@@ -24,7 +24,7 @@ from .flow import Flow
 from .folding import Digit, Folding, Picture, picture
 from .gaits import Gaits
 from .neuroevolution import Neuroevolution
-from .obstacles import Pattern, Post, Wall
+from .obstacles import Pattern, Post, Wall, solid_runs
 from .plugins import PluginUse, PluginVersion, plugins_in
 from .quality_diversity import QualityDiversity
 from .refinement import Refinement

@@ -22,6 +22,8 @@ MOST_NODES = 1024
 """Approximate number of drawn nodes of a body."""
 MOST_FILAMENTS = 600
 """Most drawn filaments."""
+ALONE = np.zeros((1, 2))
+"""The place of a creature without copies."""
 RANDOM_PLANS = 12
 """Drawn plans where bodies grow."""
 MOST_PICTURES = 16
@@ -32,7 +34,7 @@ PIXELS = 32
 
 @dataclass(frozen=True)
 class Drawn:
-    """A body at rest in its world, thinned if it has many nodes."""
+    """A body at rest in its world, with its copies, thinned if it has many nodes."""
 
     name: str
     nodes: int
@@ -56,6 +58,8 @@ class Drawing:
     """Names, and ink (row, column) from the top."""
     picture_size: int = 0
     """The longer side of a picture, in cells."""
+    solid: np.ndarray | None = None
+    """Mask (x, y) of the cells of obstacles; None: there are none."""
 
 
 @singledispatch
@@ -74,8 +78,7 @@ def _(spec: Evolution) -> Drawing:
 @drawing.register
 def _(spec: Refinement) -> Drawing:
     found = Identity.model_validate(parsed(spec.creature)["identity"])
-    size = found.world.width, found.world.height
-    return Drawing(*size, (_placed(found.body.builder, *size, found.shape),))
+    return _in_world(found.world, {found.body.builder: found.shape})
 
 
 @drawing.register
@@ -90,7 +93,11 @@ def _(spec: Folding) -> Drawing:
 def _(spec: Gaits) -> Drawing:
     size = spec.width, spec.height
     found = {name: swimmer_body(name, spec.plugins.get(name)) for name in spec.swimmers}
-    drawn = [_drawn(n, *size, body) for n, body in found.items() if not is_unavailable(body)]
+    drawn = [
+        _placed(name, *size, shape(body))
+        for name, body in found.items()
+        if not is_unavailable(body)
+    ]
     return Drawing(*size, tuple(drawn))
 
 
@@ -102,31 +109,41 @@ def _(spec: Scaling) -> Drawing:
 
 def _alone(world: World, body: Body) -> Drawing:
     if is_unavailable(body):
-        return Drawing(world.width, world.height, ())
-    drawn = _drawn(body.builder, world.width, world.height, body)
-    return Drawing(world.width, world.height, (drawn,))
+        return _in_world(world, {})
+    return _in_world(world, {body.builder: shape(body)})
 
 
-def _drawn(name: str, width: int, height: int, body: Body) -> Drawn:
-    """Draw a body in the middle of its world, where it starts."""
-    return _placed(name, width, height, shape(body))
+def _in_world(world: World, found: dict[str, bodies.Body]) -> Drawing:
+    """Draw bodies by name, each where it starts."""
+    places = ALONE if world.copies is None else world.copies.places
+    size = world.width, world.height
+    drawn = tuple(_placed(name, *size, body, places) for name, body in found.items())
+    return Drawing(*size, drawn, solid=world.solid)
 
 
 def _random(world: World, body: GrownBody, seed: int) -> Drawing:
     """Draw bodies of random plans, the kind that a search begins with."""
-    rng, drawn = np.random.default_rng(seed), []
+    rng, found = np.random.default_rng(seed), {}
     for number in range(1, RANDOM_PLANS + 1):
         uniform = rng.random(growth.PLAN_DRAWS, np.float32)
         plan = growth.random_plan(uniform, body.genes)
-        grown = growth.grown_body(plan, body.capacity)
-        drawn.append(_placed(f"random plan {number}", world.width, world.height, grown))
-    return Drawing(world.width, world.height, tuple(drawn))
+        found[f"random plan {number}"] = growth.grown_body(plan, body.capacity)
+    return _in_world(world, found)
 
 
-def _placed(name: str, width: int, height: int, body: bodies.Body) -> Drawn:
+def _placed(
+    name: str, width: int, height: int, body: bodies.Body, places: np.ndarray = ALONE
+) -> Drawn:
+    """Draw copies of a body at places (copy, 2) about the middle of the world."""
     whole = bodies.placed(body, (width / 2, height / 2))
-    positions, edges = bodies.thinned(whole, MOST_NODES)
-    return Drawn(name, len(whole.positions), positions, edges)
+    positions, edges = bodies.thinned(whole, MOST_NODES // len(places))
+    first = len(positions) * np.arange(len(places))
+    return Drawn(
+        name,
+        len(places) * len(whole.positions),
+        (places[:, None] + positions).reshape(-1, 2),
+        (first[:, None, None] + edges).reshape(-1, 2),
+    )
 
 
 def _crowd(spec: Scaling, nodes: int) -> Drawn:

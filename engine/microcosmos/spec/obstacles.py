@@ -105,6 +105,14 @@ def solid_cells(obstacles: tuple[Post | Wall | Pattern, ...], size: Size) -> np.
     return found
 
 
+def solid_runs(solid: np.ndarray) -> list[int]:
+    """Return the lengths of runs of cells of fluid, of solid, of fluid and so on."""
+    flat = solid.ravel()
+    changes = np.flatnonzero(np.diff(flat)) + 1
+    runs = np.diff(np.concatenate([[0], changes, [len(flat)]])).tolist()
+    return [0, *runs] if flat[0] else runs
+
+
 def crowded(points: np.ndarray, solid: np.ndarray, distance: int) -> np.ndarray:
     """Return the mask of points (point, 2) that have a solid cell's middle closer than this."""
     reach = np.arange(-distance, distance + 2)

@@ -25,10 +25,10 @@ from ..device import device_kind
 from ..filaments import Rest
 from ..fluid import vorticity
 from ..genomes import Drive
-from ..spec import Gait, Scene, Task
+from ..spec import Gait, Scene, Task, solid_runs
 from ..spec.creature import fitness_of
 from ..spec.estimate import placements, simulation_bytes
-from .replay_file import REPLAY_FORMAT, solid_runs
+from .replay_file import REPLAY_FORMAT
 
 FRAMES = 250
 """Largest number of frames besides the first."""

@@ -196,14 +196,6 @@ def _check_solid(runs: Any, cells: int) -> None:
     _need(whole and sum(runs) == cells, "solid", needed, runs)
 
 
-def solid_runs(solid: np.ndarray) -> list[int]:
-    """Return the lengths of runs of cells of fluid, of solid, of fluid and so on."""
-    flat = solid.ravel()
-    changes = np.flatnonzero(np.diff(flat)) + 1
-    runs = np.diff(np.concatenate([[0], changes, [len(flat)]])).tolist()
-    return [0, *runs] if flat[0] else runs
-
-
 def _is_count(value: Any) -> bool:
     return type(value) is int and value >= 1
 

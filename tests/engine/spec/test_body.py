@@ -131,6 +131,23 @@ def test_every_body_lies_in_the_middle_of_its_world(body):
     assert (drawn.positions < (128, 96)).all()
 
 
+def test_a_drawing_shows_copies_and_obstacles():
+    copies = {"count": 3, "arrangement": "row", "spacing": 30}
+    world = {"width": 128, "height": 96, "copies": copies}
+    world["obstacles"] = [{"kind": "post", "x": 20, "y": 80, "radius": 4}]
+    found = drawing(parse({"experiment": "quality-diversity", "world": world}))
+    (drawn,) = found.bodies
+    assert drawn.nodes == len(drawn.positions) == 3 * 24
+    first, second, third = drawn.positions.reshape(3, 24, 2)
+    np.testing.assert_allclose(second - first, np.full((24, 2), (30, 0)), atol=1e-9)
+    np.testing.assert_allclose((first + third) / 2, second, atol=1e-9)
+    ends = drawn.edges.reshape(3, -1)
+    np.testing.assert_array_equal(ends - ends[0], np.arange(3)[:, None] * 24 + 0 * ends)
+    assert found.solid[20, 80]
+    assert not found.solid[64, 48]
+    assert drawing(parse({"experiment": "quality-diversity"})).solid is None
+
+
 def test_a_fold_shows_its_pictures_and_a_sweep_its_swimmers():
     folds = drawing(parse({"experiment": "folding"}))
     assert [name for name, _ in folds.pictures] == [str(digit) for digit in range(10)]

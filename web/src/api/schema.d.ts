@@ -1643,7 +1643,7 @@ export interface components {
         };
         /**
          * DrawingRead
-         * @description Bodies, each in a world of its own, and the pictures that they fold into.
+         * @description Bodies, each in a world of its own, obstacles, and the pictures that they fold into.
          */
         DrawingRead: {
             /** Bodies */
@@ -1654,6 +1654,8 @@ export interface components {
             picture_size: number;
             /** Pictures */
             pictures: components["schemas"]["PictureRead"][];
+            /** Solid */
+            solid: number[];
             /** Width */
             width: number;
         };

@@ -43,18 +43,17 @@ describe("a replay", () => {
   });
 
   it("gives the solid cells as columns along y", () => {
-    const inWorld = (solid?: number[]) => solidColumns({ ...replay.header, size: [3, 4], solid });
-    expect(inWorld([1, 2, 4, 3, 2])).toEqual([
+    expect(solidColumns([1, 2, 4, 3, 2], 4)).toEqual([
       [0, 1, 2],
       [1, 3, 1],
       [2, 0, 2],
     ]);
-    expect(inWorld([0, 12])).toEqual([
+    expect(solidColumns([0, 12], 4)).toEqual([
       [0, 0, 4],
       [1, 0, 4],
       [2, 0, 4],
     ]);
-    expect(inWorld(undefined)).toEqual([]);
+    expect(solidColumns([], 4)).toEqual([]);
   });
 
   it("of another format is refused", () => {

@@ -58,8 +58,8 @@ export function decodeReplay(buffer: ArrayBuffer): Replay {
   return { header, ...floats, vorticity: vorticity!, velocity: velocity!, energy: packets };
 }
 
-/** The solid cells, as columns of neighbours along y: x, the first y, and how many. */
-export function solidColumns({ size: [, height], solid = [] }: Header): [number, number, number][] {
+/** The solid cells of runs in a world so high, as columns of neighbours along y: x, the first y, and how many. */
+export function solidColumns(solid: number[], height: number): [number, number, number][] {
   const columns: [number, number, number][] = [];
   let at = 0;
   solid.forEach((length, run) => {

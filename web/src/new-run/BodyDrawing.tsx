@@ -2,6 +2,7 @@
 
 import { useEffect, useRef } from "preact/hooks";
 import type { Drawing, DrawnBody, DrawnPicture } from "../api/types";
+import { solidColumns } from "../decode/replay";
 import { count, words } from "../ui/format";
 import { text } from "./text";
 
@@ -88,6 +89,7 @@ function World({ body, drawing, view, id: clip }: WorldProps) {
         {/* In the world y points upwards, on the screen downwards. */}
         <g clip-path={`url(#${clip})`}>
           <g transform={`matrix(1 0 0 -1 0 ${height})`}>
+            <path class="obstacle" d={obstaclesOf(drawing)} />
             {periodicShifts(body, width, height).map(([x, y]) => (
               <Filaments key={`${x} ${y}`} {...{ body, x, y, thin }} />
             ))}
@@ -130,6 +132,19 @@ function Target({ picture }: { picture: DrawnPicture }) {
 }
 
 export const GRID = 8;
+
+/** Solid cells; those in the first column and row reach into the last. */
+function obstaclesOf({ solid, width, height }: Drawing): string {
+  const columns = solidColumns(solid, height);
+  const around = [0, width].flatMap((x) => [0, height].map((y) => [x, y] as const));
+  return around
+    .flatMap(([dx, dy]) =>
+      columns
+        .filter(([x, y]) => (dx === 0 || x === 0) && (dy === 0 || y === 0))
+        .map(([x, y, n]) => `M${x + dx - 0.5} ${y + dy - 0.5}h1v${n}h-1z`),
+    )
+    .join("");
+}
 
 const at = ([x, y]: number[]) => `${x} ${y}`;
 

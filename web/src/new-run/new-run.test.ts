@@ -111,7 +111,7 @@ describe("the drawing of a body", () => {
   });
 
   it("leaves out the water around many small bodies, but never a part of a body", () => {
-    const world = { width: 48, height: 64, pictures: [], picture_size: 0 };
+    const world = { width: 48, height: 64, pictures: [], picture_size: 0, solid: [] };
     const at = (x: number) => ({ ...fork, positions: [[x, 32]] });
     const many = (x: number) => ({ ...world, bodies: [...Array(11).fill(at(24)), at(x)] });
     const whole = { x: 0, y: 0, width: 48, height: 64 };

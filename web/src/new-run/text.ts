@@ -86,7 +86,7 @@ export const text = {
   days: (count: number) => `${count} days`,
   fewSeconds: "a few seconds",
   about: (duration: string) => `about ${duration}`,
-  unknownTime: "unknown until this server has withDefaults a run of this kind",
+  unknownTime: "unknown until this server has completed a run of this kind",
   basedOn: (runs: number) => `based on ${runs} earlier ${runs === 1 ? "run" : "runs"}`,
   timeRange: (low: string, high: string) => `; range ${low} to ${high}`,
   basis: (device: string, runs: string, range: string) => `on ${device}, ${runs}${range}`,

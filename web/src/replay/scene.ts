@@ -48,7 +48,8 @@ export function sceneOf(replay: Replay, view: Pick<Scene, "painter" | "follow" |
 /** Solid cells; they overlap a little so that no seam shows. */
 function obstaclesOf(replay: Replay): Path2D {
   const obstacles = new Path2D();
-  for (const [x, y, count] of solidColumns(replay.header)) {
+  const { size, solid = [] } = replay.header;
+  for (const [x, y, count] of solidColumns(solid, size[1])) {
     obstacles.rect(x - 0.51, y - 0.51, 1.02, count + 0.02);
   }
   return obstacles;
