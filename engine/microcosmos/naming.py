@@ -55,6 +55,7 @@ MeasureName = Literal[
     "form_symmetry",
     "form_aspect",
     "ungrown",
+    "crossing",
 ]
 """Names of the measures, in the order in which they are recorded."""
 

@@ -70,6 +70,7 @@ class Simulation:
     limited: float
     reynolds: float
     impulse: float
+    crossing: float
 
     @property
     def distance(self) -> float:
@@ -129,6 +130,9 @@ def _simulate(task: search.Task, driven: Drive) -> tuple[Simulation, Rest]:
         begun = replace(driven, start=start, inputs=inputs)
         end, seen = search.simulate(begun)
         values, path = search.motion_of(task, begun, end, seen), jnp.sum(seen.node_speed)
+        values["crossing"] = search.crossing(
+            search.poses_of(task, begun, seen), start.positions
+        )
         displacement = seen.centre[-1] - world.centre(driven.world, start)
         return displacement, path, values, seen.rest
 
@@ -142,6 +146,7 @@ def _simulate(task: search.Task, driven: Drive) -> tuple[Simulation, Rest]:
         limited=float(values["limited"]),
         reynolds=float(values["reynolds"]),
         impulse=float(values["impulse"]),
+        crossing=float(values["crossing"]),
     )
     return found, rest
 
@@ -167,6 +172,8 @@ def _simulation_rows(scene: spec.Scene, found: Simulation) -> list[dict[str, Any
         ("limited", "node steps at a limit", found.limited, "share", units.MAX_LIMITED, limits),
         ("impulse", "net impulse on the fluid", found.impulse, "lattice units",
          units.MAX_IMPULSE, "it pushes itself" + pushed),
+        ("crossing", "poses in which filaments cross", found.crossing, "share", 0.0,
+         "filaments pass through each other"),
     )  # fmt: skip
     return [
         _row("displacement", "displacement", found.distance, "cells", "", None, ""),

@@ -3,6 +3,7 @@
 from . import cvt, emitters, folding, gradients, reevaluation
 from .blocks import Stopped, block_program, evaluate_blocks, mapped, never
 from .cells import Axis, Cells, Grid, Voronoi, voronoi
+from .crossing import crossing
 from .emitters import NO_PARENT, OPERATORS, Children, Emitter, Outcome
 from .evaluation import (
     STATUSES,
@@ -11,6 +12,7 @@ from .evaluation import (
     in_trials,
     judged,
     motion_of,
+    poses_of,
 )
 from .gradient_report import GradientReport, report_gradient
 from .gradients import Slopes, slopes

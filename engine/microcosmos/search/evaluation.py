@@ -14,6 +14,7 @@ from .. import units
 from ..bodies.growth import FORMS
 from ..genomes import Drive, Genotype
 from ..world import Measures, State, World, centre, flow, grown_nodes
+from .crossing import crossing
 from .kinematics import kinematics
 from .measures import (
     MEASURES,
@@ -28,10 +29,18 @@ from .summary import summarise
 from .task import Task
 from .window import Poses, poses, window
 
-STATUSES = ("ok", "non-finite", "supersonic", "limits", "compressible", "impulse")
+STATUSES = (
+    "ok",
+    "non-finite",
+    "supersonic",
+    "limits",
+    "compressible",
+    "impulse",
+    "crossing",
+)
 """Outcome of an evaluation by status code: feasible, or the reason why not.
 
-The last three are found by `judged`.
+The last four are found by `judged`.
 """
 
 Scalar = Float[Array, ""]
@@ -99,6 +108,7 @@ def _evaluate(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
         raise ValueError("`task.encoding` must say what the genotype means; got None.")
     end, observed = simulate(driven)
     values, shown, valid = _summary(task, driven, end, observed)
+    values["crossing"] = crossing(shown, driven.start.positions)
     values["hidden_nodes"], values["connections"] = task.encoding.size(genotype)
     constant = dict(zip(FORMS, map(jnp.asarray, task.form), strict=True))
     values |= constant if driven.form is None else driven.form
@@ -189,13 +199,14 @@ FEASIBLE = {
     "limits": ("limited", units.MAX_LIMITED),
     "compressible": ("mach", units.MAX_MACH),
     "impulse": ("impulse", units.MAX_IMPULSE),
+    "crossing": ("crossing", 0.0),
 }
 """The measure behind each status, and the largest value of a feasible creature."""
 
 
 def judged(evaluation: Evaluation) -> Evaluation:
-    """Return evaluations in NumPy with a status where limits acted, the flow was too fast, or
-    a body pushed itself; the first reason counts."""
+    """Return evaluations in NumPy with a status where limits acted, the flow was too fast, a
+    body pushed itself, or filaments crossed; the first reason counts."""
     measures, status = np.asarray(evaluation.measures), np.array(evaluation.status)
     for reason, (name, most) in FEASIBLE.items():
         beyond = measures[:, MEASURES.index(name)] > most

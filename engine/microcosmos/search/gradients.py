@@ -27,7 +27,15 @@ SHAPED = ("angle", "curl", "stiffness")
 
 STIFFNESSES = ("stretch", "shear", "bend")
 
-CONSTANT = ("hidden_nodes", "connections", "nodes", "limited", "trial_spread", *FORMS)
+CONSTANT = (
+    "hidden_nodes",
+    "connections",
+    "nodes",
+    "limited",
+    "trial_spread",
+    *FORMS,
+    "crossing",
+)
 """Measures without a derivative."""
 
 Values = dict[str, Float[Array, "..."]]

@@ -12,8 +12,8 @@ from ..world import Measures, State, World, grown_nodes, native
 from .measures import MEASURES
 from .window import Poses, Window
 
-ELSEWHERE = ("hidden_nodes", "connections", "trial_spread", *FORMS)
-"""Measures of the genome, of several trials and of the form."""
+ELSEWHERE = ("hidden_nodes", "connections", "trial_spread", *FORMS, "crossing")
+"""Measures of the genome, of several trials, of the form and of the poses."""
 SUMMARISED = tuple(name for name in MEASURES if name not in ELSEWHERE)
 """Measures in the order of the kernel's."""
 SHOWN = 7

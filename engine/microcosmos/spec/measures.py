@@ -59,5 +59,6 @@ MEASURES: dict[str, Measure] = {
     "form_symmetry": Measure("Mirror symmetry at rest", "", 0.0, 1.0),
     "form_aspect": Measure("Width over length at rest", "", 0.0, 1.0),
     "ungrown": Measure("Segments without room", "", -0.5, 8.5),
+    "crossing": Measure("Poses in which filaments cross", "share", 0.0, 1.0),
 }
 """The measures, in the order in which they are recorded."""

@@ -212,7 +212,7 @@ class Generations(Part):
     """Creatures per call of the compiled program; the exact bits of results depend on it."""
     feasible: bool = field(True, source=OURS)
     """Refuse creatures at a limit in more than 0.1 % of node steps, with a Mach number above
-    0.17 anywhere, or with a net impulse on the fluid above 1e-4."""
+    0.17 anywhere, with a net impulse on the fluid above 1e-4, or whose filaments cross."""
     stop: Stop = Stop()
     """Conditions that end the run early."""
     reevaluation: Reevaluation | None = None

@@ -24,6 +24,7 @@ def verdict(status=0, **measures):
         ({"limited": 0.00101}, "limits"),
         ({"mach": 0.171}, "compressible"),
         ({"impulse": 1.01e-4}, "impulse"),
+        ({"crossing": 1 / 64}, "crossing"),
         ({"limited": 0.5, "mach": 0.5, "impulse": 1.0}, "limits"),
     ],
 )

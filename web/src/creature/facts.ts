@@ -24,7 +24,10 @@ const FORM = ["segments", "free_ends", "rings", "total_length", "form_symmetry",
 /** Groups of measures; all others belong to the result. */
 const GROUPS: [title: string, names: string[]][] = [
   [text.control, ["bending_effort", "stretching_effort", "power", "efficiency"]],
-  [text.shapeGroup, ["curvature_mean", "curvature_spread", "symmetry", "rotation", "turning", "nodes"]],
+  [
+    text.shapeGroup,
+    ["curvature_mean", "curvature_spread", "symmetry", "rotation", "turning", "nodes", "crossing"],
+  ],
   [text.formGroup, FORM],
   [text.network, ["hidden_nodes", "connections"]],
   [text.flow, ["reynolds", "sperm", "mach", "limited", "impulse"]],
@@ -49,7 +52,7 @@ export function groupsOf(creature: Creature): Group[] {
 
 function measureRow(name: string, value: number, plugin: Plugin | undefined): Row {
   const [title, unit, digits] = text.measures[name] ?? [plugin?.title ?? words(name), plugin?.unit ?? "", 6];
-  const shown = number(name === "limited" ? 100 * value : value, digits);
+  const shown = number(name === "limited" || name === "crossing" ? 100 * value : value, digits);
   return [title, unit ? `${shown} ${unit}` : shown];
 }
 

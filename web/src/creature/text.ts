@@ -231,6 +231,7 @@ export const text = {
     form_symmetry: ["Mirror symmetry at rest", ""],
     form_aspect: ["Width over length at rest", ""],
     ungrown: ["Segments without room", ""],
+    crossing: ["Filaments cross", "% of poses"],
   } as Record<string, [title: string, unit: string, digits?: number]>,
   sha: "SHA-256",
   thisCreature: "This creature",

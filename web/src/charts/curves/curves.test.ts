@@ -77,7 +77,7 @@ describe("infeasible evaluations", () => {
   });
 
   it("have a sentence for each reason of the engine", () => {
-    const reasons = ["non-finite", "supersonic", "limits", "compressible", "impulse"];
+    const reasons = ["non-finite", "supersonic", "limits", "compressible", "impulse", "crossing"];
     const counted = Object.fromEntries(reasons.map((reason) => [`infeasible: ${reason}`, [1]]));
     const plot = workOf(curvesOf([1], 16, counted)).find(({ title }) => title === "Infeasible so far");
     expect(plot!.series.map(({ about }) => about)).toEqual(

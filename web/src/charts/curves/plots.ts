@@ -75,6 +75,7 @@ export const REASONS: Record<string, string> = {
   limits: text.limits,
   compressible: text.compressible,
   impulse: text.impulse,
+  crossing: text.crossing,
 };
 
 /** Infeasible evaluations by reason, most frequent first. */

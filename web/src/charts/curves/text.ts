@@ -27,4 +27,5 @@ export const text = {
   limits: "A limit on displacement or force acted in more than 0.1 % of node steps.",
   compressible: "The Mach number exceeded 0.17 somewhere.",
   impulse: "A body gave the fluid a net impulse above 0.0001: it pushed itself.",
+  crossing: "Filaments passed through each other in a recorded pose.",
 };
