@@ -132,11 +132,12 @@ def truly(product: Installation, runs: list[dict]) -> bool:
         low, high = AGREE[bars]
         found = [row["value"] for one in audits for row in one["rows"] if row["name"] == name]
         inside = np.mean([low <= share <= high for share in found])
+        middle = statistics.median(found)
         rich.print(
-            f"zoo, {len(found)} elites, {name}: median {statistics.median(found):.4f} "
+            f"zoo, {len(found)} elites, {name}: median {middle:.4f} "
             f"({min(found):.4f}–{max(found):.4f}), {inside:.0%} within {low:g} to {high:g}"
         )
-        good.append(inside >= needed(bars))
+        good.append(low <= middle <= high if bars == "fine" else inside >= needed(bars))
     for file, one in zip(files, audits, strict=True):
         if not one["verdict"]["trusted"]:
             rich.print(f"zoo, not trusted: {file['sha256']} {one['verdict']['reasons']}")
