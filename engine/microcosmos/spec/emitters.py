@@ -173,6 +173,7 @@ WITHOUT_GRADIENT = (
     "limited",
     "trial_spread",
     *FORMS,
+    "crossing",
 )
 """Measures without derivatives."""
 
