@@ -190,7 +190,7 @@ def solves(product: Installation, task: str, plain: list[dict]) -> bool:
     put = [fitness_there(product, one, task) for one in plain]
     went = chosen(product, run["id"])[0]["measured"]["measures"]["displacement"]
     rich.print(
-        f"{task}: evolved {run['best']:.3f}, {went:.1f} cells of {DISTANCE[task]:g}; the fittest "
+        f"{task}: evolved {run['best']:.3f}, {went:.1f} of {DISTANCE[task]:g} cells; fittest "
         f"of standard {summary(put)}"
     )
     return run["best"] > max(put) and went >= DISTANCE[task]
