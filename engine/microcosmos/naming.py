@@ -59,6 +59,23 @@ MeasureName = Literal[
 ]
 """Names of the measures, in the order in which they are recorded."""
 
+WITHOUT_GRADIENT: tuple[MeasureName, ...] = (
+    "hidden_nodes",
+    "connections",
+    "nodes",
+    "limited",
+    "trial_spread",
+    "segments",
+    "free_ends",
+    "rings",
+    "total_length",
+    "form_symmetry",
+    "form_aspect",
+    "ungrown",
+    "crossing",
+)
+"""Measures without derivatives: counts, the form at rest, and shares of steps and poses."""
+
 
 def encode(values: np.ndarray) -> str:
     """Encode little-endian float32 as base64, with −0 as 0."""

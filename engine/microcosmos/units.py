@@ -23,6 +23,9 @@ MAX_LIMITED = 1e-3
 MAX_IMPULSE = 1e-4
 """Largest net impulse of a body on the fluid, in lattice units: round-off gives less."""
 
+MAX_CROSSING = 0.0
+"""Largest share of poses in which filaments cross: in a plane they cannot."""
+
 MAX_SPACING = 2.0
 """Node spacing in cells above which fluid leaks between the nodes."""
 

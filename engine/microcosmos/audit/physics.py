@@ -172,8 +172,8 @@ def _simulation_rows(scene: spec.Scene, found: Simulation) -> list[dict[str, Any
         ("limited", "node steps at a limit", found.limited, "share", units.MAX_LIMITED, limits),
         ("impulse", "net impulse on the fluid", found.impulse, "lattice units",
          units.MAX_IMPULSE, "it pushes itself" + pushed),
-        ("crossing", "poses in which filaments cross", found.crossing, "share", 0.0,
-         "filaments pass through each other"),
+        ("crossing", "poses in which filaments cross", found.crossing, "share",
+         units.MAX_CROSSING, "filaments pass through each other"),
     )  # fmt: skip
     return [
         _row("displacement", "displacement", found.distance, "cells", "", None, ""),

@@ -7,12 +7,15 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
+from ..archive.poses import LEVELS
 from .window import Poses
 
 MOST_PAIRS = 2**23
-"""Pairs of edges that are compared; of large bodies every second, third ... pose is."""
-LEVELS = 2**13 - 1
-"""Largest coordinate of a node: products of differences fit 32 bits, so signs are exact."""
+"""Most pairs of edges over all poses: of larger bodies only every second, third ... pose
+counts."""
+COARSER = 4
+"""Recorded levels in a unit of place: products of differences then fit 32 bits, so signs are
+exact."""
 
 
 def crossing(shown: Poses, start: Float[Array, "node 2"]) -> Float[Array, ""]:
@@ -20,7 +23,7 @@ def crossing(shown: Poses, start: Float[Array, "node 2"]) -> Float[Array, ""]:
     size, frames = len(shown.edges), len(shown.positions)
     step = min(frames, ceil(frames * size**2 / MOST_PAIRS)) or 1
     pairs = _apart(shown) & ~_crossed(_whole(start), shown.edges)
-    positions = shown.positions[step - 1 :: step].astype(jnp.int32) // 4
+    positions = shown.positions[step - 1 :: step].astype(jnp.int32) // COARSER
     found = jax.lax.map(lambda at: jnp.any(_crossed(at, shown.edges) & pairs), positions)
     return jnp.mean(found.astype(shown.scale.dtype))
 
@@ -37,9 +40,10 @@ def _apart(shown: Poses) -> Bool[Array, "edge edge"]:
 
 
 def _whole(points: Float[Array, "node 2"]) -> Int[Array, "node 2"]:
-    """Return places in whole units, as fine as `LEVELS` allows."""
+    """Return places about their mean in whole units, as fine as those of recorded poses."""
     middle = points - points.mean(0, keepdims=True)
-    return jnp.rint(middle * (LEVELS / jnp.max(jnp.abs(middle)))).astype(jnp.int32)
+    most = LEVELS // COARSER
+    return jnp.rint(middle * (most / jnp.max(jnp.abs(middle)))).astype(jnp.int32)
 
 
 def _crossed(at: Int[Array, "node 2"], edges: Int[Array, "edge 2"]) -> Bool[Array, "edge edge"]:

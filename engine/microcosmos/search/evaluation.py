@@ -199,7 +199,7 @@ FEASIBLE = {
     "limits": ("limited", units.MAX_LIMITED),
     "compressible": ("mach", units.MAX_MACH),
     "impulse": ("impulse", units.MAX_IMPULSE),
-    "crossing": ("crossing", 0.0),
+    "crossing": ("crossing", units.MAX_CROSSING),
 }
 """The measure behind each status, and the largest value of a feasible creature."""
 

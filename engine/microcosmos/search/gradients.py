@@ -13,9 +13,9 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
-from ..bodies.growth import FORMS
 from ..filaments import Rest
 from ..genomes import CPPN, SEGMENT, BodyGraph, Drive, Genotype, Vector
+from ..naming import WITHOUT_GRADIENT
 from ..world import State, World
 from .blocks import mapped
 from .evaluation import fitness_of, in_trials, motion_of
@@ -26,17 +26,6 @@ SHAPED = ("angle", "curl", "stiffness")
 """Genes of segments on which a body depends smoothly, between plans that grow differently."""
 
 STIFFNESSES = ("stretch", "shear", "bend")
-
-CONSTANT = (
-    "hidden_nodes",
-    "connections",
-    "nodes",
-    "limited",
-    "trial_spread",
-    *FORMS,
-    "crossing",
-)
-"""Measures without a derivative."""
 
 Values = dict[str, Float[Array, "..."]]
 
@@ -130,7 +119,7 @@ def measures(
         found = measured(task)
     else:
         found = _mean(in_trials(task, jax.checkpoint(measured)))
-    known = [name for name in found if name not in CONSTANT]
+    known = [name for name in found if name not in WITHOUT_GRADIENT]
     unknown = [name for name in of if name not in known]
     if unknown:
         raise ValueError(f"`of` must be of {', '.join(known)}, got {', '.join(unknown)}")

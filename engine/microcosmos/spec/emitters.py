@@ -5,7 +5,6 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from .. import plugins
-from ..bodies.growth import FORMS
 from .base import NETWORK_OPERATORS, VECTOR_OPERATORS, Part, field, sourced
 from .sources import CMA_MAE, CMA_ME, CMA_MEGA, LINE, NEAT, OMG_MEGA, TOURNAMENT
 
@@ -165,17 +164,6 @@ Emitter = Annotated[
 
 USING_GRADIENTS = ("lamarckian", "cma-mega")
 """Operators that need the derivatives of all descriptors."""
-
-WITHOUT_GRADIENT = (
-    "hidden_nodes",
-    "connections",
-    "nodes",
-    "limited",
-    "trial_spread",
-    *FORMS,
-    "crossing",
-)
-"""Measures without derivatives."""
 
 
 def refuse_unfit_emitters(emitters: tuple[Emitter, ...], encoding: str) -> None:

@@ -5,11 +5,11 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 
-from ..naming import MeasureName
+from ..naming import WITHOUT_GRADIENT, MeasureName
 from ..plugins.declaration import refuse_empty_axis
 from . import measures
 from .base import Digest, Part, field, sourced
-from .emitters import WITHOUT_GRADIENT, Emitter, NeatEmitter, slots
+from .emitters import Emitter, NeatEmitter, slots
 from .plugins import OR_PLUGIN, MaybePlugin, PluginVersion, complete_plugin, completed
 from .sources import CVT, MAP_ELITES, OURS, PAPER, REEVALUATION
 

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from microcosmos import neat, search
+from microcosmos.bodies.growth import FORMS
 from microcosmos.genomes import Vector, minimal
+from microcosmos.naming import WITHOUT_GRADIENT
 from microcosmos.search import emitters, folding
-from microcosmos.search.gradients import CONSTANT, genes_of
-from microcosmos.spec.emitters import WITHOUT_GRADIENT
+from microcosmos.search.gradients import genes_of
 
 GENES, SLOTS, CELLS = 12, 8, 100
 KEYS = jax.random.split(jax.random.key(7), SLOTS)
@@ -131,8 +132,8 @@ def test_both_are_learners_and_plain_neat_is_not(lamarckian):
     assert not isinstance(lamarckian.neat, emitters.Learner)
 
 
-def test_the_spec_knows_which_measures_have_no_slope():
-    assert set(WITHOUT_GRADIENT) == set(CONSTANT)
+def test_no_measure_of_the_form_at_rest_has_a_slope():
+    assert set(FORMS) < set(WITHOUT_GRADIENT) < set(search.MEASURES)
 
 
 def test_the_first_step_is_as_long_as_the_rate_whatever_the_slope(float64):

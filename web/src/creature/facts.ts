@@ -52,7 +52,7 @@ export function groupsOf(creature: Creature): Group[] {
 
 function measureRow(name: string, value: number, plugin: Plugin | undefined): Row {
   const [title, unit, digits] = text.measures[name] ?? [plugin?.title ?? words(name), plugin?.unit ?? "", 6];
-  const shown = number(name === "limited" || name === "crossing" ? 100 * value : value, digits);
+  const shown = number(unit.startsWith("%") ? 100 * value : value, digits);
   return [title, unit ? `${shown} ${unit}` : shown];
 }
 
