@@ -20,8 +20,8 @@ class Images(NamedTuple):
 
 
 def images_of(plan, gene, xp) -> Images:
-    """Return the images of a gene. At the base of another limb than the root they would all
-    coincide, so there is one copy."""
+    """Return the images of a gene. At the base of any limb but the root all images would
+    coincide, so there is one."""
     root, parent = xp.asarray(gene == 0), plan.parent[gene]
     reach = plan.nodes[parent].astype(plan.place.dtype)
     base = ~plan.closed[parent] & (xp.rint(plan.place[gene] * reach) == 0) & ~root
