@@ -10,7 +10,7 @@ from microcosmos import bodies
 from microcosmos.bodies import growth
 from microcosmos.neat import plans
 
-LIMITS = growth.Segments(rows=8, nodes=16, copies=6)
+LIMITS = growth.Segments(rows=8, nodes=24, copies=6)
 CAPACITY = growth.Capacity(nodes=49, segments=8, rings=3, limbs=12, length=40.0)
 RATES = plans.PlanRates(LIMITS, structure=0.7, values=0.3, vary=0.9)
 

@@ -150,7 +150,7 @@ CASES: dict[str, dict[str, Any]] = {
     "a body from a plan": scene(
         {"encoding": "body-graph", "softest": 0.2},
         body={"builder": "grown", "nodes": 14, "length": 9.0, "segments": 4, "rings": 2}
-        | {"segment_nodes": 9, "copies": 3, "limbs": 5, "spacing": 0.9},
+        | {"segment_nodes": 15, "copies": 3, "limbs": 5, "spacing": 0.9},
     ),
     "a body from a plan that senses": scene(
         {"encoding": "body-graph", "sense_energy": True},

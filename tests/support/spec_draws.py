@@ -99,7 +99,7 @@ NUMBERS: dict[str, Draw] = {
     "GrownBody.nodes": between(8, 20),
     "GrownBody.length": between(6.0, 16.0),
     "GrownBody.segments": between(1, 6),
-    "GrownBody.segment_nodes": between(9, 12),
+    "GrownBody.segment_nodes": between(15, 18),
     "GrownBody.copies": between(1, 4),
     "GrownBody.limbs": between(1, 8),
     "GrownBody.rings": between(1, 3),

@@ -11,15 +11,21 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 
-from ..bodies.growth import LEAST_RING, SEGMENT_DRAWS, Plan, Segments, random_segment
+from ..bodies.growth import (
+    LEAST_LIMB,
+    LEAST_RING,
+    LEAST_ROOT,
+    SEGMENT_DRAWS,
+    Plan,
+    Segments,
+    random_segment,
+)
 from .distance import Coefficients
 from .rng import Uniform, below, draws, rescaled
 from .rows import NONE, choose, match, put
 
 OPERATIONS = ("add", "split", "remove", "mirror", "repeat", "close", "attach")
 """Structural mutations of a plan, by number."""
-LEAST_SPLIT = 4
-"""Least nodes of a segment that is split."""
 MOST_CURL = 6.0
 """Largest curl in rad."""
 VALUES = ("place", "angle", "nodes", "curl", "stiffness")
@@ -72,7 +78,7 @@ def mutate_plan(plan: Plan, rates: PlanRates, *, key: PRNGKeyArray) -> tuple[Pla
         _removed(plan, which),
         _mirrored(plan, which),
         _repeated(plan, which, other, limits),
-        _closed(plan, which, limits),
+        _closed(plan, which),
         _attached(plan, which, other, amount),
     )
     found = _varied(plan, varies, rates.values, limits, values)
@@ -137,11 +143,13 @@ def _split(plan: Plan, count, which: Uniform, where: Uniform) -> Change:
     The body keeps its shape, but for copies along the segment, which crowd on one part.
     """
     rows = jnp.arange(len(plan.used))
-    able = plan.used & ~plan.closed & (plan.nodes >= LEAST_SPLIT)
+    least = jnp.where(rows == 0, LEAST_ROOT, LEAST_LIMB)
+    able = plan.used & ~plan.closed & (plan.nodes >= least + LEAST_LIMB)
     cut, exists = choose(able, which)
     exists = exists & (count < len(rows))
     whole = plan.nodes[cut]
-    first = jnp.clip(jnp.rint(whole * (0.3 + 0.4 * where)), 1, whole - 1).astype(jnp.int32)
+    middle = jnp.rint(whole * (0.3 + 0.4 * where)).astype(jnp.int32)
+    first = jnp.clip(middle, least[cut], whole - LEAST_LIMB)
     share = first / whole
     bend = plan.curl[cut] / jnp.maximum(whole - 1, 1)
     # Rows behind the cut one move down by one; the new segment takes the row behind it.
@@ -213,12 +221,12 @@ def _repeated(plan: Plan, which: Uniform, more: Uniform, limits: Segments) -> Ch
     return plan._replace(copies=jnp.where(there, copies, plan.copies)), jnp.asarray(NONE)
 
 
-def _closed(plan: Plan, which: Uniform, limits: Segments) -> Change:
+def _closed(plan: Plan, which: Uniform) -> Change:
     """Close a segment into a ring, which may lengthen it, or open a ring."""
     row, _ = choose(plan.used, which)
     there = jnp.arange(len(plan.used)) == row
-    least = min(LEAST_RING, limits.nodes)
-    nodes = jnp.where(there & ~plan.closed, jnp.maximum(plan.nodes, least), plan.nodes)
+    longer = jnp.maximum(plan.nodes, LEAST_RING)
+    nodes = jnp.where(there & ~plan.closed, longer, plan.nodes)
     return plan._replace(closed=plan.closed ^ there, nodes=nodes), jnp.asarray(NONE)
 
 
@@ -247,7 +255,7 @@ def _varied(
             new = _within_half_a_turn(column + 0.4 * step)
         elif name == "nodes":
             by = jnp.where(step < 0, -1, 1) * (1 + (jnp.abs(step) > 1.0))
-            least = jnp.where(plan.closed, min(LEAST_RING, limits.nodes), 1)
+            least = jnp.where(plan.closed, LEAST_RING, LEAST_LIMB).at[0].set(LEAST_ROOT)
             new = jnp.clip(column + by, least, limits.nodes)
         elif name == "curl":
             new = jnp.clip(column + 0.5 * step, -MOST_CURL, MOST_CURL)

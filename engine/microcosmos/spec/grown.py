@@ -16,7 +16,7 @@ class GrownBody(Part):
     """Largest distance between two nodes along a body."""
     segments: int = field(8, ge=1, le=32)
     """Most segments of a plan."""
-    segment_nodes: int = field(16, ge=9, le=128, unit="nodes")
+    segment_nodes: int = field(24, ge=growth.LEAST_ROOT, le=128, unit="nodes")
     """Most nodes of a segment."""
     copies: int = field(6, ge=1, le=32)
     """Most copies of a segment along the one that it is attached to."""

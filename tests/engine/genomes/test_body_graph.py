@@ -18,7 +18,7 @@ ROOM = (40, 120)
 STEPS = 100
 PLANS = 20
 BODY = spec.GrownBody(
-    builder="grown", nodes=24, length=18.0, segments=6, segment_nodes=10, rings=2
+    builder="grown", nodes=24, length=18.0, segments=6, segment_nodes=16, rings=2
 )
 ROUNDING = {1: 4, 10: 16, 100: 64}
 """Differences of the kernel and JAX after so many steps, in roundings of a position."""

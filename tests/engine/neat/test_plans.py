@@ -10,11 +10,18 @@ import pytest
 from body_plans import LIMITS, different, plan_of, to_jax
 
 from microcosmos import neat
-from microcosmos.bodies.growth import TYPES, Plan, Segments
+from microcosmos.bodies.growth import (
+    LEAST_LIMB,
+    LEAST_RING,
+    LEAST_ROOT,
+    TYPES,
+    Plan,
+    Segments,
+)
 from microcosmos.neat import plans
 
 COEFFICIENTS = neat.Coefficients(1.0, 1.0, 0.5)
-SMALL = Segments(rows=3, nodes=6, copies=2)
+SMALL = Segments(rows=3, nodes=18, copies=2)
 ADD, SPLIT = (plans.OPERATIONS.index(name) for name in ("add", "split"))
 LIMITS_OF = {"many": LIMITS, "few": SMALL}
 
@@ -55,7 +62,7 @@ def test_mutations_keep_plans_valid(varied, limits):
     for name, low, high in (
         ("place", 0, 1),
         ("angle", -3.1416, 3.1416),
-        ("nodes", 1, limits.nodes),
+        ("nodes", LEAST_LIMB, limits.nodes),
         ("curl", -plans.MOST_CURL, plans.MOST_CURL),
         ("stiffness", 0, 1),
         ("copies", 1, limits.copies),
@@ -64,6 +71,8 @@ def test_mutations_keep_plans_valid(varied, limits):
         assert low <= values.min(), name
         assert values.max() <= high, name
         assert len(np.unique(values)) > 1, name
+    assert varied.nodes[:, 0].min() == LEAST_ROOT
+    assert varied.nodes[varied.closed].min() == LEAST_RING
     assert not varied.mirrored[:, 0].any()
     assert (varied.copies[:, 0] == 1).all()
     for one in varied:
@@ -127,7 +136,7 @@ def test_a_structural_mutation_is_alone_and_has_a_novelty(some):
     vary = jax.jit(jax.vmap(lambda plan, key: plans.mutate_plan(plan, rates, key=key)))
     after, varied = jax.device_get(vary(to_jax(some), keys))
     new, operation = varied.novelty.row >= 0, varied.novelty.operation
-    assert 0.4 < varied.changed.mean() < 0.6
+    assert 0.3 < varied.changed.mean() < 0.5  # Some find nothing to change.
     assert not (new & ~varied.changed).any()
     assert set(operation[new].tolist()) == {ADD, SPLIT}
     assert (operation[~new] == -1).all()
@@ -155,7 +164,7 @@ def test_steps_of_numbers_have_their_rate_and_size():
 
 
 def test_equal_mutations_of_a_generation_share_a_number():
-    plan = plan_of({"nodes": 8}, {"nodes": 8, "number": 2, "place": 0.5})
+    plan = plan_of({"nodes": 20}, {"nodes": 8, "number": 2, "place": 0.5})
     many = 400
     batch = Plan(*(np.repeat(one[None], many, 0) for one in plan))
     rates = plans.PlanRates(LIMITS, structure=1.0, values=0.0, vary=0.0)

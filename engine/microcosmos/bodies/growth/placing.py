@@ -119,7 +119,7 @@ def nodes_of(plan, capacity: Capacity, gene, state: State, bases: Bases, count, 
     heading = outset + hand * turn * (steps - 1).astype(reals)
     chord = outset + hand * turn * ((steps - 1).astype(reals) / 2)
     # The sum of unit vectors that turn evenly: sin(n t / 2) / sin(t / 2) along their mean.
-    flat = xp.abs(turn) < 1e-3
+    flat = xp.abs(turn) < 1e-5
     half = xp.where(flat, xp.asarray(1, reals), turn / 2).astype(reals)
     wide = sine(steps.astype(reals) * half, xp) * (1 / sine(half, xp))
     reach = xp.where(flat, steps.astype(reals), wide) * xp.asarray(capacity.spacing, reals)

@@ -3,8 +3,14 @@
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+LEAST_ROOT = 15
+LEAST_LIMB = 3
 LEAST_RING = 9
-"""Least nodes of a ring, without its base: the fluid does not resolve smaller ones."""
+"""Least nodes of the root, of another segment and of a ring, without their base.
+
+The fluid does not resolve smaller ones. A shorter ring does not grow; evolution makes no shorter
+segments of the other kinds.
+"""
 
 
 class Plan(NamedTuple):

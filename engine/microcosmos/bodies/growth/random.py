@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from .plan import LEAST_RING, Plan
+from .plan import LEAST_LIMB, LEAST_RING, LEAST_ROOT, Plan
 
 SEGMENT_DRAWS = 12
 """Uniform numbers that a random segment takes."""
@@ -13,8 +13,8 @@ FIRST_LIMBS = 2
 """Most limbs of a random plan; they and the root have the numbers 0, 1 and 2."""
 PLAN_DRAWS = 3 + FIRST_LIMBS * (1 + SEGMENT_DRAWS)
 """Uniform numbers that a random plan takes."""
-LIMB_NODES = (3, 10)
-ROOT_NODES = (6, 16)
+LIMB_NODES = (LEAST_LIMB, 10)
+ROOT_NODES = (LEAST_ROOT, 20)
 """Least and most nodes of random segments."""
 
 
@@ -25,7 +25,7 @@ class Segments:
     rows: int
     """Most segments of a plan."""
     nodes: int
-    """Most nodes of a segment."""
+    """Most nodes of a segment, at least `LEAST_ROOT`."""
     copies: int
     """Most copies of a segment along its parent."""
 
