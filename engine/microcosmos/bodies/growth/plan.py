@@ -8,8 +8,7 @@ LEAST_LIMB = 3
 LEAST_RING = 9
 """Least nodes of the root, of another segment and of a ring, without their base.
 
-The fluid does not resolve smaller ones. A shorter ring does not grow; evolution makes no shorter
-segments of the other kinds.
+The fluid does not resolve smaller ones. Evolution makes none; a smaller ring does not grow.
 """
 
 
