@@ -1,6 +1,7 @@
 """Cells of an archive: a grid of bins, or nearest centroids."""
 
 from collections.abc import Callable
+from decimal import Context, Decimal, localcontext
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -37,8 +38,22 @@ class Axis(eqx.Module):
 
     def bin(self, value: Float[Array, "*batch"]) -> Int[Array, "*batch"]:
         """Return numbers of half-open bins; values beyond an end are in the outer bin."""
-        place = jnp.floor(self.place(value) * self.bins)
-        return jnp.clip(place, 0, self.bins - 1).astype(jnp.int32)
+        return jnp.searchsorted(self.edges, value, side="right").astype(jnp.int32)
+
+    @property
+    def edges(self) -> Float[np.ndarray, "edge"]:
+        """The inner edges of the bins, to the last bit in single precision.
+
+        They are found in decimals, since a logarithm rounds differently on each device.
+        """
+        with localcontext(Context(prec=40)):
+            low, high = (Decimal(repr(float(end))) for end in (self.low, self.high))
+            shares = [Decimal(edge) / self.bins for edge in range(1, self.bins)]
+            if self.logarithmic:
+                found = [low * (high / low) ** share for share in shares]
+            else:
+                found = [low + (high - low) * share for share in shares]
+        return np.array([float(edge) for edge in found], np.float32)
 
 
 class Grid(eqx.Module):

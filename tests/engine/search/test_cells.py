@@ -26,6 +26,25 @@ def test_bins_are_half_open_and_their_ends_are_counted():
     assert place.tolist() == [0, 0, 1, 4, 5, 5, 5]
 
 
+@pytest.mark.parametrize(
+    ("low", "high", "edges"),
+    [
+        (1e-4, 1e2, [1e-3, 1e-2, 1e-1, 1e0, 1e1]),
+        (0.05, 50.0, [0.5, 5.0]),
+        (1e-7, 1e3, [10.0**power for power in range(-6, 3)]),
+        (0.5, 512.0, [2.0**power for power in range(9)]),
+    ],
+)
+def test_a_value_on_an_edge_of_a_logarithmic_bin_is_in_the_upper_one(low, high, edges):
+    axis = search.Axis(0, low, high, len(edges) + 1, logarithmic=True)
+    on = np.array(edges, np.float32)
+    assert np.array_equal(axis.edges, on)
+    below = np.nextafter(on, np.float32(0))
+    for compiled in (axis.bin, jax.jit(axis.bin)):
+        assert compiled(jnp.asarray(on)).tolist() == list(range(1, len(edges) + 1))
+        assert compiled(jnp.asarray(below)).tolist() == list(range(len(edges)))
+
+
 def test_cells_are_numbered_with_the_last_descriptor_fastest_under_jit_too():
     grid, place = search.Grid(AXES), jnp.array([[1.01e-3, 0.6]])
     assert grid.of(place).tolist() == [1 * 4 + 2]

@@ -46,6 +46,26 @@ def log(z):
     return np.log(np.maximum(z, 1e-7))
 
 
+# Those of ours whose values pass one, as our engine keeps them: within ±10⁶.
+def bounded_identity(z):
+    return np.clip(z, -1e6, 1e6)
+
+
+def bounded_relu(z):
+    return np.clip(z, 0.0, 1e6)
+
+
+def bounded_abs(z):
+    return np.minimum(np.abs(z), 1e6)
+
+
+def bounded_square(z):
+    return np.minimum(np.square(z), 1e6)
+
+
+BOUND = 1e6
+"""Largest value of a node in our engine; see `genomes.cppn`."""
+
 ACTIVATIONS: dict[str, Callable] = {
     "identity": identity,
     "sigmoid": sigmoid,
@@ -62,9 +82,16 @@ ACTIVATIONS: dict[str, Callable] = {
     "inv": inv,
     "log": log,
     "exp": np.exp,
+    "bounded_identity": bounded_identity,
+    "bounded_relu": bounded_relu,
+    "bounded_abs": bounded_abs,
+    "bounded_square": bounded_square,
 }
 
-TO_REGISTER = ("cos", "gaussian", "square")
+BOUNDED = {name: f"bounded_{name}" for name in ("identity", "relu", "abs", "square")}
+"""Activations that keep the bound, by those that do not."""
+
+TO_REGISTER = ("cos", "gaussian", "square", *BOUNDED.values())
 """Activations that TensorNEAT lacks; its users register them by name."""
 
 WITHIN_ONE = ("sigmoid", "tanh", "sin", "cos", "gaussian")

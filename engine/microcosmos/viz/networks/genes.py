@@ -9,11 +9,9 @@ import numpy as np
 
 from ...naming import ACTIVATIONS, decode, encode
 from .evaluation import require_agreement
+from .functions import BOUND, BOUNDED
 from .graph import depths, order, reached
 from .network import Link, Network, Node, delegated, outputs_first
-
-BOUND = 1e6
-"""Largest value of a node in our engine; see `genomes.cppn`."""
 
 
 def of_creature(identity: Mapping[str, Any]) -> Network:
@@ -65,12 +63,19 @@ def to_genes(network: Network, *, check: bool = True) -> dict[str, Any]:
     historical markers, innovation numbers follow source and target. Raises `ValueError` with
     the reason if our genes cannot express the network.
     """
-    ours = outputs_first(_transformed(_summing(_live_part(_unrolled(network)))))
+    ours = outputs_first(_transformed(_summing(_live_part(_unrolled(_plain(network))))))
     genes = _genes(ours)
     if check:
         back = from_genes(genes, [""] * ours.inputs, [""] * len(ours.outputs))
         require_agreement("the imported network", network, back)
     return genes
+
+
+def _plain(network: Network) -> Network:
+    """Name activations that keep the bound as our genes, all of which keep it, name them."""
+    plain = {bounded: name for name, bounded in BOUNDED.items()}
+    nodes = [replace(n, activation=plain.get(n.activation, n.activation)) for n in network.nodes]
+    return replace(network, nodes=tuple(nodes))
 
 
 def _unrolled(network: Network) -> Network:

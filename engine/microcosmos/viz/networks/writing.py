@@ -1,13 +1,13 @@
 """Networks as the arrays of a TensorNEAT genome and the names that belong to them."""
 
 from dataclasses import dataclass, replace
-from math import inf
+from math import inf, isinf
 from typing import Any
 
 import numpy as np
 
-from .evaluation import require_agreement
-from .functions import ACTIVATIONS, AGGREGATIONS, TO_REGISTER
+from .evaluation import agree, evaluate, probes, require_agreement
+from .functions import ACTIVATIONS, AGGREGATIONS, BOUNDED, TO_REGISTER
 from .network import LARGEST_KEY, Link, Network, delegated, outputs_first, renumbered
 from .reading import CONNECTIONS, NODES, read_tensorneat
 
@@ -45,11 +45,12 @@ def as_live(network: Network) -> Network:
     An output's activation goes to a hidden node before it; a node without sources, which
     would have no value, gets one with weight 0.
     """
+    network = _unbounded(network)
     if network.rule == "always":
         links = [replace(link, marker=None) for link in network.links]
         computed = network.keys[network.inputs :]
         links += [Link(0, key, 0.0) for key in computed if not network.incoming[key]]
-        network = replace(network, rule="live", links=tuple(links), bound=inf)
+        network = replace(network, rule="live", links=tuple(links))
     for output in network.outputs:
         if network.node[output].activation != "identity":
             network = delegated(network, output, "identity")
@@ -57,6 +58,25 @@ def as_live(network: Network) -> Network:
         return network
     rank = {key: place for place, key in enumerate(sorted(network.keys))}
     return renumbered(network, rank.__getitem__)
+
+
+def _unbounded(network: Network) -> Network:
+    """Return the same function without a bound of its own.
+
+    Where random inputs pass the bound, activations keep it.
+    """
+    if isinf(network.bound):
+        return network
+    free, points = replace(network, bound=inf), probes(network.inputs)
+    if agree(evaluate(network, points), evaluate(free, points)):
+        return free
+    kept = [
+        node
+        if node.key < network.inputs
+        else replace(node, activation=BOUNDED.get(node.activation, node.activation))
+        for node in network.nodes
+    ]
+    return replace(free, nodes=tuple(kept))
 
 
 def room(needed: int) -> int:
@@ -69,8 +89,8 @@ def _written(network: Network, max_nodes: int | None, max_conns: int | None) -> 
     node_class = "DefaultNode" if has_response else "BiasNode"
     marked = network.marked and max(x.marker or 0 for x in network.links) < LARGEST_KEY
     conn_class = "OriginConn" if marked else "DefaultConn"
-    used = {node.activation for node in network.nodes}
-    activations = [name for name in ACTIVATIONS if name in used]
+    # All of them always, so that one compiled program evaluates all networks.
+    activations = list(ACTIVATIONS)
     used = {node.aggregation for node in network.nodes}
     aggregations = [name for name in AGGREGATIONS if name in used]
     index = {"aggregation": aggregations.index, "activation": activations.index}
@@ -93,7 +113,6 @@ def _written(network: Network, max_nodes: int | None, max_conns: int | None) -> 
 
 def _described(network: Network) -> dict[str, Any]:
     recurrent = network.steps is not None
-    used = {*(node.activation for node in network.nodes), network.output_transform}
     return {
         "format": FORMAT,
         "genome_class": "RecurrentGenome" if recurrent else "DefaultGenome",
@@ -107,7 +126,7 @@ def _described(network: Network) -> dict[str, Any]:
         "output_names": list(network.output_names),
         "input_transform": None,
         "output_transform": network.output_transform,
-        "register": [name for name in TO_REGISTER if name in used],
+        "register": list(TO_REGISTER),
     }
 
 

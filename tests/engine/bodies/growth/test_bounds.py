@@ -12,7 +12,7 @@ from microcosmos.bodies.growth import sprouting
 def test_bodies_stay_within_their_capacity(population):
     _, grown, bones, *_ = population
     nodes = grown.present.sum(1)
-    assert nodes.min() >= 2
+    assert nodes.min() == 1 + growth.LEAST_ROOT
     assert nodes.max() < CAPACITY.nodes  # The last row stays empty.
     assert np.array_equal(grown.present, np.arange(CAPACITY.nodes)[None] < nodes[:, None])
     rings = (grown.ring_first >= 0).sum(1)
