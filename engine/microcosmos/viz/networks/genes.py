@@ -74,7 +74,9 @@ def to_genes(network: Network, *, check: bool = True) -> dict[str, Any]:
 def _plain(network: Network) -> Network:
     """Name activations that keep the bound as our genes, all of which keep it, name them."""
     plain = {bounded: name for name, bounded in BOUNDED.items()}
-    nodes = [replace(n, activation=plain.get(n.activation, n.activation)) for n in network.nodes]
+    nodes = [
+        replace(n, activation=plain.get(n.activation, n.activation)) for n in network.nodes
+    ]
     return replace(network, nodes=tuple(nodes))
 
 
