@@ -20,9 +20,11 @@ def crossover(
 ) -> CPPN:
     """Return a child with the structure of the fitter parent, and matching genes of either.
 
-    Genes match where their numbers are equal. The child has a cycle only if the fitter parent
-    has. With probability `average`, weights and biases of matching genes are means, and with
-    probability `disabled` a gene disabled in either parent is disabled in the child.
+    Genes match where their numbers are equal. Of equally fit parents the first counts as the
+    fitter; the paper draws each unmatched gene of both, whose union may have a cycle. The child
+    has a cycle only if the fitter parent has. With probability `average`, weights and biases of
+    matching genes are means, and with probability `disabled` a gene disabled in either parent
+    is disabled in the child.
     """
     mean, swapped, gene = draws((), fitter.bias.shape, fitter.weight.shape, key=key)
     connection = match(

@@ -1,7 +1,7 @@
 """Measures of a creature's motion; names, units and axes are in `spec.measures`."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, get_args
 
 import equinox as eqx
@@ -208,6 +208,10 @@ class Motion(eqx.Module):
     viscosity: Scalar
     measures: dict[str, Scalar]
     """The usual measures, by the names of `spec.measures`."""
+
+    def __getattr__(self, name: str) -> Any:
+        known = ", ".join(field.name for field in fields(type(self)))
+        raise AttributeError(f"a motion has {known}, got {name!r}")
 
 
 @dataclass(frozen=True)

@@ -42,6 +42,10 @@ def ahead(motion):
 def broken(motion):
     return motion.path
 
+@plugins.descriptor("misspelt", title="Misspelt", low=0, high=1)
+def misspelt(motion):
+    return motion.headings[-1]
+
 @plugins.body("stick", title="A stick", nodes=10)
 def stick():
     return bodies.chain(8, 1.0)
@@ -229,6 +233,14 @@ def test_a_measure_that_is_no_number_is_refused_by_name():
     experiment = build(parse({**SPEC, "archive": axes}))
     reason = r"extra\.broken must return one number, got shape"
     with pytest.raises(plugins.Broken, match=reason):
+        experiment.advance(experiment.init())
+
+
+def test_an_unknown_field_of_a_motion_lists_the_known_ones():
+    axes = {"descriptors": [{"name": "extra.misspelt", "bins": 2}]}
+    experiment = build(parse({**SPEC, "archive": axes}))
+    reason = r"a motion has path, heading, .*measures, got 'headings'"
+    with pytest.raises((AttributeError, plugins.Broken), match=reason):
         experiment.advance(experiment.init())
 
 
