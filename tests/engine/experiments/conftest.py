@@ -61,7 +61,7 @@ SPECS = {
     | {"neat": {"backend": "tensorneat", "preset": "tensorneat"}},
 }
 SPECS["zoo"] = SMALL | {
-    "body": {"builder": "grown", "nodes": 16, "length": 14.0, "segments": 4, "rings": 1}
+    "body": {"builder": "grown", "nodes": 26, "length": 20.0, "segments": 4, "rings": 1}
     | {"segment_nodes": 15, "limbs": 6},
     "control": {"encoding": "body-graph", "period": 20, "softest": 0.5},
     "genome": {"max_nodes": 16, "max_connections": 40},

@@ -82,7 +82,7 @@ def last(value):
         ("curl", floats(-7), "plan.curl"),
         ("stiffness", floats(-0.1), "plan.stiffness"),
         ("nodes", last(0), "plan.nodes"),
-        ("nodes", last(10), "plan.nodes"),
+        ("nodes", last(16), "plan.nodes"),
         ("copies", last(0), "plan.copies"),
         ("copies", last(7), "plan.copies"),
         ("mirrored", last("perhaps"), "mirrored"),
