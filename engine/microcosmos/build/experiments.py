@@ -62,6 +62,7 @@ def build_evolution(
         emit=compiled(lambda *given: search.emitters.emit(emitters, *given, key=key)),
         evaluate_block=build_block(chosen.scene, room_of(chosen)),
         insert=search.insert_program(options),
+        credit=jitted(search.emitters.credit),
         tell=compiled(lambda states, outcome: search.emitters.tell(emitters, states, outcome)),
         forget=jitted(search.reevaluation.forget),
         lessons=build_lessons(chosen, emitters),

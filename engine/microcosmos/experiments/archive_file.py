@@ -34,7 +34,7 @@ from .state import (
 
 Module = TypeVar("Module", bound=eqx.Module)
 
-ROWS = ("fitness", "measures", "generation", "slot")
+ROWS = ("fitness", "measures", "generation", "slot", "curiosity")
 """Columns of elites that are written unchanged."""
 
 

@@ -85,6 +85,8 @@ class Evolution:
             jnp.asarray(evaluation.status == 0),
         )
         elites, inserted = programs.insert(state.elites, candidates, state.cells)
+        if offspring.from_archive:
+            elites = programs.credit(elites, children.parents[:, 0], inserted)
         outcome = search.emitters.outcome(candidates, inserted)
         emitters = offspring.without_replaced(programs.tell(offspring.emitters, outcome))
         inserted = jax.device_get(inserted)

@@ -67,6 +67,7 @@ class Programs:
     emit: Callable[..., tuple[search.Children, tuple, neat.Counters]]
     evaluate_block: Callable[[Genotype], search.Evaluation]
     insert: Callable[..., tuple[search.Elites, search.Inserted]]
+    credit: Callable[..., search.Elites]
     tell: Callable[[tuple, search.Outcome], tuple]
     forget: Callable[..., search.reevaluation.Repeats]
     lessons: tuple[Lessons | None, ...]
@@ -85,6 +86,8 @@ class Offspring:
     """Time at the start of lessons and evaluation, by the monotonic clock."""
     names: np.ndarray
     """Names of the creatures that parents were drawn from, by cell."""
+    from_archive: bool
+    """Whether these are the elites, not initial creatures."""
     before: tuple[tuple[Any] | None, ...] = ()
     """The earlier state of each emitter some of whose children were replaced."""
 
@@ -103,6 +106,7 @@ def next_offspring(
         return _emitted(plan, programs, state, state.elites, state.creatures, stop)
     found, names = _initial_archive(plan, state, initial)
     offspring = _emitted(plan, programs, state, found, names, stop)
+    offspring = replace(offspring, from_archive=False)
     places = np.arange(first, min(first + plan.batch, len(initial.creature)))
     return _with_initial(plan, state, offspring, initial, places)
 
@@ -123,7 +127,7 @@ def _emitted(
     children, emitters, results = _teach(
         programs.lessons, slots, children, emitters, block=plan.block, stop=stop
     )
-    return Offspring(children, emitters, counters, results, began, names)
+    return Offspring(children, emitters, counters, results, began, names, from_archive=True)
 
 
 def _initial_archive(
@@ -137,7 +141,9 @@ def _initial_archive(
     occupied = empty.occupied.at[:count].set(True)
     lacking = np.zeros((max(0, plan.cell_count - count), 32), np.uint8)
     names = np.concatenate([initial.creature, lacking])
-    return replace(empty, occupied=occupied, genotypes=genotypes), names
+    equal = occupied.astype(jnp.float32)
+    found = replace(empty, occupied=occupied, curiosity=equal, genotypes=genotypes)
+    return found, names
 
 
 def _with_initial(

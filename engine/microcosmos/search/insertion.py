@@ -25,6 +25,8 @@ class Elites(eqx.Module):
     measures: Float[Array, "row measure"]
     generation: Int[Array, "row"]
     slot: Int[Array, "row"]
+    curiosity: Float[Array, "row"]
+    """Score as a parent: 1 at first, more where children have entered; see `selection`."""
     genotypes: Genotype
 
 
@@ -36,6 +38,7 @@ def no_elites(cells: int, measures: int, genotype: Genotype) -> Elites:
         measures=zeros(np.float32, cells, measures),
         generation=zeros(np.int32, cells),
         slot=zeros(np.int32, cells),
+        curiosity=zeros(np.float32, cells),
         genotypes=jax.tree.map(lambda x: zeros(x.dtype, cells, *x.shape), genotype),
     )
 
@@ -56,7 +59,8 @@ def candidates(
     rows = len(fitness)
     slots = jnp.arange(rows, dtype=jnp.int32)
     generations = jnp.full(rows, generation, jnp.int32)
-    return Elites(feasible, fitness, measures, generations, slots, genotypes)
+    ones = jnp.ones(rows, jnp.float32)
+    return Elites(feasible, fitness, measures, generations, slots, ones, genotypes)
 
 
 class Inserted(eqx.Module):

@@ -21,9 +21,12 @@ class WeightedEmitter(Part):
 class SelectingEmitter(WeightedEmitter):
     """An emitter that draws its parents from the archive."""
 
-    select: Literal["uniform", "mixed", "tournament"] = field("mixed", source=TOURNAMENT)
+    select: Literal["uniform", "mixed", "tournament", "curiosity"] = field(
+        "mixed", source=TOURNAMENT
+    )
     """Selection of parents: every elite with equal probability (uniform), the fittest of three
-    such draws (tournament), or half of the parents each way (mixed)."""
+    such draws (tournament), half of the parents each way (mixed), or mixed and more often those
+    whose children have entered (curiosity)."""
 
 
 class RandomEmitter(WeightedEmitter):

@@ -72,6 +72,8 @@ SPECS["zoo"] = SMALL | {
         ]
     },
     "task": {"steps": 30, "fitness": "displacement"},
+    "search": {"generations": 4, "batch": 16, "block": 8}
+    | {"emitters": [{"operator": "neat", "select": "curiosity", "crossover": 0.3}]},
 }
 PACKAGES = {"cma-me": "qdax", "tensorneat": "tensorneat"}
 """Optional packages that some runs need."""

@@ -53,6 +53,7 @@ def candidates(genotypes, count, seed, generation=0, levels=4):
         measures=jnp.asarray(measures, jnp.float32),
         generation=jnp.full(count, generation, jnp.int32),
         slot=jnp.arange(count, dtype=jnp.int32),
+        curiosity=jnp.ones(count, jnp.float32),
         genotypes=genotypes(random, count),
     )
 

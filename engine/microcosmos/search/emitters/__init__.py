@@ -17,4 +17,5 @@ from .emitter import (
 from .lamarckian import Lamarckian
 from .neat import Neat
 from .population import PopulationNeat
+from .selection import credit
 from .vectors import IsoLine

@@ -1,36 +1,66 @@
 """Selection of parents among the elites of an archive."""
 
+from dataclasses import replace
 from typing import Literal
 
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Int, PRNGKeyArray
+from jaxtyping import Array, Float, Int, PRNGKeyArray
 
-from ..insertion import Elites
+from ..insertion import Elites, Inserted
 
-Select = Literal["uniform", "mixed", "tournament"]
-TOURNAMENTS = {"uniform": 0.0, "mixed": 0.5, "tournament": 1.0}
-"""The share of parents that have won a tournament."""
-ENTRANTS = 3
-"""Elites in a tournament."""
+Select = Literal["uniform", "mixed", "tournament", "curiosity"]
+TOURNAMENTS = {"uniform": 0.0, "mixed": 0.5, "tournament": 1.0, "curiosity": 0.5}
+"""The share of parents that are drawn as winners of a tournament."""
+ENTERED, REFUSED, LEAST = 1.0, -0.5, 0.05
+"""What a child that enters, or does not, adds to its parent's curiosity, which is at least
+`LEAST`. The sums are exact in any order."""
 
 
 def draw(archive: Elites, select: Select = "uniform", *, key: PRNGKeyArray) -> Int[Array, ""]:
-    """Draw an occupied cell, each with equal probability, or the fittest of three such draws.
+    """Draw an occupied cell; 0 where none is.
 
-    Returns 0 where no cell is occupied.
+    Chances are equal (uniform), those of the fittest of three such draws (tournament), or the
+    mean of both (mixed), which `curiosity` multiplies by the elites' scores (Cully and Demiris,
+    IEEE Trans. Evol. Comput. 2018, section III.C).
     """
-    share = TOURNAMENTS[select]
-    if not share:
-        return _uniform(archive, key)
-    entrants_key, either_key = jax.random.split(key)
-    cells = jax.vmap(lambda key: _uniform(archive, key))(
-        jax.random.split(entrants_key, ENTRANTS)
-    )
-    winner = cells[jnp.argmax(archive.fitness[cells])]
-    return jnp.where(jax.random.bernoulli(either_key, share), winner, cells[0])
+    # Under `vmap` over keys this is computed once.
+    below = jnp.cumsum(_chances(archive, select))
+    place = jax.random.uniform(key) * below[-1]
+    # Rounding must not reach the end, which may be an empty cell.
+    place = jnp.minimum(place, jnp.nextafter(below[-1], 0.0))
+    found = jnp.searchsorted(below, place, side="right")
+    return jnp.where(below[-1] > 0, found, 0).astype(jnp.int32)
 
 
-def _uniform(archive: Elites, key: PRNGKeyArray) -> Int[Array, ""]:
-    rank = jax.random.randint(key, (), 0, jnp.maximum(1, jnp.sum(archive.occupied)))
-    return jnp.argmax(jnp.cumsum(archive.occupied) > rank)
+def credit(archive: Elites, parents: Int[Array, "slot"], inserted: Inserted) -> Elites:
+    """Return the archive with the scores of parents after their children were inserted.
+
+    `parents` are cells; other numbers are ignored. The score of a new elite is 1.
+    """
+    cells = archive.occupied.shape[0]
+    gain = jnp.where(inserted.entered, ENTERED, REFUSED)
+    parent = jnp.where((parents >= 0) & (parents < cells), parents, cells)
+    score = archive.curiosity.at[parent].add(gain, mode="drop")
+    new = jnp.where(inserted.entered, inserted.cell, cells)
+    score = jnp.maximum(score, LEAST).at[new].set(1.0, mode="drop")
+    return replace(archive, curiosity=jnp.where(archive.occupied, score, 0.0))
+
+
+def _chances(archive: Elites, select: Select) -> Float[Array, "cell"]:
+    """Return numbers proportional to each cell's chance, 0 where it is empty."""
+    there, share = archive.occupied, TOURNAMENTS[select]
+    chances = there.astype(jnp.float32)
+    if share:
+        many = jnp.sum(there)
+        height = jnp.where(there, archive.fitness, jnp.inf)
+        rank = (
+            jnp.zeros(len(there), jnp.int32)
+            .at[jnp.argsort(height)]
+            .set(jnp.arange(len(there), dtype=jnp.int32))
+        )
+        # The r-th of n from below wins r³ − (r − 1)³ of n³ tournaments of three.
+        low, step = rank / jnp.maximum(many, 1), 1 / jnp.maximum(many, 1)
+        wins = 3 * low * low + 3 * low * step + step * step
+        chances = jnp.where(there, (1 - share) + share * wins, 0.0)
+    return chances * archive.curiosity if select == "curiosity" else chances

@@ -153,6 +153,7 @@ class NeatEmitter:
             measures=repertoire.descriptors,
             generation=nothing,
             slot=nothing,
+            curiosity=jnp.isfinite(fitness).astype(jnp.float32),
             genotypes=repertoire.genotypes,
         )
         if not jnp.issubdtype(key.dtype, jax.dtypes.prng_key):

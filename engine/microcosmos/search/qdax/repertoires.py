@@ -108,6 +108,7 @@ def from_repertoire(repertoire: Any, cells: Cells, measures: int) -> Elites:
         measures=jnp.where(there[:, None], known[rows], 0.0),
         generation=extra["generation"][rows] if "generation" in extra else none,
         slot=extra["slot"][rows] if "slot" in extra else none,
+        curiosity=there.astype(jnp.float32),
         genotypes=genotypes,
     )
 
