@@ -143,13 +143,9 @@ def _split(plan: Plan, count, which: Uniform, where: Uniform) -> Change:
     The body keeps its shape, but for copies along the segment, which crowd on one part.
     """
     rows = jnp.arange(len(plan.used))
-    least = jnp.where(rows == 0, LEAST_ROOT, LEAST_LIMB)
-    able = plan.used & ~plan.closed & (plan.nodes >= least + LEAST_LIMB)
-    cut, exists = choose(able, which)
+    cut, first, exists = _place_to_cut(plan, which, where)
     exists = exists & (count < len(rows))
     whole = plan.nodes[cut]
-    middle = jnp.rint(whole * (0.3 + 0.4 * where)).astype(jnp.int32)
-    first = jnp.clip(middle, least[cut], whole - LEAST_LIMB)
     share = first / whole
     bend = plan.curl[cut] / jnp.maximum(whole - 1, 1)
     # Rows behind the cut one move down by one; the new segment takes the row behind it.
@@ -188,6 +184,18 @@ def _split(plan: Plan, count, which: Uniform, where: Uniform) -> Change:
     new = new._replace(place=new.place.at[0].set(plan.place[0]).astype(plan.place.dtype))
     found = Plan(*(jnp.where(exists, a, b) for a, b in zip(new, plan, strict=True)))
     return found, jnp.where(exists, cut + 1, NONE)
+
+
+def _place_to_cut(
+    plan: Plan, which: Uniform, where: Uniform
+) -> tuple[Int[Array, ""], Int[Array, ""], Bool[Array, ""]]:
+    """Draw a segment, the nodes of its first part, and whether any segment is long enough."""
+    root = jnp.arange(len(plan.used)) == 0
+    least = jnp.where(root, LEAST_ROOT, LEAST_LIMB)
+    able = plan.used & ~plan.closed & (plan.nodes >= least + LEAST_LIMB)
+    cut, exists = choose(able, which)
+    middle = jnp.rint(plan.nodes[cut] * (0.3 + 0.4 * where)).astype(jnp.int32)
+    return cut, jnp.clip(middle, least[cut], plan.nodes[cut] - LEAST_LIMB), exists
 
 
 def _removed(plan: Plan, which: Uniform) -> Change:
