@@ -87,7 +87,7 @@ class Offspring:
     names: np.ndarray
     """Names of the creatures that parents were drawn from, by cell."""
     from_archive: bool
-    """Whether these are the elites, not initial creatures."""
+    """Whether parents are elites, not initial creatures."""
     before: tuple[tuple[Any] | None, ...] = ()
     """The earlier state of each emitter some of whose children were replaced."""
 

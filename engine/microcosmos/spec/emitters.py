@@ -6,7 +6,7 @@ from pydantic import Field
 
 from .. import plugins
 from .base import NETWORK_OPERATORS, VECTOR_OPERATORS, Part, field, sourced
-from .sources import CMA_MAE, CMA_ME, CMA_MEGA, LINE, NEAT, OMG_MEGA, TOURNAMENT
+from .sources import CMA_MAE, CMA_ME, CMA_MEGA, CURIOSITY, LINE, NEAT, OMG_MEGA, TOURNAMENT
 
 Rate = Annotated[float, Field(ge=0.0, le=1.0)]
 
@@ -22,7 +22,7 @@ class SelectingEmitter(WeightedEmitter):
     """An emitter that draws its parents from the archive."""
 
     select: Literal["uniform", "mixed", "tournament", "curiosity"] = field(
-        "mixed", source=TOURNAMENT
+        "mixed", source=f"{TOURNAMENT}; {CURIOSITY}"
     )
     """Selection of parents: every elite with equal probability (uniform), the fittest of three
     such draws (tournament), half of the parents each way (mixed), or mixed and more often those

@@ -94,48 +94,6 @@ def test_the_requested_share_of_children_has_two_parents(archive, crossover):
     assert int(counters.innovation) > 6
 
 
-@pytest.mark.parametrize(
-    ("select", "won"), [("uniform", 0.0), ("mixed", 0.5), ("tournament", 1.0)]
-)
-def test_parents_are_drawn_by_the_chosen_selection(archive, select, won):
-    elites = archive(Vector(jnp.zeros((3, GENES))), [4, 0, 2])  # In the order of fitness.
-    emitter = emitters.IsoLine(SLOTS, vector, iso=0.1, select=select)
-    parents = np.asarray(emitted(emitter, elites)[0].parents[:, 0])
-    shares = np.array([np.mean(parents == cell) for cell in (4, 0, 2)])
-    # The fittest of three draws.
-    expected = (1 - won) / 3 + won * np.diff(np.array([0.0, 1 / 3, 2 / 3, 1.0]) ** 3)
-    np.testing.assert_allclose(shares, expected, atol=0.03)
-
-
-def test_curiosity_multiplies_the_chances_of_parents(archive):
-    elites = archive(Vector(jnp.zeros((3, GENES))), [4, 0, 2])  # In the order of fitness.
-    scores = jnp.zeros(5).at[jnp.array([4, 0, 2])].set(jnp.array([3.0, 0.5, 1.0]))
-    emitter = emitters.IsoLine(SLOTS, vector, iso=0.1, select="curiosity")
-    found = emitted(emitter, replace(elites, curiosity=scores))[0].parents[:, 0]
-    shares = np.array([np.mean(np.asarray(found) == cell) for cell in (4, 0, 2)])
-    mixed = 1 / 6 + np.diff(np.array([0.0, 1 / 3, 2 / 3, 1.0]) ** 3) / 2
-    expected = mixed * [3, 0.5, 1]
-    np.testing.assert_allclose(shares, expected / expected.sum(), atol=0.03)
-
-
-def test_parents_gain_by_children_that_enter_and_lose_by_others(archive):
-    elites = archive(Vector(jnp.zeros((3, GENES))), [0, 2, 4])
-    elites = replace(elites, curiosity=jnp.array([1.0, 0.0, 2.0, 0.0, 0.25]))
-    parents = jnp.array([0, 0, 2, 2, 4, 5, search.NO_PARENT], jnp.int32)
-    entered = jnp.array([True, False, True, False, False, True, False])
-    # The third child replaces its own parent, and the sixth, a newcomer, an elite.
-    cell = jnp.array([1, 0, 2, 5, 5, 4, 5], jnp.int32)
-    nothing = jnp.zeros(7)
-    orders = np.random.default_rng(0)
-    for order in [np.arange(7)] + [orders.permutation(7) for _ in range(5)]:
-        inserted = search.Inserted(cell[order], entered[order], entered[order], nothing)
-        after = emitters.credit(elites, parents[order], inserted)
-        assert after.curiosity.tolist() == [1.5, 0.0, 1.0, 0.0, 1.0]
-    refused = search.Inserted(cell, jnp.zeros(7, bool), jnp.zeros(7, bool), nothing)
-    after = emitters.credit(elites, parents, refused).curiosity.tolist()
-    np.testing.assert_allclose(after, [0.05, 0, 1, 0, 0.05], rtol=1e-6)
-
-
 def test_all_children_of_an_empty_archive_are_newcomers(archive):
     nobody = archive(Vector(jnp.zeros((1, GENES))), [0])
     nobody = replace(nobody, occupied=jnp.zeros(5, bool))

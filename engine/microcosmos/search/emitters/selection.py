@@ -14,7 +14,7 @@ TOURNAMENTS = {"uniform": 0.0, "mixed": 0.5, "tournament": 1.0, "curiosity": 0.5
 """The share of parents that are drawn as winners of a tournament."""
 ENTERED, REFUSED, LEAST = 1.0, -0.5, 0.05
 """What a child that enters, or does not, adds to its parent's curiosity, which is at least
-`LEAST`. The sums are exact in any order."""
+`LEAST`."""
 
 
 def draw(archive: Elites, select: Select = "uniform", *, key: PRNGKeyArray) -> Int[Array, ""]:
@@ -41,7 +41,9 @@ def credit(archive: Elites, parents: Int[Array, "slot"], inserted: Inserted) -> 
     cells = archive.occupied.shape[0]
     gain = jnp.where(inserted.entered, ENTERED, REFUSED)
     parent = jnp.where((parents >= 0) & (parents < cells), parents, cells)
-    score = archive.curiosity.at[parent].add(gain, mode="drop")
+    # Multiples of a half: their sum is exact in any order.
+    gained = jnp.zeros(cells, jnp.float32).at[parent].add(gain, mode="drop")
+    score = archive.curiosity + gained
     new = jnp.where(inserted.entered, inserted.cell, cells)
     score = jnp.maximum(score, LEAST).at[new].set(1.0, mode="drop")
     return replace(archive, curiosity=jnp.where(archive.occupied, score, 0.0))
