@@ -155,6 +155,8 @@ def _split(plan: Plan, count, which: Uniform, where: Uniform) -> Change:
     behind, mine = rows == cut + 1, rows == cut
     # Growth rounds to the same node.
     beyond = jnp.rint(moved.place * whole) > first
+    # Not over `share`: a quotient of a quotient is rounded in one way or another.
+    before = jnp.minimum(1.0, moved.place * whole / first)
     later = (moved.parent == cut) & (rows > cut + 1) & beyond
     new = moved._replace(
         number=jnp.where(behind, -1, moved.number),
@@ -165,9 +167,7 @@ def _split(plan: Plan, count, which: Uniform, where: Uniform) -> Change:
             jnp.where(
                 later,
                 (moved.place - share) / (1 - share),
-                jnp.where(
-                    moved.parent == cut, jnp.minimum(1.0, moved.place / share), moved.place
-                ),
+                jnp.where(moved.parent == cut, before, moved.place),
             ),
         ),
         angle=jnp.where(behind, bend, moved.angle),

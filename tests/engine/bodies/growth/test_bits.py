@@ -25,10 +25,10 @@ def test_numpy_and_jax_grow_the_same_bits(population):
 def test_the_same_keys_give_the_same_bytes_in_any_batch(population):
     plans = population[0]
     count = len(plans.used)
-    keys = jax.random.split(jax.random.key(count), count)[:50]
+    keys = jax.random.split(jax.random.key(count), count)[:1000]
     again = jax.jit(lambda keys: jax.lax.map(lambda key: body_plans.mutated(key, 30), keys))
     for one, other in zip(jax.device_get(again(keys)), plans, strict=True):
-        assert one.tobytes() == other[:50].tobytes()
+        assert one.tobytes() == other[:1000].tobytes()
 
 
 def _require_same(one, other):
