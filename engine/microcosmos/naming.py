@@ -59,12 +59,7 @@ MeasureName = Literal[
 ]
 """Names of the measures, in the order in which they are recorded."""
 
-WITHOUT_GRADIENT: tuple[MeasureName, ...] = (
-    "hidden_nodes",
-    "connections",
-    "nodes",
-    "limited",
-    "trial_spread",
+FORMS: tuple[MeasureName, ...] = (
     "segments",
     "free_ends",
     "rings",
@@ -72,6 +67,16 @@ WITHOUT_GRADIENT: tuple[MeasureName, ...] = (
     "form_symmetry",
     "form_aspect",
     "ungrown",
+)
+"""Names of the measures of form; see `bodies.growth.form`."""
+
+WITHOUT_GRADIENT: tuple[MeasureName, ...] = (
+    "hidden_nodes",
+    "connections",
+    "nodes",
+    "limited",
+    "trial_spread",
+    *FORMS,
     "crossing",
 )
 """Measures without derivatives: counts, the form at rest, and shares of steps and poses."""

@@ -21,6 +21,7 @@ from .. import (
 )
 from ..bodies import extent
 from ..bodies.layout import MAX_NODES
+from ..naming import FORMS
 from ..spec.search import MEASURED
 from .encodings import build_encoding
 from .plugins import build_measures, strokes_of
@@ -81,7 +82,7 @@ def build_form(body: bodies.Body) -> tuple[float, ...]:
     pieces = len(np.unique(bodies.pieces(body.edges, len(body.positions))))
     every = np.ones(len(body.positions), bool), np.ones(len(body.edges), bool)
     found = bodies.growth.form(body.positions, body.edges, *every, pieces=pieces)
-    return tuple(float(np.float32(found[name])) for name in bodies.growth.FORMS)
+    return tuple(float(np.float32(found[name])) for name in FORMS)
 
 
 def build_actuators(

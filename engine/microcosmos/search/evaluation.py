@@ -11,8 +11,8 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int, PyTree
 
 from .. import units
-from ..bodies.growth import FORMS
 from ..genomes import Drive, Genotype
+from ..naming import FORMS
 from ..world import Measures, State, World, centre, flow, grown_nodes
 from .crossing import crossing
 from .kinematics import kinematics

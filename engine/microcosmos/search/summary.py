@@ -7,7 +7,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
 from ..archive.poses import FRAMES, MOMENTS
-from ..bodies.growth import FORMS
+from ..naming import FORMS
 from ..world import Measures, State, World, grown_nodes, native
 from .measures import MEASURES
 from .window import Poses, Window

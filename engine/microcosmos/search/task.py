@@ -3,9 +3,9 @@
 import equinox as eqx
 from jaxtyping import Array, Float, Int
 
-from ..bodies.growth import FORMS
 from ..filaments import Rest
 from ..genomes import Actuators, Encoding, Genotype
+from ..naming import FORMS
 from ..world import State, World
 from .measures import MEASURES, Measure
 

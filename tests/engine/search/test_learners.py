@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from microcosmos import neat, search
-from microcosmos.bodies.growth import FORMS
 from microcosmos.genomes import Vector, minimal
-from microcosmos.naming import WITHOUT_GRADIENT
+from microcosmos.naming import FORMS, WITHOUT_GRADIENT
 from microcosmos.search import emitters, folding
 from microcosmos.search.gradients import genes_of
 

@@ -2,7 +2,7 @@
 
 from .body import Grown, State
 from .columns import plan_of
-from .form import FORMS, form
+from .form import form
 from .graph import grown_body
 from .plan import LEAST_LIMB, LEAST_RING, LEAST_ROOT, Capacity, Plan
 from .random import (

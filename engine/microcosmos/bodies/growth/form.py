@@ -4,17 +4,6 @@ from typing import Any
 
 import numpy as np
 
-FORMS = (
-    "segments",
-    "free_ends",
-    "rings",
-    "total_length",
-    "form_symmetry",
-    "form_aspect",
-    "ungrown",
-)
-"""Names of the measures of form."""
-
 
 def form(
     positions: Any, edges: Any, present: Any, there: Any, xp: Any = np, pieces: int = 1

@@ -46,7 +46,8 @@ def log(z):
     return np.log(np.maximum(z, 1e-7))
 
 
-# Those of ours whose values pass one, as our engine keeps them: within ±10⁶.
+# Those of ours whose values pass one, as our engine keeps them: within `BOUND`, which
+# standalone modules lack.
 def bounded_identity(z):
     return np.clip(z, -1e6, 1e6)
 

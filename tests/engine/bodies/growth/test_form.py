@@ -7,6 +7,7 @@ from body_plans import in_numpy, plan_of
 
 from microcosmos import bodies
 from microcosmos.bodies import growth, swimmers
+from microcosmos.naming import FORMS
 
 CORNERS = [[0, 0], [4, 0], [4, 4], [0, 4]]
 
@@ -97,7 +98,7 @@ def test_the_aspect_is_that_of_the_second_moments():
 
 def test_measures_stay_in_their_ranges(population):
     plans, grown, *_, forms = population
-    assert set(forms) == set(growth.FORMS)
+    assert set(forms) == set(FORMS)
     for name in ("form_symmetry", "form_aspect"):
         assert forms[name].min() >= 0
         assert forms[name].max() <= 1 + 1e-6
