@@ -24,6 +24,7 @@ from .folding import build_folding
 from .plugins import measures_of, plugin_versions
 from .refinement import build_refinement
 from .scene import build_encoding, build_task
+from .screening import build_screening, build_screening_programs
 from .tables import build_gaits, build_scaling
 
 SMALL = 2**16
@@ -66,6 +67,7 @@ def build_evolution(
         tell=compiled(lambda states, outcome: search.emitters.tell(emitters, states, outcome)),
         forget=jitted(search.reevaluation.forget),
         lessons=build_lessons(chosen, emitters),
+        screen=build_screening_programs(chosen, plan, jitted),
     )
     return Evolution(plan, programs, build_repeats(chosen, plan))
 
@@ -125,7 +127,7 @@ def build_plan(chosen: spec.Evolution) -> Plan:
     scene = chosen.scene
     encoding = build_encoding(scene, room_of(chosen))
     fixed = len(chosen.control.inputs), len(chosen.control.outputs)
-    return Plan(
+    plan = Plan(
         spec=json.dumps(chosen.model_dump(mode="json"), sort_keys=True),
         identity_template=identity_template(scene),
         seed=chosen.seed,
@@ -145,6 +147,7 @@ def build_plan(chosen: spec.Evolution) -> Plan:
         measures=measures_of(scene),
         plugins=plugin_versions(scene),
     )
+    return replace(plan, screening=build_screening(chosen, plan))
 
 
 def with_initial(

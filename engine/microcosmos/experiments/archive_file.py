@@ -23,10 +23,12 @@ from .state import (
     CURVES,
     ENDS,
     OUTCOMES,
+    PREDICTIONS,
     Infeasible,
     InitialCreatures,
     Lineage,
     Plan,
+    Screened,
     State,
     prolonged,
     start,
@@ -74,6 +76,10 @@ def save(plan: Plan, state: State) -> bytes:
         "infeasible": vars(state.failures) | {"genotypes": columns(state.failures.genotypes)},
         "loop": loop,
     }
+    if state.screened is not None:
+        pairs = zip(PREDICTIONS, state.screened.predictions.T, strict=True)
+        tree["screening"] = dict(pairs)
+        loop["model"] = vars(state.screened.model)
     if isinstance(state.cells, search.Voronoi):
         tree["archive"]["centroids"] = state.cells.centroids
     if state.initial is not None:
@@ -122,6 +128,10 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
             initial["creature"], from_columns(state.elites.genotypes, initial["genomes"])
         ),
     )
+    if "model" in loop:
+        predictions = np.stack([tree["screening"][name] for name in PREDICTIONS], 1)
+        model = search.screening.Model(**loop["model"])
+        restored = replace(restored, screened=Screened(model, predictions))
     if "centroids" in archive:  # Another machine may have found slightly other ones.
         restored = replace(restored, cells=search.voronoi(plan.axes, archive["centroids"]))
     return prolonged(restored) if restored.generation < plan.generations else restored

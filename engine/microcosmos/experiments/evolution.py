@@ -20,7 +20,7 @@ from ..archive.variety import variety
 from ..genomes import Genotype
 from ..search.emitters.population import Population
 from ..search.emitters.tensorneat import TensorNeatState
-from . import archive_file, lineage, reevaluation
+from . import archive_file, lineage, reevaluation, screening
 from .offspring import Offspring, Programs, next_offspring
 from .state import CURVES, ENDS, MAX_INFEASIBLE, Infeasible, Plan, State, start
 
@@ -59,8 +59,9 @@ class Evolution:
         if self.plan.feasible:
             evaluation = search.judged(evaluation)
         seconds = (time.monotonic() - offspring.began) * jax.local_device_count()
-        after, elites, clipped = self._inserted(state, offspring, evaluation)
+        after, elites, clipped, cells = self._inserted(state, offspring, evaluation)
         after = replace(after, device_seconds=state.device_seconds + seconds)
+        after = self._learned(state, after, genotypes, evaluation, cells)
         after = replace(after, ended=_ended(self.plan, after))
         corrected = (np.nan, np.nan, np.nan)
         if self.repeats and reevaluation.due(self.plan, after):
@@ -74,8 +75,9 @@ class Evolution:
 
     def _inserted(
         self, state: State, offspring: Offspring, evaluation: search.Evaluation
-    ) -> tuple[State, tuple[Elite, ...], int]:
-        """Return the state with the offspring recorded, new elites, and the number clipped."""
+    ) -> tuple[State, tuple[Elite, ...], int, np.ndarray]:
+        """Return the state with the offspring recorded, new elites, the number clipped, and
+        cells."""
         programs, children = self.programs, offspring.children
         candidates = search.candidates(
             state.generation + 1,
@@ -107,7 +109,22 @@ class Evolution:
             outcomes=np.concatenate([state.outcomes, self._outcomes(inserted)[None]]),
             failures=_failures(state, children.genotypes, np.asarray(evaluation.status)),
         )
-        return after, new, clipped
+        return after, new, clipped, np.asarray(inserted.cell)
+
+    def _learned(
+        self,
+        before: State,
+        after: State,
+        genotypes: Genotype,
+        evaluation: search.Evaluation,
+        cells: np.ndarray,
+    ) -> State:
+        """Return the state after its model has learned the evaluations."""
+        given = self.programs.screen
+        if given is None:
+            return after
+        learned = screening.learn(self.plan, given, before, genotypes, evaluation, cells)
+        return replace(after, screened=learned)
 
     def creature(self, state: State, cell: int) -> dict[str, Any]:
         """Return the creature file of a cell's elite."""
@@ -197,6 +214,8 @@ def _summary(plan: Plan, state: State, seconds: float, status: np.ndarray) -> di
     named = list(zip(search.STATUSES, counts, strict=True))[1:]
     found |= {f"infeasible: {reason}": count for reason, count in named if count}
     found |= _species(state)
+    if state.screened is not None:
+        found |= screening.summary(state.screened)
     if state.ended or state.generation >= plan.generations:
         found |= _variety(state)
     if state.ended:

@@ -17,6 +17,7 @@ import numpy as np
 from .. import neat, search
 from ..genomes import Genotype
 from ..search.emitters.population import Population
+from . import screening
 from .state import InitialCreatures, Plan, State
 
 
@@ -72,6 +73,7 @@ class Programs:
     forget: Callable[..., search.reevaluation.Repeats]
     lessons: tuple[Lessons | None, ...]
     """Lessons of each emitter whose children learn before evaluation."""
+    screen: screening.Programs | None = None
 
 
 @dataclass(frozen=True)
@@ -103,6 +105,8 @@ def next_offspring(
     """Return the next generation's children."""
     first, initial = state.generation * plan.batch, state.initial
     if initial is None or first >= len(initial.creature):
+        if programs.screen and state.screened and state.screened.model.ready:
+            return _screened(plan, programs, programs.screen, state, stop)
         return _emitted(plan, programs, state, state.elites, state.creatures, stop)
     found, names = _initial_archive(plan, state, initial)
     offspring = _emitted(plan, programs, state, found, names, stop)
@@ -128,6 +132,22 @@ def _emitted(
         programs.lessons, slots, children, emitters, block=plan.block, stop=stop
     )
     return Offspring(children, emitters, counters, results, began, names, from_archive=True)
+
+
+def _screened(
+    plan: Plan,
+    programs: Programs,
+    given: screening.Programs,
+    state: State,
+    stop: Callable[[], bool],
+) -> Offspring:
+    began = time.monotonic()
+    pool, counters = screening.candidates(plan, given, programs.insert, state, stop)
+    children, counters = screening.chosen(plan, given, state, pool, counters)
+    results, names = LessonResults(), state.creatures
+    return Offspring(
+        children, state.emitters, counters, results, began, names, from_archive=True
+    )
 
 
 def _initial_archive(

@@ -34,6 +34,11 @@ N_CORRECTED = 3
 OUTCOMES = ("children", "inserted", "improved")
 """Counts of an emitter's children: all, those in new cells, those that replaced an elite."""
 
+PREDICTIONS = ("fitness_error", "cell_hits", "feasible")
+"""Figures of a generation's predictions: root mean square error of the fitness of feasible
+creatures, share of creatures in the predicted cell, and mean predicted probability of being
+feasible; NaN before the first prediction."""
+
 ENDS = ("", "evaluations", "fitness", "device_hours")
 """Reasons for an end before the last generation; the first stands for none."""
 
@@ -64,6 +69,16 @@ class Reevaluation:
     """Size of the world, in cells."""
 
 
+@dataclass(frozen=True)
+class Screening:
+    """Rounds of candidates, and how many are predicted; see `spec.Screening`."""
+
+    rounds: int
+    candidates: int
+    unscreened: float
+    regression: search.screening.Regression
+
+
 class InitialCreatures(eqx.Module):
     """Initial creatures, in the order of their names."""
 
@@ -92,6 +107,7 @@ class Plan:
     device: str
     limits: Limits = Limits()
     reevaluation: Reevaluation | None = None
+    screening: Screening | None = None
     feasible: bool = False
     """True if a creature at a limit, too fast or pushing itself is no elite."""
     force_free: bool = True
@@ -151,6 +167,19 @@ class Infeasible(eqx.Module):
     genotypes: Genotype
 
 
+class Screened(eqx.Module):
+    """What screening has learned, and how well it predicted."""
+
+    model: search.screening.Model
+    predictions: Float[np.ndarray, "generation prediction"]
+    """Columns of `PREDICTIONS`."""
+
+
+def start_screening(screening: Screening) -> Screened:
+    """Return the model before the first generation."""
+    return Screened(screening.regression.init(), np.zeros((0, len(PREDICTIONS))))
+
+
 class State(eqx.Module):
     """The input of the next generation, and the record of those before."""
 
@@ -189,6 +218,8 @@ class State(eqx.Module):
     """`repeats` before a reevaluation that happened only because the run ended."""
     initial: InitialCreatures | None = None
     """The plan's; the first generations evaluate them."""
+    screened: Screened | None = None
+    """None without screening."""
 
 
 def prolonged(state: State) -> State:
@@ -238,4 +269,5 @@ def start(plan: Plan) -> State:
         poses={},
         devices=(plan.device,),
         initial=plan.initial,
+        screened=plan.screening and start_screening(plan.screening),
     )

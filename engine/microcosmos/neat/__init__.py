@@ -5,7 +5,7 @@ from .distance import Coefficients
 from .generation import breed, first_species, next_generation
 from .graphs import crossover, distance, mutate
 from .mutation import Novelty, no_novelty
-from .numbering import Counters, first_counters, number
+from .numbering import Counters, compacted, first_counters, number
 from .plans import PlanRates
 from .rates import Rates
 from .settings import PRESETS, Settings

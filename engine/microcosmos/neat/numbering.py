@@ -1,11 +1,13 @@
 """Numbering of new genes: equal mutations in a generation get equal numbers."""
 
 from dataclasses import replace
+from typing import Any
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Int
+import numpy as np
+from jaxtyping import Array, Bool, Int
 
 from ..bodies.growth import FIRST_LIMBS, Plan
 from ..genomes import CPPN, BodyGraph, Graph
@@ -78,6 +80,35 @@ def number_network(
         innovation=counters.innovation + many_added + 2 * many_split,
         node=counters.node + many_split,
     )
+
+
+def compacted(children: Graph, before: Counters) -> tuple[Graph, Counters]:
+    """Return some of a batch without gaps in the numbers from `before` on, in their order.
+
+    Takes and returns NumPy arrays; raises the counters by as many numbers as are in use.
+    """
+    network: Any = children.network if isinstance(children, BodyGraph) else children
+    innovation, one = _dense(network.innovation, network.connection_used, before.innovation)
+    node, two = _dense(network.node_id, network.node_used, before.node)
+    network, three = replace(network, innovation=innovation, node_id=node), before.segment
+    if not isinstance(children, BodyGraph):
+        return network, Counters(one, two, three)
+    segment, three = _dense(children.plan.number, children.plan.used, before.segment)
+    plan = children.plan._replace(number=segment)
+    return BodyGraph(plan, network), Counters(one, two, three)
+
+
+def _dense(
+    numbers: Int[np.ndarray, "child gene"],
+    used: Bool[np.ndarray, "child gene"],
+    first: Int[Array, ""],
+) -> tuple[Int[np.ndarray, "child gene"], Int[Array, ""]]:
+    start = int(first)
+    new = used & (numbers >= start)
+    found = np.unique(numbers[new])
+    dense = start + np.searchsorted(found, numbers)
+    dense = np.where(new, dense, numbers).astype(numbers.dtype)
+    return dense, jnp.asarray(start + len(found), first.dtype)
 
 
 def ranks(

@@ -1,6 +1,6 @@
 """Search: evaluation by blocks, variation, and insertion into an archive."""
 
-from . import cvt, emitters, folding, gradients, reevaluation
+from . import cvt, emitters, folding, gradients, reevaluation, screening
 from .blocks import Stopped, block_program, evaluate_blocks, mapped, never
 from .cells import Axis, Cells, Grid, Voronoi, voronoi
 from .crossing import crossing

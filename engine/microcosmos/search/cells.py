@@ -36,6 +36,14 @@ class Axis(eqx.Module):
             value = jnp.log10(value)
         return (value - low) / (high - low)
 
+    def value(self, place: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
+        """Return the value at a place from 0 to 1, clipped at the ends."""
+        place = jnp.clip(place, 0.0, 1.0)
+        if not self.logarithmic:
+            return self.low + place * (self.high - self.low)
+        low, high = exact.logarithm(self.low), exact.logarithm(self.high)
+        return jnp.exp(low + place * (high - low))
+
     def bin(self, value: Float[Array, "*batch"]) -> Int[Array, "*batch"]:
         """Return numbers of half-open bins; values beyond an end are in the outer bin."""
         return jnp.searchsorted(self.edges, value, side="right").astype(jnp.int32)

@@ -30,5 +30,14 @@ from .quality_diversity import QualityDiversity
 from .refinement import Refinement
 from .scaling import Scaling
 from .scene import Fold, Gait, Scene
-from .search import Archive, Descriptor, Generations, Reevaluation, Search, Stop, Task
+from .search import (
+    Archive,
+    Descriptor,
+    Generations,
+    Reevaluation,
+    Screening,
+    Search,
+    Stop,
+    Task,
+)
 from .world import Energy, Steric, World

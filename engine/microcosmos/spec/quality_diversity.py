@@ -26,6 +26,25 @@ class QualityDiversity(Evolution[Literal["quality-diversity"], Search]):
                 refuse_flat_axes(self.archive, emitter.operator)
         return self
 
+    @model_validator(mode="after")
+    def check_screening(self) -> Self:
+        """Raise `ValueError` where rest shapes do not repeat each stroke whatever the flow."""
+        control = self.control
+        if self.search.screening is None:
+            return self
+        if control.timer != "sine-cosine":
+            raise ValueError(
+                "`control.timer` must be 'sine-cosine' with `search.screening`, which predicts "
+                f"from one stroke, got {control.timer!r}"
+            )
+        for name in ("sense_energy", "recurrent"):
+            if getattr(control, name, False):
+                raise ValueError(
+                    f"`control.{name}` must be false with `search.screening`, which predicts "
+                    "from one stroke, got true"
+                )
+        return self
+
     @property
     def emitters(self) -> tuple[Emitter, ...]:
         return self.search.emitters

@@ -11,7 +11,7 @@ from . import measures
 from .base import Digest, Part, field, sourced
 from .emitters import Emitter, NeatEmitter, slots
 from .plugins import OR_PLUGIN, MaybePlugin, PluginVersion, complete_plugin, completed
-from .sources import CVT, MAP_ELITES, OURS, PAPER, REEVALUATION
+from .sources import CVT, MAP_ELITES, OURS, PAPER, REEVALUATION, SCREENING
 
 Fitness = Literal[
     "speed",
@@ -188,6 +188,26 @@ class Reevaluation(Part):
     """Move the packets of energy to random places."""
 
 
+class Screening(Part):
+    """Prediction of many offspring, of which the most promising are simulated.
+
+    A stroke in resistive force theory describes each one. A model that learns from the run's
+    own simulations predicts fitness, cell and whether it is feasible.
+    """
+
+    model_config = sourced(SCREENING)
+
+    rounds: int = field(4, ge=1, le=100, unit="rounds")
+    """Rounds of candidates; those of a later round descend also from the best predicted."""
+    candidates: int = field(40, ge=1, le=1000, unit="candidates")
+    """Candidates in a round for each offspring that is simulated."""
+    unscreened: float = field(0.1, ge=0.0, le=1.0)
+    """Share of the offspring that is simulated whatever the prediction."""
+
+
+SCREENED = ("random", "neat", "iso+line", "gaussian")
+"""Operators whose offspring can be screened: they learn nothing from the outcome."""
+
 MAX_INITIAL = 4096
 """Most initial creatures of a search."""
 
@@ -230,6 +250,8 @@ class Search(Generations):
         NeatEmitter(),
     )
     """Sources of offspring."""
+    screening: Screening | None = None
+    """Prediction of offspring before they are simulated; empty: none."""
 
     @property
     def slots(self) -> tuple[int, ...]:
@@ -243,5 +265,16 @@ class Search(Generations):
             raise ValueError(
                 f"`batch` must be large enough for each of the `emitters`, got {self.batch}, "
                 f"which leaves none for {idle!r}"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def refuse_learners(self) -> Self:
+        learners = [one.operator for one in self.emitters if one.operator not in SCREENED]
+        if self.screening and learners:
+            allowed = ", ".join(SCREENED)
+            raise ValueError(
+                f"`emitters` must be among {allowed} with `screening`, got {learners[0]!r}, "
+                "which learns from all of its offspring"
             )
         return self

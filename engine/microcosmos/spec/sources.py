@@ -28,3 +28,4 @@ DELTAS = (
 )
 ADAM = "Kingma and Ba, ICLR 2015, algorithm 1"
 DIGITS = "Alpaydin and Kaynak, UCI (1998), doi:10.24432/C50P49"
+SCREENING = "Gaier, Asteroth and Mouret, Evol. Comput. 26, 381 (2018)"

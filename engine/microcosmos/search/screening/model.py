@@ -1,0 +1,170 @@
+"""A model that learns from a run's own evaluations: ridge regression on random features.
+
+The features are cosines of random directions, which approximate a Gaussian kernel (Rahimi and
+Recht, NeurIPS 2007), beside the inputs themselves. Recursive least squares (Plackett,
+Biometrika 37, 149 (1950)) takes one evaluation after another, so that the size of the model and
+the time of an update do not grow with a run. Learning is in double precision, element by
+element; bits do not depend on the processor.
+"""
+
+from dataclasses import dataclass, replace
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float, Int, PRNGKeyArray
+
+from ...portable import cosine, summed
+
+COSINES = 256
+"""Random features."""
+WIDTH = 1.5
+"""Width of the kernel, in standard deviations of an input times the root of their number."""
+GAIN = 5.0
+"""Size of all random features together, beside inputs of size 1."""
+RIDGE = 1.0
+"""Weight of the penalty on squared weights, in evaluations."""
+READY = 128
+"""Evaluations before predictions are used."""
+CLIP = 5.0
+"""Largest standardised input."""
+NEWEST = 0.2
+"""Weight of a generation's squared errors in their running mean."""
+
+Rows = Float[Array, "row input"]
+Outputs = Float[Array, "row output"]
+
+
+class Model(eqx.Module):
+    """What has been learned; arrays of NumPy in double precision."""
+
+    count: Int[np.ndarray, ""]
+    """Evaluations learned."""
+    first_inputs: Float[np.ndarray, "row input"]
+    first_outputs: Float[np.ndarray, "row output"]
+    """Evaluations that wait until there are enough to tell scales."""
+    middle: Float[np.ndarray, "input"]
+    scale: Float[np.ndarray, "input"]
+    """Mean and standard deviation of inputs in the first evaluations."""
+    level: Float[np.ndarray, "output"]
+    spread: Float[np.ndarray, "output"]
+    """The same of outputs."""
+    inverse: Float[np.ndarray, "feature feature"]
+    """Inverse of Σ φ φᵀ + λ I over evaluations with features φ."""
+    weights: Float[np.ndarray, "feature output"]
+    errors: Float[np.ndarray, "output"]
+    """Running mean of squared errors of predictions."""
+
+    @property
+    def ready(self) -> bool:
+        """Whether predictions are worth using."""
+        return bool(self.count >= READY)
+
+
+@dataclass(frozen=True)
+class Regression:
+    """A model's random features, which follow from a key."""
+
+    inputs: int
+    outputs: int
+    key: PRNGKeyArray
+
+    def init(self) -> Model:
+        """Return the model before any evaluation."""
+        features = COSINES + 1 + self.inputs
+        return Model(
+            count=np.zeros((), np.int64),
+            first_inputs=np.zeros((0, self.inputs)),
+            first_outputs=np.zeros((0, self.outputs)),
+            middle=np.zeros(self.inputs),
+            scale=np.ones(self.inputs),
+            level=np.zeros(self.outputs),
+            spread=np.ones(self.outputs),
+            inverse=np.eye(features) / RIDGE,
+            weights=np.zeros((features, self.outputs)),
+            errors=np.zeros(self.outputs),
+        )
+
+    def features(self, rows: Rows, model: Model) -> Float[Array, "row feature"]:
+        """Return the features of inputs: cosines, 1, and the standardised inputs."""
+        direction_key, phase_key = jax.random.split(self.key)
+        directions = jax.random.normal(direction_key, (self.inputs, COSINES))
+        directions = directions / (WIDTH * np.float32(np.sqrt(self.inputs)))
+        phases = jax.random.uniform(phase_key, (COSINES,), maxval=2 * np.pi)
+        middle, scale = (jnp.asarray(x, jnp.float32) for x in (model.middle, model.scale))
+        standard = jnp.clip((rows - middle[None]) / scale[None], -CLIP, CLIP)
+        waves = cosine(summed(standard, directions) + phases[None])
+        waves = GAIN * np.float32(np.sqrt(2 / COSINES)) * waves
+        return jnp.concatenate([waves, jnp.ones_like(standard[:, :1]), standard], 1)
+
+    def predict(self, rows: Rows, model: Model) -> Outputs:
+        """Return predicted outputs."""
+        level, spread, weights = (
+            jnp.asarray(x, jnp.float32) for x in (model.level, model.spread, model.weights)
+        )
+        return level[None] + spread[None] * summed(self.features(rows, model), weights)
+
+
+def learned(
+    regression: Regression, model: Model, inputs: np.ndarray, outputs: np.ndarray
+) -> Model:
+    """Return the model after evaluations (row, input) and (row, output), in their order.
+
+    The first `READY` of them set the scales of inputs and outputs.
+    """
+    if not model.ready:
+        inputs = np.concatenate([model.first_inputs, inputs])
+        outputs = np.concatenate([model.first_outputs, outputs])
+        if len(inputs) < READY:
+            return replace(model, first_inputs=inputs, first_outputs=outputs)
+        model = _scaled(model, inputs, outputs)
+    features = np.asarray(regression.features(jnp.asarray(inputs, jnp.float32), model))
+    return _updated(model, features.astype(float), outputs.astype(float))
+
+
+def _scaled(model: Model, inputs: np.ndarray, outputs: np.ndarray) -> Model:
+    (middle, scale), (level, spread) = _scales(inputs), _scales(outputs)
+    return replace(
+        model,
+        first_inputs=model.first_inputs[:0],
+        first_outputs=model.first_outputs[:0],
+        middle=middle,
+        scale=scale,
+        level=level,
+        spread=spread,
+        errors=spread * spread,
+    )
+
+
+def _updated(model: Model, features: np.ndarray, outputs: np.ndarray) -> Model:
+    inverse, weights = model.inverse.copy(), model.weights.copy()
+    standard = (outputs - model.level) / model.spread
+    for phi, y in zip(features, standard, strict=True):
+        # Sums over the first axis add row after row on every processor.
+        gain = np.sum(inverse * phi[:, None], 0)
+        size = 1 + np.sum((gain * phi)[:, None], 0)
+        inverse -= (gain / size)[:, None] * gain[None]
+        weights += (gain / size)[:, None] * (y - np.sum(phi[:, None] * weights, 0))[None]
+    count = np.asarray(model.count + len(features))
+    return replace(model, count=count, inverse=inverse, weights=weights)
+
+
+def with_errors(model: Model, predicted: np.ndarray, outputs: np.ndarray) -> Model:
+    """Return the model with the errors of a generation's predictions.
+
+    An error counts as at most three times their root mean square, so that a single creature
+    does not make all others look uncertain.
+    """
+    if not len(predicted):
+        return model
+    squares = (predicted.astype(float) - outputs) ** 2
+    new = np.sum(np.minimum(squares, 9 * model.errors), 0) / len(squares)
+    return replace(model, errors=(1 - NEWEST) * model.errors + NEWEST * new)
+
+
+def _scales(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return means and standard deviations, at least a millionth."""
+    rows = rows.astype(float)
+    mean = np.sum(rows, 0) / len(rows)
+    return mean, np.sqrt(np.sum((rows - mean) ** 2, 0) / len(rows)) + 1e-6

@@ -1,0 +1,79 @@
+"""The model: its recursion beside the closed form, what it learns, and its errors."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from microcosmos.search.screening import READY, Regression, learned, with_errors
+from microcosmos.search.screening.model import NEWEST, RIDGE
+
+INPUTS, OUTPUTS = 6, 2
+
+
+@pytest.fixture
+def regression():
+    return Regression(INPUTS, OUTPUTS, jax.random.key(3))
+
+
+def samples(count, seed=0):
+    rng = np.random.default_rng(seed)
+    inputs = rng.normal(size=(count, INPUTS)).astype(np.float32) * 3 + 1
+    wave = np.sin(inputs[:, 0]) + 0.5 * inputs[:, 1]
+    return inputs, np.stack([wave, np.abs(inputs[:, 2])], 1)
+
+
+def test_recursive_least_squares_is_ridge_regression(regression):
+    inputs, outputs = samples(READY + 40)
+    model = learned(regression, regression.init(), inputs[:READY], outputs[:READY])
+    for row in range(READY, READY + 40, 8):
+        rows = slice(row, row + 8)
+        model = learned(regression, model, inputs[rows], outputs[rows])
+    phi = np.asarray(regression.features(jnp.asarray(inputs), model), float)
+    y = (outputs - model.level) / model.spread
+    closed = np.linalg.solve(phi.T @ phi + RIDGE * np.eye(phi.shape[1]), phi.T @ y)
+    np.testing.assert_allclose(model.weights, closed, atol=1e-6)
+    assert model.count == READY + 40
+
+
+def test_the_first_evaluations_set_the_scales_however_they_arrive(regression):
+    inputs, outputs = samples(READY)
+    at_once = learned(regression, regression.init(), inputs, outputs)
+    model = regression.init()
+    for rows in np.array_split(np.arange(READY), 7):
+        assert not model.ready
+        model = learned(regression, model, inputs[rows], outputs[rows])
+    assert model.ready
+    assert len(model.first_inputs) == 0
+    np.testing.assert_allclose(model.middle, inputs.mean(0), rtol=1e-6)
+    np.testing.assert_allclose(model.scale, inputs.std(0), rtol=1e-5)
+    jax.tree.map(np.testing.assert_array_equal, model, at_once)
+
+
+def test_a_smooth_function_is_learned(regression):
+    model = learned(regression, regression.init(), *samples(2000))
+    inputs, outputs = samples(500, seed=1)
+    found = np.asarray(regression.predict(jnp.asarray(inputs), model))
+    unexplained = np.mean((found - outputs) ** 2, 0) / outputs.var(0)
+    assert np.all(unexplained < 0.25)
+
+
+def test_inputs_that_never_vary_change_nothing(regression):
+    inputs, outputs = samples(READY)
+    inputs[:, 3] = 7.0
+    model = learned(regression, regression.init(), inputs, outputs)
+    assert np.all(np.isfinite(np.asarray(regression.predict(jnp.asarray(inputs), model))))
+
+
+def test_errors_are_a_running_mean_in_which_one_creature_counts_little(regression):
+    inputs, outputs = samples(READY)
+    model = learned(regression, regression.init(), inputs, outputs)
+    np.testing.assert_allclose(model.errors, outputs.var(0), rtol=1e-3)
+    guesses = outputs[:10] + 0.1
+    after = with_errors(model, guesses, outputs[:10])
+    expected = (1 - NEWEST) * model.errors + NEWEST * 0.01
+    np.testing.assert_allclose(after.errors, expected, rtol=1e-6)
+    guesses[0] = 1e9
+    wild = with_errors(model, guesses, outputs[:10])
+    assert np.all(wild.errors < after.errors + NEWEST * 9 * model.errors / 10 + 1e-9)
+    assert with_errors(model, guesses[:0], outputs[:0]) is model
