@@ -184,5 +184,5 @@ def test_strategies_of_cma_mae_have_equal_parts_of_the_offspring():
     whole = {"experiment": "quality-diversity", "control": {"encoding": "direct"}}
     spec = parse(whole | {"search": {"batch": 24, "emitters": emitters}})
     assert spec.emitters[0].emitters == 3
-    with pytest.raises(ValueError, match="must divide its 16 offspring .* evenly, got 3"):
+    with pytest.raises(ValueError, match=r"must divide its 16 offspring .* evenly, got 3"):
         parse(whole | {"search": {"batch": 32, "emitters": emitters}})
