@@ -133,7 +133,7 @@ class Search:
 
         The function takes one decoded genotype and returns its fitness and its measures.
         It is faster than `ask` and `tell`, but rounds differently. How many generations a call
-        takes does not matter.
+        takes does not matter. Each new function is compiled, so keep it between calls.
         """
         if function not in self._runs:
             self._runs[function] = jax.jit(partial(self._generations, function))
