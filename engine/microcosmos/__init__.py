@@ -31,6 +31,7 @@ _HOME = {
     "pose_streams": "archive.export",
     "to_pandas": "archive.export",
     "to_ribs": "archive.export",
+    "ribs_function": "build",
     "scoring_function": "build",
     "to_repertoire": "build",
 }

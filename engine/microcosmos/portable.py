@@ -26,20 +26,16 @@ def product(
     return jnp.sum(one[:, :, None] * other[None], 1)
 
 
-def summed(
+def long_product(
     one: Float[Array, "row item"], other: Float[Array, "item column"]
 ) -> Float[Array, "row column"]:
-    """Return the product of two matrices, adding one item to all results after another.
+    """Return the product of two matrices, one item after another: fast where there are many."""
 
-    For many rows it is fifty times as fast as `product` on a CPU.
-    """
+    def add(total, pair):
+        return total + pair[0][:, None] * pair[1][None], None
 
-    def step(total, item):
-        row, column = item
-        return total + row[:, None] * column[None], None
-
-    start = jnp.zeros((one.shape[0], other.shape[1]), one.dtype)
-    return jax.lax.scan(step, start, (one.T, other))[0]
+    none = jnp.zeros((one.shape[0], other.shape[1]), one.dtype)
+    return jax.lax.scan(add, none, (one.T, other))[0]
 
 
 def root(x: Float[Array, "*shape"]) -> Float[Array, "*shape"]:

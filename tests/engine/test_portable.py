@@ -22,7 +22,8 @@ y = jnp.roll(x, 17, 1)
 programs = (
     portable.sine, portable.cosine, jnp.exp, jnp.tanh, jax.nn.sigmoid,
     lambda x: portable.arctangent(x, y), lambda x: portable.power(0.3, jnp.abs(x)),
-    lambda x: portable.product(x.T, y), lambda x: 1 / portable.root(jnp.abs(x)),
+    lambda x: portable.product(x.T, y), lambda x: portable.long_product(x.T, y),
+    lambda x: 1 / portable.root(jnp.abs(x)),
     lambda x: jnp.log(jnp.abs(x)), lambda x: jax.lax.erf_inv(jnp.tanh(x)),
     lambda x: jnp.sum(x * y, 1) + jnp.std(x, 1), lambda x: jnp.cumsum(x * y, 1),
 )

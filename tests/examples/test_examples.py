@@ -3,6 +3,7 @@
 import importlib.util
 import json
 import os
+import re
 import subprocess
 import sys
 from hashlib import sha256
@@ -14,6 +15,7 @@ import nbformat
 import numpy as np
 import pytest
 
+import microcosmos
 from microcosmos.archive.creature import parse
 from microcosmos.audit.reproducibility import check
 
@@ -69,6 +71,18 @@ def test_pyribs_draws_our_archive(tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("emitter", ["cma-mae", "iso+line"])
+def test_their_schedulers_evolve_our_creatures(emitter):
+    module = example("ribs_scheduler", "ribs")
+    spec = microcosmos.parse(module.SPEC | TINY)
+    fittest = module.main(emitter, generations=3, batch=4, **TINY)
+    assert len(fittest) > 0
+    evaluate = microcosmos.ribs_function(spec)
+    solutions, objective = fittest.data(["solution", "objective"], return_type="tuple")
+    np.testing.assert_array_equal(evaluate(solutions)[0], objective)
+
+
+@pytest.mark.filterwarnings("ignore")
 @pytest.mark.long
 def test_a_stiffness_is_recovered_within_a_hundredth_from_how_a_filament_straightens():
     module = example("stiffness")
@@ -110,6 +124,20 @@ def test_a_plugin_task_evolves_and_its_file_names_the_version(tmp_path):
     assert creature["identity"]["task"]["plugin"]["source"] == source
     assert creature["identity"]["body"]["builder"] == "graph"
     assert check(parse(creature)).exact
+
+
+def test_the_searches_of_the_library_page_run_and_find_what_they_print(capsys):
+    page = (EXAMPLES.parent / "docs" / "library.md").read_text()
+    part = page.partition("## Search of your own")[2].partition("\n## ")[0]
+    vectors, networks = re.findall(r"```python\n(.*?)```", part, re.DOTALL)
+    exec(vectors, {})
+    score, coverage, best = map(float, capsys.readouterr().out.split())
+    assert score > 90_000
+    assert coverage > 0.9
+    assert 290 < best <= 300
+    exec(networks, {})
+    fitness = float(capsys.readouterr().out.split()[0])
+    assert 3.5 < fitness <= 4
 
 
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "examples" / "notebooks").glob("*.ipynb"))

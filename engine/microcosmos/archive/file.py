@@ -35,16 +35,17 @@ def dump(tree: Mapping[str, Any], attributes: Mapping[str, str]) -> bytes:
         return file.id.get_file_image()
 
 
-def load(data: bytes) -> tuple[Tree, Tree]:
-    """Return the arrays and attributes of our file. Raises `ValueError` for any other."""
+def load(data: bytes, wanted: str = FORMAT) -> tuple[Tree, Tree]:
+    """Return the arrays and attributes of our file. Raises `ValueError` for any other format
+    than the wanted one."""
     try:
         with h5py.File(BytesIO(data), "r") as file:
             attributes = Tree({n: bytes(x).decode() for n, x in file.attrs.items()})
             tree = _read(file)
     except OSError as error:
         raise ValueError(f"an archive file must be HDF5: {error}") from error
-    if attributes.get("format") != FORMAT:
-        raise ValueError(f"`format` must be {FORMAT}, got {attributes.get('format')}")
+    if attributes.get("format") != wanted:
+        raise ValueError(f"`format` must be {wanted}, got {attributes.get('format')}")
     return tree, attributes
 
 

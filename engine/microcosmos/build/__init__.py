@@ -6,7 +6,7 @@ from .emitters import build_emitters, build_rates
 from .encodings import build_controls, build_encoding
 from .experiments import build, build_plan
 from .folding import build_descent, build_pictures
-from .peers import scoring_function, to_repertoire
+from .peers import ribs_function, scoring_function, to_repertoire
 from .plugins import build_measures, measures_of
 from .scene import (
     build_energy,

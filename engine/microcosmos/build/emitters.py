@@ -42,6 +42,7 @@ def _build(
                 step=emitter.step,
                 learning_rate=emitter.learning_rate,
                 threshold=emitter.threshold,
+                emitters=emitter.emitters,
             )
         case specs.CmaMeEmitter():
             cells = build_cells(chosen.archive, measures_of(chosen.scene))

@@ -1,4 +1,4 @@
-"""Scoring functions and repertoires of QDax from specs and archives."""
+"""Specs and archives for QDax and pyribs."""
 
 import json
 import os
@@ -6,14 +6,18 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import jax
+import numpy as np
+
 from .. import search, spec
 from ..archive.file import load
-from ..genomes import Genotype
-from ..search import qdax
+from ..genomes import Genotype, Vector
+from ..search import qdax, ribs
 from .cells import build_cells
+from .creatures import build_block
 from .experiments import build_evolution, room_of
 from .plugins import measures_of
-from .scene import build_task
+from .scene import build_encoding, build_task
 
 
 def scoring_function(chosen: spec.Evolution, *, slopes: bool = False) -> Callable:
@@ -33,6 +37,30 @@ def scoring_function(chosen: spec.Evolution, *, slopes: bool = False) -> Callabl
 
     cells = build_cells(chosen.archive, measures_of(chosen.scene))
     return qdax.scoring_function(evaluate, cells, derive if slopes else None)
+
+
+def ribs_function(
+    chosen: spec.Evolution, *, worst: float = -1e6
+) -> Callable[[Any], tuple[np.ndarray, np.ndarray]]:
+    """Return a function of solutions for pyribs' schedulers; see `search.ribs.ribs_function`.
+
+    Creatures are evaluated in blocks as in our own runs, so fitness has the same bits. With
+    `search.feasible` infeasible creatures have the objective `worst`. Raises `ValueError` if
+    the spec's genomes are networks.
+    """
+    if build_encoding(chosen.scene, room_of(chosen)).room is not None:
+        raise ValueError(
+            "`control.encoding` must be of numbers for pyribs, 'direct' or 'weights', got "
+            f"{chosen.control.encoding!r}"
+        )
+    program, block = build_block(chosen.scene, room_of(chosen)), chosen.search.block
+
+    def evaluate(genotypes: Vector) -> search.Evaluation:
+        found = search.evaluate_blocks(program, jax.device_get(genotypes), block=block)
+        return search.judged(found) if chosen.search.feasible else found
+
+    cells = build_cells(chosen.archive, measures_of(chosen.scene))
+    return ribs.ribs_function(evaluate, cells, worst)
 
 
 def to_repertoire(archive: bytes | str | os.PathLike) -> Any:

@@ -12,11 +12,11 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, PyTree
 
 from .. import neat, search
 from ..archive import file, poses
 from ..genomes import columns, from_columns
+from ..search.leaves import filled, leaves
 from ..version import VERSION
 from .resume_check import devices_of
 from .state import (
@@ -170,20 +170,3 @@ def _placed(module: Module, cells: np.ndarray, columns: dict[str, Any]) -> Modul
         return jnp.asarray(after)
 
     return replace(module, **{n: placed(x, columns[n]) for n, x in vars(module).items()})
-
-
-def leaves(tree: PyTree[Array]) -> dict[str, np.ndarray]:
-    """Return the arrays of a tree by their paths."""
-    found = jax.tree_util.tree_leaves_with_path(tree)
-    return {_path_of(path): np.asarray(leaf) for path, leaf in found}
-
-
-def filled(tree: PyTree[Array], arrays: dict[str, np.ndarray]) -> PyTree[Array]:
-    """Return a tree of the same structure with the arrays of `leaves`."""
-    return jax.tree_util.tree_map_with_path(
-        lambda path, old: jnp.asarray(arrays[_path_of(path)], old.dtype), tree
-    )
-
-
-def _path_of(path: tuple) -> str:
-    return jax.tree_util.keystr(path, simple=True, separator=".")

@@ -12,8 +12,8 @@ from .. import naming, search
 from ..archive import file
 from ..archive.report import Report, Row
 from ..genomes import Vector
+from ..search.leaves import filled, leaves
 from . import table_file
-from .archive_file import filled, leaves
 from .lineage import identity
 from .table_file import Table
 

@@ -42,9 +42,6 @@ feasible; NaN before the first prediction."""
 ENDS = ("", "evaluations", "fitness", "device_hours")
 """Reasons for an end before the last generation; the first stands for none."""
 
-BEFORE = 2**32 - 1
-"""Number of the generation before the first, for deriving keys."""
-
 MAX_INFEASIBLE = 256
 """Number of infeasible creatures to keep, the newest."""
 
@@ -233,12 +230,9 @@ def prolonged(state: State) -> State:
 
 def start(plan: Plan) -> State:
     """Return the state before the first generation."""
-    none, names, count = np.zeros(0, np.int32), np.zeros((0, 32), np.uint8), len(plan.emitters)
+    none, names = np.zeros(0, np.int32), np.zeros((0, 32), np.uint8)
     descriptors = np.zeros((0, len(plan.axes)), np.float32)
     no_genotypes = jax.tree.map(lambda x: np.zeros((0, *x.shape), x.dtype), plan.genotype)
-    split = jax.jit(lambda key: tuple(jax.random.split(jax.random.fold_in(key, BEFORE), count)))
-    pairs = zip(plan.emitters, split(plan.key), strict=True)
-    emitters = tuple(emitter.init(key=key) for emitter, key in pairs)
     return State(
         generation=0,
         evaluations=0,
@@ -246,7 +240,7 @@ def start(plan: Plan) -> State:
         cells=plan.cells,
         elites=search.no_elites(plan.cell_count, len(plan.measures), plan.genotype),
         counters=plan.counters,
-        emitters=emitters,
+        emitters=search.emitters.begin(plan.emitters, key=plan.key),
         nearest_ancestors=np.zeros((plan.batch, 2, 32), np.uint8),
         repeats=search.reevaluation.no_repeats(plan.cell_count, len(plan.measures)),
         creatures=np.zeros((plan.cell_count, 32), np.uint8),

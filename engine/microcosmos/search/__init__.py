@@ -1,6 +1,7 @@
 """Search: evaluation by blocks, variation, and insertion into an archive."""
 
 from . import cvt, emitters, folding, gradients, reevaluation, screening
+from .ask_tell import Found, Search
 from .blocks import Stopped, block_program, evaluate_blocks, mapped, never
 from .cells import Axis, Cells, Grid, Voronoi, voronoi
 from .crossing import crossing
@@ -28,6 +29,7 @@ from .insertion import (
 )
 from .measures import MEASURES, Measure, Motion, motion, observe
 from .simulation import drive, shift_energy, simulate, turned
+from .spaces import Networks, Space, Vectors
 from .strokes import STROKE_MEASURES, Conditions, swim
 from .task import Actuator, Goal, Task
 from .window import Poses

@@ -25,7 +25,7 @@ class Axis(eqx.Module):
     low: float = eqx.field(static=True)
     high: float = eqx.field(static=True)
     bins: int = eqx.field(static=True)
-    logarithmic: bool = eqx.field(static=True)
+    logarithmic: bool = eqx.field(static=True, default=False)
 
     def place(self, value: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
         """Map values to 0 to 1 on the axis' own scale, clipped at the ends."""

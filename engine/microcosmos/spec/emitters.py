@@ -66,7 +66,7 @@ class GaussianEmitter(SelectingEmitter):
 
 
 class CmaMaeEmitter(WeightedEmitter):
-    """CMA-MAE: an evolution strategy that improves on thresholds, which follow the archive."""
+    """CMA-MAE: evolution strategies that improve on thresholds, which follow the archive."""
 
     model_config = sourced(CMA_MAE)
 
@@ -77,6 +77,8 @@ class CmaMaeEmitter(WeightedEmitter):
     """Rate at which a cell's threshold follows the fitness found there; 0: CMA-ES."""
     threshold: float = field(0.0, unit="fitness")
     """Threshold of empty cells."""
+    emitters: int = field(1, ge=1, le=64)
+    """Strategies that share the thresholds, each with an equal part of the offspring."""
 
 
 class CmaMeEmitter(WeightedEmitter):
@@ -195,6 +197,16 @@ def refuse_unfit_emitters(emitters: tuple[Emitter, ...], encoding: str) -> None:
             '`search.emitters` must hold nothing but random beside backend "tensorneat", which '
             f"numbers genes itself, got {', '.join(numbering)}"
         )
+
+
+def refuse_uneven(emitters: tuple[Emitter, ...], slots: tuple[int, ...]) -> None:
+    """Raise `ValueError` where the strategies of CMA-MAE cannot have equal parts."""
+    for emitter, count in zip(emitters, slots, strict=True):
+        if isinstance(emitter, CmaMaeEmitter) and count % emitter.emitters:
+            raise ValueError(
+                f"`emitters` of 'cma-mae' must divide its {count} offspring of a generation "
+                f"evenly, got {emitter.emitters}. Change `emitters` or `batch`"
+            )
 
 
 def gradients(emitter: Emitter, slots: int) -> int:

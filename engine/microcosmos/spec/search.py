@@ -9,7 +9,7 @@ from ..naming import WITHOUT_GRADIENT, MeasureName
 from ..plugins.declaration import refuse_empty_axis
 from . import measures
 from .base import Digest, Part, field, sourced
-from .emitters import Emitter, NeatEmitter, slots
+from .emitters import Emitter, NeatEmitter, refuse_uneven, slots
 from .plugins import OR_PLUGIN, MaybePlugin, PluginVersion, complete_plugin, completed
 from .sources import CVT, MAP_ELITES, OURS, PAPER, REEVALUATION, SCREENING
 
@@ -266,6 +266,7 @@ class Search(Generations):
                 f"`batch` must be large enough for each of the `emitters`, got {self.batch}, "
                 f"which leaves none for {idle!r}"
             )
+        refuse_uneven(self.emitters, self.slots)
         return self
 
     @model_validator(mode="after")

@@ -194,7 +194,7 @@ def state_after(outcome_of):
 
     def tell(emitter, fitness, cell, feasible=(True,) * 6, **changes):
         state = emitter.init(key=jax.random.key(0))
-        z = jax.random.normal(jax.random.key(1), (6, 2))
+        z = jax.random.normal(jax.random.key(1), state.z.shape)
         feasible = jnp.asarray(feasible)
         flags = {"feasible": feasible, "entered": feasible, "fresh": feasible}
         place = jnp.where(feasible, jnp.asarray(cell), 4)
@@ -231,8 +231,8 @@ def test_infeasible_children_rank_last_and_move_no_threshold(emitter, state_afte
 def test_a_spent_distribution_begins_anew_at_an_elite(emitter, state_after):
     chosen = emitter()
     state = chosen.init(key=jax.random.key(0))
-    spent = replace(state.distribution, sigma=jnp.float32(1e-30), mean=jnp.full(2, 0.5))
-    assert es.must_restart(spent)
+    spent = replace(state.distribution, sigma=jnp.full(1, 1e-30), mean=jnp.full((1, 2), 0.5))
+    assert jax.vmap(es.must_restart)(spent).all()
     after = state_after(chosen, np.arange(6.0), [0] * 6, z=state.z, distribution=spent)
     assert after.restart
     archive = search.no_elites(4, 1, Vector(jnp.zeros(2)))
@@ -240,6 +240,39 @@ def test_a_spent_distribution_begins_anew_at_an_elite(emitter, state_after):
     archive = replace(archive, occupied=archive.occupied.at[2].set(True), genotypes=elite)
     keys = jax.random.split(jax.random.key(0), 6)
     children, again, _ = chosen.emit(after, archive, keys=keys)
-    np.testing.assert_allclose(again.distribution.mean, [0.7, -0.1], rtol=1e-6)
+    np.testing.assert_allclose(again.distribution.mean, [[0.7, -0.1]], rtol=1e-6)
     assert not again.restart
     assert np.abs(children.genotypes.values).max() <= 1
+
+
+def test_strategies_share_thresholds_and_learn_from_their_own_children_alone(
+    emitter, state_after
+):
+    fitness, cell = [2.0, 3.0, 2.5, 1.5, 1.2, 2.2], [0, 1, 2, 0, 1, 2]
+    both, one = emitter(emitters=2), emitter()
+    found = state_after(both, fitness, cell)
+    np.testing.assert_array_equal(found.thresholds, state_after(one, fitness, cell).thresholds)
+    z = jax.random.normal(jax.random.key(1), (2, 3, 2))
+    for i, order in enumerate(([1, 2, 0], [2, 0, 1])):
+        start = es.start(jnp.zeros(2), 0.2)
+        alone = es.update(start, z[i], jnp.asarray(order), es.strategy(2, 3))
+        for mine, other in zip(
+            jax.tree.leaves(found.distribution), jax.tree.leaves(alone), strict=True
+        ):
+            np.testing.assert_allclose(mine[i], other, rtol=1e-6)
+
+
+def test_strategies_draw_from_their_own_distributions(emitter):
+    chosen = emitter(emitters=3)
+    state = chosen.init(key=jax.random.key(0))
+    mean = jnp.asarray([[0.5, 0.0], [-0.5, 0.0], [0.0, 0.9]])
+    far = replace(state.distribution, mean=mean, sigma=jnp.full(3, 1e-6))
+    state = replace(state, distribution=far, restart=jnp.zeros(3, bool))
+    archive = search.no_elites(4, 1, Vector(jnp.zeros(2)))
+    children, _, _ = chosen.emit(state, archive, keys=jax.random.split(jax.random.key(0), 6))
+    np.testing.assert_allclose(children.genotypes.values, np.repeat(mean, 2, 0), atol=1e-4)
+
+
+def test_slots_that_do_not_divide_among_strategies_are_refused(emitter):
+    with pytest.raises(ValueError, match=r"`slots` must be a multiple of `emitters` \(4\)"):
+        emitter(emitters=4)

@@ -177,3 +177,12 @@ def test_genes_are_counted_part_by_part():
     assert direct.parts(body) == {"rest_length": 9, "bend": 8, "angles": 24, "lengths": 27}
     assert spec.gene_count(direct, body) == 68
     assert spec.gene_count(spec.Control(), body) == 0
+
+
+def test_strategies_of_cma_mae_have_equal_parts_of_the_offspring():
+    emitters = [{"operator": "cma-mae", "emitters": 3}, {"operator": "iso+line"}]
+    whole = {"experiment": "quality-diversity", "control": {"encoding": "direct"}}
+    spec = parse(whole | {"search": {"batch": 24, "emitters": emitters}})
+    assert spec.emitters[0].emitters == 3
+    with pytest.raises(ValueError, match=r"must divide its 16 offspring .* evenly, got 3"):
+        parse(whole | {"search": {"batch": 32, "emitters": emitters}})

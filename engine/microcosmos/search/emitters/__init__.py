@@ -10,6 +10,7 @@ from .emitter import (
     Emitter,
     Learner,
     Outcome,
+    begin,
     emit,
     outcome,
     tell,

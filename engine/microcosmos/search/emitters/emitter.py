@@ -32,6 +32,9 @@ OPERATORS = (
 
 NO_PARENT = -1
 
+BEFORE = 2**32 - 1
+"""Number of the generation before the first, for deriving keys."""
+
 Keys = Key[Array, "slot"]
 
 State = PyTree[Array | np.ndarray]
@@ -128,6 +131,14 @@ class Learner(Emitter, Protocol):
     def learn(self, state: State, children: Children, slopes: Slopes) -> tuple[Children, State]:
         """Return the children and the state after a lesson."""
         ...
+
+
+def begin(emitters: tuple[Emitter, ...], *, key: PRNGKeyArray) -> tuple[State, ...]:
+    """Return the emitters' states before the first generation."""
+    count = len(emitters)
+    split = jax.jit(lambda key: tuple(jax.random.split(jax.random.fold_in(key, BEFORE), count)))
+    pairs = zip(emitters, split(key), strict=True)
+    return tuple(emitter.init(key=own) for emitter, own in pairs)
 
 
 def emit(

@@ -15,19 +15,19 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int, Key
 
 from ...exact import logarithm
-from ...portable import product
+from ...portable import long_product as product
 
 SMALLEST, LARGEST = 1e-10, 1e4
 """Standard deviations beyond which a distribution has converged or diverged."""
 
 
 class Distribution(eqx.Module):
-    """A normal distribution of children."""
+    """A normal distribution of children, or a batch of them."""
 
-    mean: Float[Array, "gene"]
-    sigma: Float[Array, ""]
-    m: Float[Array, "gene gene"]
-    s: Float[Array, "gene"]
+    mean: Float[Array, "*batch gene"]
+    sigma: Float[Array, "*batch"]
+    m: Float[Array, "*batch gene gene"]
+    s: Float[Array, "*batch gene"]
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ def update(
     c_s, c_1, c_w = strategy.c_s, strategy.c_1, strategy.c_w
     z_w = jnp.sum(w[:, None] * best, 0)
     s = (1 - c_s) * distribution.s + sqrt(c_s * (2 - c_s) * strategy.mu_eff) * z_w
-    rank_one = product(product(distribution.m, s[:, None]), s[None])
+    rank_one = product(distribution.m, s[:, None]) * s[None]
     rank_mu = product((w[:, None] * d).T, best)
     m = (1 - (c_1 + c_w) / 2) * distribution.m + c_1 / 2 * rank_one + c_w / 2 * rank_mu
     length = jnp.sqrt(jnp.sum(s * s)) / strategy.expected_length

@@ -1,6 +1,7 @@
 """Variation of vectors: isotropic steps, and steps along the line between elites."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import jax
 import jax.numpy as jnp
@@ -8,7 +9,7 @@ from jaxtyping import Array, Float, Int, PRNGKeyArray
 
 from ...genomes import Vector
 from ..insertion import Elites
-from .elites import Newcomer, children, newcomers, or_newcomers
+from .elites import Newcomer, children, newcomers
 from .emitter import Children, Keys, Stateless
 from .selection import Select, draw
 
@@ -27,10 +28,13 @@ class IsoLine(Stateless):
     select: Select = "uniform"
 
     def emit(self, state: None, archive: Elites, *, keys: Keys) -> tuple[Children, None, None]:
-        values, *cells = jax.vmap(lambda key: self._child(archive, key=key))(keys)
-        parents, name = (cells, "iso+line") if self.line else (cells[:1], "gaussian")
-        varied = children(Vector(values), parents, name)
-        return or_newcomers(archive, varied, newcomers(self.newcomer, keys)), None, None
+        def varied() -> Children:
+            values, *cells = jax.vmap(lambda key: self._child(archive, key=key))(keys)
+            parents, name = (cells, "iso+line") if self.line else (cells[:1], "gaussian")
+            return children(Vector(values), parents, name)
+
+        fresh = partial(newcomers, self.newcomer, keys)
+        return jax.lax.cond(jnp.any(archive.occupied), varied, fresh), None, None
 
     def _child(
         self, archive: Elites, *, key: PRNGKeyArray

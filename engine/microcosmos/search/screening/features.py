@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 from ... import exact
 from ...genomes import Drive, Genotype
 from ...naming import FORMS
-from ...portable import arctangent, cosine, root, sine, summed
+from ...portable import arctangent, cosine, long_product, root, sine
 from ...world import edges_there, grown_nodes, joints_there
 from ..kinematics import along, axis
 from ..measures import curvature, symmetry
@@ -174,7 +174,7 @@ def _modes(driven: Drive, real: Spectrum, imaginary: Spectrum) -> list[Float[Arr
     basis = [jnp.ones_like(place)]
     basis += [f(k * place) for k in range(1, WAVES + 1) for f in (cosine, sine)]
     basis = jnp.stack(basis, 1) * (there / count)[:, None]
-    real, imaginary = summed(real, basis), summed(imaginary, basis)
+    real, imaginary = long_product(real, basis), long_product(imaginary, basis)
     ahead = real[1, 1:] * imaginary[1, :-1] - imaginary[1, 1:] * real[1, :-1]
     alike = real[1, 1:] * real[1, :-1] + imaginary[1, 1:] * imaginary[1, :-1]
     sizes = jnp.sqrt(real * real + imaginary * imaginary + 1e-16)

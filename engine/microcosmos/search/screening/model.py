@@ -15,7 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int, PRNGKeyArray
 
-from ...portable import cosine, summed
+from ...portable import cosine, long_product
 
 COSINES = 256
 """Random features."""
@@ -94,7 +94,7 @@ class Regression:
         phases = jax.random.uniform(phase_key, (COSINES,), maxval=2 * np.pi)
         middle, scale = (jnp.asarray(x, jnp.float32) for x in (model.middle, model.scale))
         standard = jnp.clip((rows - middle[None]) / scale[None], -CLIP, CLIP)
-        waves = cosine(summed(standard, directions) + phases[None])
+        waves = cosine(long_product(standard, directions) + phases[None])
         waves = GAIN * np.float32(np.sqrt(2 / COSINES)) * waves
         return jnp.concatenate([waves, jnp.ones_like(standard[:, :1]), standard], 1)
 
@@ -103,7 +103,7 @@ class Regression:
         level, spread, weights = (
             jnp.asarray(x, jnp.float32) for x in (model.level, model.spread, model.weights)
         )
-        return level[None] + spread[None] * summed(self.features(rows, model), weights)
+        return level[None] + spread[None] * long_product(self.features(rows, model), weights)
 
 
 def learned(

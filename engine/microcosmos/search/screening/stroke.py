@@ -15,7 +15,7 @@ from jaxtyping import Array, Float
 
 from ...filaments import Layout, Rest
 from ...genomes import Drive, Genotype, sine_cosine
-from ...portable import arctangent, cosine, root, sine, summed
+from ...portable import arctangent, cosine, long_product, root, sine
 from ...world import edges_there, grown_nodes
 from ..task import Task
 
@@ -82,7 +82,7 @@ class Strokes:
 
 def _turned(rest: Rest, layout: Layout) -> Float[Array, "phase edge"]:
     straight = jnp.broadcast_to(layout.rest_angle, rest.angle.shape)
-    return summed(rest.angle - straight, layout.turned.T)
+    return long_product(rest.angle - straight, layout.turned.T)
 
 
 def _bounded(rest: Rest, layout: Layout, there: Any, most: float) -> Rest:
@@ -100,7 +100,7 @@ def _shapes(rest: Rest, layout: Layout, weight: Float[Array, "node"]) -> Shapes:
     turned = _turned(rest, layout)
     angle = turned + jnp.broadcast_to(layout.angle, turned.shape)
     along = [rest.length * f(angle) for f in (cosine, sine)]
-    places = jnp.stack([summed(one, layout.placed.T) for one in along], 2)
+    places = jnp.stack([long_product(one, layout.placed.T) for one in along], 2)
     middle = jnp.sum(places * weight[None, :, None], 1) / jnp.sum(weight)
     return places - middle[:, None]
 

@@ -1,0 +1,287 @@
+"""A search of your own: ask for genotypes, tell their fitness and measures.
+
+It is the loop of `experiments.evolution` without simulations: with emitters that draw parents
+from the archive it is MAP-Elites (Mouret and Clune, arXiv:1504.04909, 2015).
+"""
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import fields, replace
+from functools import partial
+from hashlib import sha256
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Int, PyTree
+
+from ..archive import file
+from ..neat import Counters
+from .cells import Cells, Voronoi
+from .emitters import Children, Emitter, Learner, begin, credit, emit, outcome, tell
+from .emitters.tensorneat import TensorNeat
+from .insertion import Elites, Inserted, candidates, insert, no_elites
+from .leaves import filled, leaves
+from .spaces import Numbers, Space
+
+FORMAT = "microcosmos-search/1"
+
+Function = Callable[[Any], tuple[Any, Any]]
+"""A JAX function of one decoded genotype: its fitness, and its measures as a vector."""
+
+
+class Progress(eqx.Module):
+    """What the next generation depends on."""
+
+    generation: Int[Array, ""]
+    infeasible: Int[Array, ""]
+    elites: Elites
+    counters: Counters
+    emitters: tuple[PyTree[Array], ...]
+
+
+class Found(NamedTuple):
+    """Elites, a row each, in the order of their cells; one elite has no such axis."""
+
+    cell: np.ndarray
+    fitness: np.ndarray
+    measures: np.ndarray
+    """Rows of all measures."""
+    genotypes: Any
+    """Vectors (elite, gene) within the bounds, or a batch of networks."""
+
+
+class Search:
+    """A search on any evaluation function, by `ask` and `tell`.
+
+    `space` is `Vectors` or `Networks`, `cells` a `Grid` or `voronoi` of `Axis`, and emitters
+    are those of `search.emitters`, whose slots together are the batch. The function gives each
+    genotype a fitness, which is maximised, and `measures` numbers: as many as the axes need,
+    or more. The same seed and outcomes give the same search.
+
+    Raises `ValueError` without emitters, or for emitters that need derivatives or another
+    library's loop.
+    """
+
+    def __init__(
+        self,
+        space: Space,
+        cells: Cells,
+        emitters: Sequence[Emitter],
+        *,
+        seed: int = 0,
+        measures: int | None = None,
+    ) -> None:
+        self.space, self.cells, self.emitters = space, cells, tuple(emitters)
+        needed = 1 + max(axis.measure for axis in cells.axes)
+        self.seed, self.measures = seed, needed if measures is None else measures
+        if self.measures < needed:
+            raise ValueError(f"`measures` must be at least {needed}, got {self.measures}")
+        refuse_unfit(self.emitters)
+        self.batch = sum(emitter.slots for emitter in self.emitters)
+        key = jax.random.key(seed, impl="threefry2x32")
+        self._progress = Progress(
+            generation=jnp.zeros((), jnp.int32),
+            infeasible=jnp.zeros((), jnp.int32),
+            elites=no_elites(cells.count, self.measures, jax.eval_shape(space, key=key)),
+            counters=space.counters,
+            emitters=begin(self.emitters, key=key),
+        )
+        self._children: Children | None = None
+        self._emit = jax.jit(partial(_emitted, self.emitters, key=key))
+        self._tell = jax.jit(partial(_told, self.emitters, cells), donate_argnums=0)
+        self._runs: dict[Function, Callable] = {}
+
+    def ask(self) -> Any:
+        """Return the genotypes to evaluate, a row for each slot.
+
+        Vectors are a NumPy array (slot, gene) within the bounds, networks a batch of `CPPN`,
+        which `Networks.outputs_of` evaluates. The same rows are returned until `tell`.
+        """
+        children = self._children
+        if children is None:
+            children, self._after = self._emit(self._progress)
+            self._children = children
+        return self.space.decode(jax.device_get(children.genotypes))
+
+    def tell(
+        self, fitness: Numbers, measures: Numbers, feasible: Numbers | None = None
+    ) -> Inserted:
+        """Insert the genotypes of the last `ask` and let the emitters learn.
+
+        Takes fitness (slot), measures (slot, measure) and, if some evaluations must not count,
+        feasible (slot). Rows without a finite fitness and finite descriptors are infeasible.
+        Returns each slot's cell, whether it entered, and its improvement. Raises `ValueError`
+        before `ask`, or for arrays of another shape.
+        """
+        if self._children is None:
+            raise ValueError("`tell` must follow `ask`, got no genotypes asked for")
+        rows = self.batch
+        fitness = _checked("fitness", fitness, np.float32, (rows,))
+        measures = _checked("measures", measures, np.float32, (rows, self.measures))
+        feasible = np.ones(rows, bool) if feasible is None else feasible
+        feasible = _checked("feasible", feasible, bool, (rows,))
+        given = self._children, fitness, measures, feasible
+        self._progress, inserted = self._tell(self._after, *given)
+        self._children = None
+        return jax.device_get(inserted)
+
+    def run(self, function: Function, generations: int) -> None:
+        """Advance by generations of a JAX function, all in one compiled program.
+
+        The function takes one decoded genotype and returns its fitness and its measures.
+        It is faster than `ask` and `tell`, but rounds differently. How many generations a call
+        takes does not matter. Each new function is compiled, so keep it between calls.
+        """
+        if function not in self._runs:
+            self._runs[function] = jax.jit(partial(self._generations, function))
+        self._progress = self._runs[function](self._progress, generations)
+        self._children = None
+
+    def _generations(self, function: Function, progress: Progress, count: Any) -> Progress:
+        def generation(_: Any, before: Progress) -> Progress:
+            children, after = self._emit(before)
+            decoded = self.space.decode(children.genotypes)
+            fitness, measures = jax.vmap(function)(decoded)
+            fitness, measures = fitness.astype(jnp.float32), measures.astype(jnp.float32)
+            feasible = jnp.ones(self.batch, bool)
+            given = children, fitness, measures, feasible
+            return _told(self.emitters, self.cells, after, *given)[0]
+
+        return jax.lax.fori_loop(0, count, generation, progress)
+
+    @property
+    def generation(self) -> int:
+        """Generations completed."""
+        return int(self._progress.generation)
+
+    @property
+    def evaluations(self) -> int:
+        return self.generation * self.batch
+
+    @property
+    def infeasible(self) -> int:
+        """Evaluations that could not enter."""
+        return int(self._progress.infeasible)
+
+    @property
+    def coverage(self) -> float:
+        """Share of the cells that have an elite."""
+        return float(np.mean(np.asarray(self._progress.elites.occupied)))
+
+    @property
+    def qd_score(self) -> float:
+        """Sum of the elites' fitness; fitness should not be negative."""
+        return float(np.sum(self.elites.fitness, dtype=np.float64))
+
+    @property
+    def elites(self) -> Found:
+        """The fittest of each occupied cell."""
+        return self._found(np.flatnonzero(self._progress.elites.occupied))
+
+    @property
+    def best(self) -> Found | None:
+        """The fittest elite, the first of equal ones; None while there is none."""
+        elites = self._progress.elites
+        if not np.any(elites.occupied):
+            return None
+        height = np.where(elites.occupied, elites.fitness, -np.inf)
+        found = self._found(np.array([np.argmax(height)]))
+        return jax.tree.map(lambda x: x[0], found)
+
+    def _found(self, cells: np.ndarray) -> Found:
+        rows = jax.tree.map(lambda x: np.asarray(x)[cells], self._progress.elites)
+        decoded = self.space.decode(rows.genotypes)
+        return Found(cells.astype(np.int32), rows.fitness, rows.measures, decoded)
+
+    def save(self) -> bytes:
+        """Return a file from which `restore` continues, without an unanswered `ask`."""
+        attributes = {"format": FORMAT, "search": json.dumps(self._description())}
+        return file.dump(leaves(self._progress), attributes)
+
+    def restore(self, data: bytes) -> None:
+        """Continue from the file of a search with the same arguments, bit for bit.
+
+        Raises `ValueError` for the file of another search, naming the first difference.
+        """
+        tree, attributes = file.load(data, FORMAT)
+        there = json.loads(attributes["search"])
+        for name, here in json.loads(json.dumps(self._description())).items():
+            if there.get(name) != here:
+                raise ValueError(f"`{name}` must be the file's, {there.get(name)}, got {here}")
+        self._progress, self._children = filled(self._progress, tree), None
+
+    def _description(self) -> dict[str, Any]:
+        elites, cells = self._progress.elites, self.cells
+        around = np.asarray(cells.centroids).tobytes() if isinstance(cells, Voronoi) else b""
+        return {
+            "seed": self.seed,
+            "measures": self.measures,
+            "axes": [vars(axis) for axis in cells.axes],
+            "cells": [cells.count, sha256(around).hexdigest()],
+            "space": [type(self.space).__name__, *_numbers(self.space)],
+            "genes": [list(x.shape[1:]) for x in jax.tree.leaves(elites.genotypes)],
+            "emitters": [[type(one).__name__, *_numbers(one)] for one in self.emitters],
+        }
+
+
+def refuse_unfit(emitters: tuple[Emitter, ...]) -> None:
+    """Raise `ValueError` without emitters, or for those that `Search` cannot run."""
+    if not emitters:
+        raise ValueError("`emitters` must hold at least one, got none")
+    for emitter in emitters:
+        if isinstance(emitter, Learner | TensorNeat):
+            raise ValueError(
+                "`emitters` must do without derivatives and loops of other libraries, got "
+                f"{type(emitter).__name__}"
+            )
+
+
+def _emitted(
+    emitters: tuple[Emitter, ...], before: Progress, *, key: Array
+) -> tuple[Children, Progress]:
+    children, states, counters = emit(
+        emitters, before.emitters, before.elites, before.counters, before.generation, key=key
+    )
+    return children, replace(before, emitters=states, counters=counters)
+
+
+def _told(
+    emitters: tuple[Emitter, ...],
+    cells: Cells,
+    before: Progress,
+    children: Children,
+    fitness: Array,
+    measures: Array,
+    feasible: Array,
+) -> tuple[Progress, Inserted]:
+    used = np.array([axis.measure for axis in cells.axes])
+    feasible &= jnp.isfinite(fitness) & jnp.all(jnp.isfinite(measures[:, used]), 1)
+    number = before.generation + 1
+    rows = candidates(number, children.genotypes, fitness, measures, feasible)
+    elites, inserted = insert(before.elites, rows, cells)
+    after = Progress(
+        generation=number,
+        infeasible=before.infeasible + jnp.sum(~feasible, dtype=jnp.int32),
+        elites=credit(elites, children.parents[:, 0], inserted),
+        counters=before.counters,
+        emitters=tell(emitters, before.emitters, outcome(rows, inserted)),
+    )
+    return after, inserted
+
+
+def _checked(name: str, given: Numbers, kind: Any, shape: tuple[int, ...]) -> np.ndarray:
+    found = np.asarray(given)
+    if found.shape != shape:
+        raise ValueError(f"`{name}` must have shape {shape}, got {found.shape}")
+    with np.errstate(over="ignore"):  # Beyond single precision a number is not finite.
+        return found.astype(kind)
+
+
+def _numbers(settings: Any) -> list[Any]:
+    """Return the fields of a dataclass that are words, numbers or arrays of numbers."""
+    found = [getattr(settings, field.name) for field in fields(settings)]
+    plain = (int, float, str, list, tuple, np.ndarray)
+    return [np.asarray(one).tolist() for one in found if isinstance(one, plain)]
