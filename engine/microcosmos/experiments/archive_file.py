@@ -130,7 +130,8 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
     )
     if "model" in loop:
         predictions = np.stack([tree["screening"][name] for name in PREDICTIONS], 1)
-        model = search.screening.Model(**loop["model"])
+        columns_of = {name: np.asarray(x) for name, x in loop["model"].items()}
+        model = search.screening.Model(**columns_of)
         restored = replace(restored, screened=Screened(model, predictions))
     if "centroids" in archive:  # Another machine may have found slightly other ones.
         restored = replace(restored, cells=search.voronoi(plan.axes, archive["centroids"]))

@@ -5,9 +5,10 @@ candidates of a round descend from the elites and from the best predicted of the
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -55,14 +56,15 @@ def candidates(
     """Return the candidates of all rounds, and the counters after their genes."""
     assert plan.screening is not None
     elites, counters, parts = state.elites, state.counters, []
-    ancestors = np.arange(plan.cell_count)
+    ancestors = np.arange(plan.cell_count, dtype=np.int32)
     for number in range(plan.screening.rounds):
         children, counters = programs.emit(
             elites, counters, jnp.asarray(state.generation), jnp.asarray(number)
         )
         children = jax.device_get(children)
-        parents = np.where(children.parents < 0, children.parents, ancestors[children.parents])
-        children = replace(children, parents=parents)
+        parents = np.asarray(children.parents)
+        parents = np.where(parents < 0, parents, ancestors[parents])
+        children = eqx.tree_at(lambda one: one.parents, children, parents)
         predicted = predict(plan, programs, state, children.genotypes, stop)
         parts.append((children, predicted))
         if number + 1 < plan.screening.rounds:
@@ -106,7 +108,7 @@ def chosen(
     if not isinstance(children.genotypes, Graph):
         return children, counters
     genotypes, counters = neat.compacted(children.genotypes, state.counters)
-    return replace(children, genotypes=genotypes), counters
+    return eqx.tree_at(lambda one: one.genotypes, children, genotypes), counters
 
 
 def predict(

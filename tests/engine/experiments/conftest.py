@@ -75,6 +75,18 @@ SPECS["zoo"] = SMALL | {
     "search": {"generations": 4, "batch": 16, "block": 8}
     | {"emitters": [{"operator": "neat", "select": "curiosity", "crossover": 0.3}]},
 }
+SPECS["screened"] = TINY | {
+    "control": {"period": 10},
+    "task": {"steps": 40},
+    "search": {"generations": 11, "batch": 16, "block": 8}
+    | {"screening": {"rounds": 2, "candidates": 3}}
+    | {
+        "emitters": [
+            {"operator": "neat", "select": "curiosity", "crossover": 0.3, "share": 3},
+            {"operator": "random"},
+        ]
+    },
+}
 PACKAGES = {"cma-me": "qdax", "tensorneat": "tensorneat"}
 """Optional packages that some runs need."""
 

@@ -15,7 +15,15 @@ from microcosmos.spec import parse
 
 LONG = ("lamarckian", "cma-me", "tensorneat")
 LEARNERS = ("cma-mae", "cma-mega", "lamarckian", "cma-me", "tensorneat")
-COMPUTED = ("quality-diversity", "neuroevolution", "folding", "refinement", "gaits", "zoo")
+COMPUTED = (
+    "quality-diversity",
+    "neuroevolution",
+    "folding",
+    "refinement",
+    "gaits",
+    "zoo",
+    "screened",
+)
 OTHER = {
     "quality-diversity": {"task": {"steps": 61}},
     "neuroevolution": {"seed": 6},

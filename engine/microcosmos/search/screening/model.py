@@ -27,6 +27,8 @@ RIDGE = 1.0
 """Weight of the penalty on squared weights, in evaluations."""
 READY = 128
 """Evaluations before predictions are used."""
+KEPT = 4096
+"""Evaluations from which the model is learned anew, the newest."""
 CLIP = 5.0
 """Largest standardised input."""
 NEWEST = 0.2
@@ -41,17 +43,17 @@ class Model(eqx.Module):
 
     count: Int[np.ndarray, ""]
     """Evaluations learned."""
-    first_inputs: Float[np.ndarray, "row input"]
-    first_outputs: Float[np.ndarray, "row output"]
-    """Evaluations that wait until there are enough to tell scales."""
+    inputs: Float[np.ndarray, "row input"]
+    outputs: Float[np.ndarray, "row output"]
+    """The newest evaluations, at most `KEPT`."""
     middle: Float[np.ndarray, "input"]
     scale: Float[np.ndarray, "input"]
-    """Mean and standard deviation of inputs in the first evaluations."""
+    """Mean and standard deviation of inputs when the model was last learned anew."""
     level: Float[np.ndarray, "output"]
     spread: Float[np.ndarray, "output"]
     """The same of outputs."""
     inverse: Float[np.ndarray, "feature feature"]
-    """Inverse of Σ φ φᵀ + λ I over evaluations with features φ."""
+    """Inverse of Σ φ φᵀ + λ I over the evaluations since then, with features φ."""
     weights: Float[np.ndarray, "feature output"]
     errors: Float[np.ndarray, "output"]
     """Running mean of squared errors of predictions."""
@@ -75,8 +77,8 @@ class Regression:
         features = COSINES + 1 + self.inputs
         return Model(
             count=np.zeros((), np.int64),
-            first_inputs=np.zeros((0, self.inputs)),
-            first_outputs=np.zeros((0, self.outputs)),
+            inputs=np.zeros((0, self.inputs)),
+            outputs=np.zeros((0, self.outputs)),
             middle=np.zeros(self.inputs),
             scale=np.ones(self.inputs),
             level=np.zeros(self.outputs),
@@ -111,29 +113,42 @@ def learned(
 ) -> Model:
     """Return the model after evaluations (row, input) and (row, output), in their order.
 
-    The first `READY` of them set the scales of inputs and outputs.
+    Whenever the evaluations have doubled it is learned anew, with new scales, from the newest:
+    a run's first creatures are not like its later ones.
     """
+    count = int(model.count) + len(inputs)
+    kept = np.concatenate([model.inputs, inputs.astype(float)])[-KEPT:]
+    known = np.concatenate([model.outputs, outputs.astype(float)])[-KEPT:]
+    anew = _doublings(count) > _doublings(int(model.count))
+    model = replace(model, count=np.asarray(count), inputs=kept, outputs=known)
+    if anew:
+        first, inputs, outputs = not _doublings(count - len(inputs)), kept, known
+        model = _scaled(regression, model, first)
     if not model.ready:
-        inputs = np.concatenate([model.first_inputs, inputs])
-        outputs = np.concatenate([model.first_outputs, outputs])
-        if len(inputs) < READY:
-            return replace(model, first_inputs=inputs, first_outputs=outputs)
-        model = _scaled(model, inputs, outputs)
+        return model
     features = np.asarray(regression.features(jnp.asarray(inputs, jnp.float32), model))
     return _updated(model, features.astype(float), outputs.astype(float))
 
 
-def _scaled(model: Model, inputs: np.ndarray, outputs: np.ndarray) -> Model:
-    (middle, scale), (level, spread) = _scales(inputs), _scales(outputs)
+def _doublings(count: int) -> int:
+    """Return how often the evaluations have reached `READY` or its double, and so on."""
+    return (count // READY).bit_length()
+
+
+def _scaled(regression: Regression, model: Model, first: bool) -> Model:
+    """Return a model that has learned nothing, with the scales of its newest evaluations."""
+    (middle, scale), (level, spread) = _scales(model.inputs), _scales(model.outputs)
+    empty = regression.init()
     return replace(
-        model,
-        first_inputs=model.first_inputs[:0],
-        first_outputs=model.first_outputs[:0],
+        empty,
+        count=model.count,
+        inputs=model.inputs,
+        outputs=model.outputs,
         middle=middle,
         scale=scale,
         level=level,
         spread=spread,
-        errors=spread * spread,
+        errors=spread * spread if first else model.errors,
     )
 
 
@@ -146,8 +161,7 @@ def _updated(model: Model, features: np.ndarray, outputs: np.ndarray) -> Model:
         size = 1 + np.sum((gain * phi)[:, None], 0)
         inverse -= (gain / size)[:, None] * gain[None]
         weights += (gain / size)[:, None] * (y - np.sum(phi[:, None] * weights, 0))[None]
-    count = np.asarray(model.count + len(features))
-    return replace(model, count=count, inverse=inverse, weights=weights)
+    return replace(model, inverse=inverse, weights=weights)
 
 
 def with_errors(model: Model, predicted: np.ndarray, outputs: np.ndarray) -> Model:

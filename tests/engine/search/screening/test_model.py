@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from microcosmos.search.screening import READY, Regression, learned, with_errors
-from microcosmos.search.screening.model import NEWEST, RIDGE
+from microcosmos.search.screening.model import KEPT, NEWEST, RIDGE
 
 INPUTS, OUTPUTS = 6, 2
 
@@ -44,10 +44,30 @@ def test_the_first_evaluations_set_the_scales_however_they_arrive(regression):
         assert not model.ready
         model = learned(regression, model, inputs[rows], outputs[rows])
     assert model.ready
-    assert len(model.first_inputs) == 0
     np.testing.assert_allclose(model.middle, inputs.mean(0), rtol=1e-6)
     np.testing.assert_allclose(model.scale, inputs.std(0), rtol=1e-5)
     jax.tree.map(np.testing.assert_array_equal, model, at_once)
+
+
+def test_it_is_learned_anew_from_the_newest_whenever_evaluations_double(regression):
+    inputs, outputs = samples(4 * READY)
+    inputs[READY:] *= 0.1  # Later creatures differ less.
+    model, scales = regression.init(), []
+    for rows in np.array_split(np.arange(4 * READY), 16):
+        model = learned(regression, model, inputs[rows], outputs[rows])
+        scales.append(model.scale[0])
+    assert len(set(scales[3:])) == 3
+    np.testing.assert_allclose(model.scale, inputs.std(0), rtol=1e-5)
+    at_once = learned(regression, regression.init(), inputs, outputs)
+    np.testing.assert_allclose(model.weights, at_once.weights, atol=1e-9)
+
+
+def test_old_evaluations_are_forgotten(regression):
+    rows = KEPT + 100
+    model = learned(regression, regression.init(), *samples(rows))
+    assert model.count == rows
+    assert len(model.inputs) == len(model.outputs) == KEPT
+    np.testing.assert_array_equal(model.inputs, samples(rows)[0][100:])
 
 
 def test_a_smooth_function_is_learned(regression):
