@@ -67,7 +67,7 @@ def build_evolution(
         tell=compiled(lambda states, outcome: search.emitters.tell(emitters, states, outcome)),
         forget=jitted(search.reevaluation.forget),
         lessons=build_lessons(chosen, emitters),
-        screen=build_screening_programs(chosen, plan, jitted),
+        screen=build_screening_programs(chosen, plan),
     )
     return Evolution(plan, programs, build_repeats(chosen, plan))
 

@@ -34,9 +34,7 @@ def build_screening(chosen: spec.Evolution, plan: Plan) -> Screening | None:
     return Screening(asked.rounds, asked.candidates, asked.unscreened, regression)
 
 
-def build_screening_programs(
-    chosen: spec.Evolution, plan: Plan, jitted: Callable[..., Any]
-) -> screening.Programs | None:
+def build_screening_programs(chosen: spec.Evolution, plan: Plan) -> screening.Programs | None:
     """Build the programs of screening, if the spec asks for it."""
     if plan.screening is None:
         return None
@@ -50,7 +48,7 @@ def build_screening_programs(
         return children, counters
 
     return screening.Programs(
-        emit=jitted(candidates),
+        emit=jax.jit(candidates),
         describe=search.block_program(build_description(chosen, plan)),
         predict=jax.jit(
             lambda described, model, cells: outputs.predict(
