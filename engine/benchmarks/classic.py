@@ -21,7 +21,7 @@ import loops
 import numpy as np
 import timing
 from classic_tasks import BATCH, BINS, TASKS, Task
-from scipy.stats import mannwhitneyu
+from ranking import holm, quartiles, ranks
 
 from microcosmos import device, search
 
@@ -93,26 +93,6 @@ def measured(
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(json.dumps(dict(zip((*COLUMNS, "seconds"), row, strict=True))))
     return row
-
-
-def ranks(ours: np.ndarray, theirs: np.ndarray) -> tuple[float, float]:
-    """Return the share of pairs in which ours is greater, ties half, and p."""
-    found = mannwhitneyu(ours, theirs, alternative="two-sided")
-    return float(found.statistic) / (len(ours) * len(theirs)), float(found.pvalue)
-
-
-def holm(p: list[float]) -> list[float]:
-    """Return p values corrected for the number of tests (Holm, Scand. J. Stat. 6, 65, 1979)."""
-    order, corrected, largest = np.argsort(p), np.zeros(len(p)), 0.0
-    for rank, test in enumerate(order):
-        largest = max(largest, min(1.0, (len(p) - rank) * p[test]))
-        corrected[test] = largest
-    return corrected.tolist()
-
-
-def quartiles(values: np.ndarray) -> str:
-    low, middle, high = np.percentile(values, (25, 50, 75))
-    return f"{middle:.2f} ({low:.2f}–{high:.2f})"
 
 
 def ours(emitter: Callable[[Task], search.Emitter], task: Task, seed: int, many: int) -> Any:

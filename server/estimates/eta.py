@@ -9,7 +9,7 @@ from typing import Any
 from sqlalchemy import Row, and_, select
 from sqlalchemy.orm import Session
 
-from microcosmos.spec import Folding, Scaling, Spec, estimate
+from microcosmos.spec import Folding, QualityDiversity, Scaling, Spec, estimate
 
 from ..specs.parsing import parse_stored
 from ..tables import Generation, Run, Worker
@@ -116,6 +116,9 @@ def _measured(recent: Sequence[Row[Run, float]], kind: Hashable) -> list[Measure
 def _kind(spec: Any) -> Hashable:
     """Return what two specs must share for cell steps to take about as long."""
     match spec:
+        case QualityDiversity():  # Screening takes time beside the simulations.
+            asked = spec.search.screening
+            return asked and (asked.rounds, asked.candidates)
         case Folding():
             return spec.world.fluid
         case Scaling():  # Its time depends on nodes, which cell steps leave out.

@@ -31,6 +31,10 @@ GRADIENT = 7
 """Time of a gradient relative to the simulation alone."""
 SEGMENT = 11
 """Genes of a segment."""
+FEATURES = 96
+"""Numbers that describe a candidate of screening."""
+MODEL = 2**23
+"""Bytes of what screening learns."""
 CHUNK = 2**13
 """Nodes processed at a time."""
 
@@ -71,8 +75,19 @@ def _(spec: Evolution) -> Estimate:
     computed = ceil(search.batch / search.block) * search.block * search.generations
     one = simulation_bytes(spec.scene, spec.genome.max_nodes)
     memory = search.block * one + archive + vary + record + emitter_gradient_bytes(spec)
+    memory += screening_bytes(spec, genome)
     cell_steps = (computed + GRADIENT * gradients) * cell_steps_of(spec.scene)
     return Estimate(memory, evaluations, cell_steps)
+
+
+def screening_bytes(spec: Evolution, genome: int) -> int:
+    """Return the bytes of all candidates, of the variation of a round, and of a model."""
+    asked = getattr(spec.search, "screening", None)
+    if asked is None:
+        return 0
+    batch = spec.search.batch * asked.candidates
+    vary = 4 * batch * spec.genome.max_nodes**2 * FLOAT
+    return 2 * asked.rounds * batch * (genome + 4 * FEATURES) + vary + MODEL
 
 
 @estimate.register

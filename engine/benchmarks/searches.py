@@ -1,0 +1,149 @@
+"""Searches for swimmers beside each other, at equal numbers of simulations.
+
+Prints tables and asserts nothing. Every run is an archive file in `--results`: a call goes on
+where the last one ended, and repeats no finished run. Coverage and QD score count feasible
+creatures only, as archives do.
+"""
+
+import argparse
+import json
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import timing
+from ranking import holm, quartiles, ranks
+
+import microcosmos as mc
+from microcosmos.archive import file
+from microcosmos.spec import parse
+from microcosmos.spec.quality_diversity import PRESETS
+
+NEAT = {"operator": "neat", "select": "mixed"}
+DIRECT: dict[str, Any] = {"control": {"encoding": "direct"}}
+
+
+def emitters(*given: Mapping[str, Any], **search: Any) -> dict[str, Any]:
+    return {"search": {"emitters": list(given), "screening": None, **search}}
+
+
+def screened(rounds: int, candidates: int) -> dict[str, Any]:
+    return {"rounds": rounds, "candidates": candidates}
+
+
+METHODS: dict[str, dict[str, Any]] = {
+    "random": emitters({"operator": "random"}),
+    "NEAT alone": {"experiment": "neuroevolution"},
+    "MAP-Elites": emitters(NEAT),
+    "curiosity": emitters(NEAT | {"select": "curiosity"}),
+    "crossover": emitters(NEAT | {"crossover": 0.3}),
+    "NEAT + MAP-Elites": emitters(NEAT, {"operator": "population"}),
+    "screened 1 x 10": emitters(NEAT, screening=screened(1, 10)),
+    "screened 1 x 40": emitters(NEAT, screening=screened(1, 40)),
+    "screened 4 x 10": emitters(NEAT, screening=screened(4, 10)),
+    "screened 4 x 40": emitters(NEAT, screening=screened(4, 40)),
+    "direct iso+line": DIRECT | emitters({"operator": "iso+line"}),
+    "direct CMA-MAE": DIRECT | emitters({"operator": "cma-mae", "emitters": 4}),
+    "direct screened": DIRECT | emitters({"operator": "iso+line"}, screening=screened(4, 40)),
+}
+"""Differences from the preset."""
+BASELINE = "MAP-Elites"
+"""The search that others are compared with."""
+AXES = {
+    "preset": None,
+    "flow": [
+        {"name": "strouhal", "low": 0.3, "high": 10.0, "scale": "log10", "bins": 20},
+        {"name": "heading_angle", "bins": 20},
+    ],
+}
+"""Axes of the archive: the preset's, or two that only the fluid tells."""
+COLUMNS = ("QD score", "coverage, %", "best", "feasible, %")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--preset", choices=PRESETS, default="standard")
+    parser.add_argument("--axes", choices=AXES, default="preset")
+    parser.add_argument("--seeds", type=int, default=2)
+    parser.add_argument("--generations", type=int, default=10)
+    parser.add_argument("--methods", nargs="+", choices=METHODS, default=["MAP-Elites"])
+    parser.add_argument("--results", type=Path, required=True, help="folder of archive files")
+    chosen = parser.parse_args()
+    mc.prepare()
+    found: dict[str, list[list[float]]] = {method: [] for method in chosen.methods}
+    for seed in range(chosen.seeds):
+        for method in chosen.methods:
+            found[method].append(figures(carried_out(chosen, method, seed)))
+    rows = {method: np.array(values) for method, values in found.items()}
+    evaluations = chosen.generations * PRESETS[chosen.preset][1].search.batch
+    title = f"{chosen.preset}, {evaluations:,} simulations, {chosen.seeds} seeds"
+    lines = [(method, *map(quartiles, values.T)) for method, values in rows.items()]
+    columns = ("", *COLUMNS, "seconds")
+    timing.print_table(f"{title}: median (quartiles)", columns, lines)
+    print_tests(rows)
+
+
+def carried_out(chosen: argparse.Namespace, method: str, seed: int) -> Path:
+    """Return the archive file of a finished run."""
+    document = PRESETS[chosen.preset][1].model_dump(mode="json", exclude_unset=True)
+    changes = METHODS[method]
+    search = document.get("search", {}) | changes.get("search", {})
+    search |= {"generations": chosen.generations}
+    document |= changes | {"seed": seed, "search": search}
+    document.setdefault("experiment", "quality-diversity")
+    if axes := AXES[chosen.axes]:
+        document["archive"] = {"descriptors": axes}
+    name = f"{chosen.preset} {chosen.axes} {method} {chosen.generations} {seed}.h5"
+    path = chosen.results / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    clock = path.with_suffix(".seconds.json")
+    spent = json.loads(clock.read_text()) if clock.exists() else 0.0
+    began = time.monotonic()
+    whole = path.exists() and is_whole(path)
+    if not whole:
+        mc.evolve(parse(document), path)
+        clock.write_text(json.dumps(spent + time.monotonic() - began))
+    print(f"{name}: " + ", ".join(f"{x:.3f}" for x in figures(path)), flush=True)
+    return path
+
+
+def is_whole(path: Path) -> bool:
+    """Return whether a run has ended."""
+    _, attributes = file.load(path.read_bytes())
+    return json.loads(attributes["ended"]) is not None
+
+
+def figures(path: Path) -> list[float]:
+    """Return the columns of a run, and its seconds."""
+    tree, _ = file.load(path.read_bytes())
+    curves = {name: np.asarray(column)[-1] for name, column in tree["curves"].items()}
+    feasible = 1 - curves["infeasible"] / curves["evaluations"]
+    seconds = json.loads(path.with_suffix(".seconds.json").read_text())
+    score, coverage = curves["qd_score"], 100 * curves["coverage"]
+    return [float(x) for x in (score, coverage, curves["best"], 100 * feasible, seconds)]
+
+
+def print_tests(rows: dict[str, np.ndarray]) -> None:
+    """Print tests of every method against MAP-Elites."""
+    if BASELINE not in rows or len(rows) < 2:
+        return
+    lines, p_values, base = [], [], rows[BASELINE]
+    for method, values in rows.items():
+        if method == BASELINE:
+            continue
+        for i, column in enumerate(COLUMNS[:3]):
+            share, p = ranks(values[:, i], base[:, i])
+            ratio = np.median(values[:, i]) / np.median(base[:, i])
+            lines.append((method, column, f"{ratio:.2f}", f"{100 * share:.0f} %"))
+            p_values.append(p)
+    corrected = [f"{p:.2g}" for p in holm(p_values)]
+    lines = [(*line, p) for line, p in zip(lines, corrected, strict=True)]
+    title = f"Beside {BASELINE}: two-sided tests of Mann and Whitney"
+    columns = ("", "of", "ratio of medians", "greater in", "p, Holm")
+    timing.print_table(title, columns, lines)
+
+
+if __name__ == "__main__":
+    main()
