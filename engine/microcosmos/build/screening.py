@@ -16,7 +16,7 @@ from .scene import build_layout, build_period, build_task
 FIRST_ROUND = 2**30
 """Number of the first round when keys are derived; smaller numbers are generations."""
 MODEL = 2**31
-"""Number from which the key of a model's random features is derived."""
+"""Number from which the key of a model's basis functions is derived."""
 
 
 def build_screening(chosen: spec.Evolution, plan: Plan) -> Screening | None:
@@ -27,7 +27,7 @@ def build_screening(chosen: spec.Evolution, plan: Plan) -> Screening | None:
     describe = build_description(chosen, plan)
     shapes = jax.eval_shape(describe, plan.genotype)
     regression = search.screening.Regression(
-        inputs=len(shapes.features),
+        inputs=len(shapes.inputs),
         outputs=_outputs(plan).count,
         key=jax.random.fold_in(plan.key, MODEL),
     )

@@ -146,7 +146,7 @@ def learn(
         found = jax.device_get(programs.predict(described, model, state.cells))
         figures = _figures(found, evaluation, cells, plan.cell_count)
         model = with_errors(model, found.outputs[finite], outputs[finite])
-    inputs = np.asarray(described.features)[finite]
+    inputs = np.asarray(described.inputs)[finite]
     model = with_evaluations(plan.screening.regression, model, inputs, outputs[finite])
     rows = np.concatenate([state.screened.predictions, figures[None]])
     return Screened(model, rows)

@@ -31,7 +31,7 @@ GRADIENT = 7
 """Time of a gradient relative to the simulation alone."""
 SEGMENT = 11
 """Genes of a segment."""
-FEATURES = 96
+INPUTS = 96
 """Numbers that describe a candidate of screening."""
 MODEL = 2**23
 """Bytes of what screening learns."""
@@ -87,7 +87,7 @@ def screening_bytes(spec: Evolution, genome: int) -> int:
         return 0
     batch = spec.search.batch * asked.candidates
     vary = 4 * batch * spec.genome.max_nodes**2 * FLOAT
-    return 2 * asked.rounds * batch * (genome + 4 * FEATURES) + vary + MODEL
+    return 2 * asked.rounds * batch * (genome + 4 * INPUTS) + vary + MODEL
 
 
 @estimate.register

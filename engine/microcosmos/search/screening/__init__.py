@@ -1,7 +1,7 @@
 """Screening: offspring are predicted, and only the promising are simulated."""
 
 from .choice import Predicted, best, expected_gain, heights
-from .features import Described, describe
+from .description import Described, describe
 from .model import READY, Model, Regression, learned, with_errors
 from .outputs import Outputs
 from .resistive import Swim, swim

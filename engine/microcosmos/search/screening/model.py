@@ -1,10 +1,10 @@
 """A model that learns from a run's own evaluations: ridge regression on random features.
 
-The features are cosines of random directions, which approximate a Gaussian kernel (Rahimi and
-Recht, NeurIPS 2007), beside the inputs themselves. Recursive least squares (Plackett,
-Biometrika 37, 149 (1950)) takes one evaluation after another, so that the size of the model and
-the time of an update do not grow with a run. Learning is in double precision, element by
-element; bits do not depend on the processor.
+The basis functions are cosines of random directions, which approximate a Gaussian kernel
+(Rahimi and Recht, NeurIPS 2007), beside the inputs themselves. Recursive least squares
+(Plackett, Biometrika 37, 149 (1950)) takes one evaluation after another, so that the size of
+the model and the time of an update do not grow with a run. Learning is in double precision,
+element by element; bits do not depend on the processor.
 """
 
 from dataclasses import dataclass, replace
@@ -27,7 +27,7 @@ RIDGE = 1.0
 """Weight of the penalty on squared weights, in evaluations."""
 READY = 128
 """Evaluations before predictions are used."""
-KEPT = 4096
+WINDOW = 4096
 """Evaluations from which the model is learned anew, the newest."""
 CLIP = 5.0
 """Largest standardised input."""
@@ -45,16 +45,16 @@ class Model(eqx.Module):
     """Evaluations learned."""
     inputs: Float[np.ndarray, "row input"]
     outputs: Float[np.ndarray, "row output"]
-    """The newest evaluations, at most `KEPT`."""
+    """The newest evaluations, at most `WINDOW`."""
     middle: Float[np.ndarray, "input"]
     scale: Float[np.ndarray, "input"]
     """Mean and standard deviation of inputs when the model was last learned anew."""
     level: Float[np.ndarray, "output"]
     spread: Float[np.ndarray, "output"]
     """The same of outputs."""
-    inverse: Float[np.ndarray, "feature feature"]
-    """Inverse of Σ φ φᵀ + λ I over the evaluations since then, with features φ."""
-    weights: Float[np.ndarray, "feature output"]
+    inverse: Float[np.ndarray, "function function"]
+    """Inverse of Σ φ φᵀ + λ I over the evaluations since then, with basis functions φ."""
+    weights: Float[np.ndarray, "function output"]
     errors: Float[np.ndarray, "output"]
     """Running mean of squared errors of predictions."""
 
@@ -66,7 +66,7 @@ class Model(eqx.Module):
 
 @dataclass(frozen=True)
 class Regression:
-    """A model's random features, which follow from a key."""
+    """The basis functions of a model, which follow from a key."""
 
     inputs: int
     outputs: int
@@ -74,7 +74,7 @@ class Regression:
 
     def init(self) -> Model:
         """Return the model before any evaluation."""
-        features = COSINES + 1 + self.inputs
+        functions = COSINES + 1 + self.inputs
         return Model(
             count=np.zeros((), np.int64),
             inputs=np.zeros((0, self.inputs)),
@@ -83,13 +83,13 @@ class Regression:
             scale=np.ones(self.inputs),
             level=np.zeros(self.outputs),
             spread=np.ones(self.outputs),
-            inverse=np.eye(features) / RIDGE,
-            weights=np.zeros((features, self.outputs)),
+            inverse=np.eye(functions) / RIDGE,
+            weights=np.zeros((functions, self.outputs)),
             errors=np.zeros(self.outputs),
         )
 
-    def features(self, rows: Rows, model: Model) -> Float[Array, "row feature"]:
-        """Return the features of inputs: cosines, 1, and the standardised inputs."""
+    def basis(self, rows: Rows, model: Model) -> Float[Array, "row function"]:
+        """Return the basis functions of inputs: cosines, 1, and the standardised inputs."""
         direction_key, phase_key = jax.random.split(self.key)
         directions = jax.random.normal(direction_key, (self.inputs, COSINES))
         directions = directions / (WIDTH * np.float32(np.sqrt(self.inputs)))
@@ -105,7 +105,7 @@ class Regression:
         level, spread, weights = (
             jnp.asarray(x, jnp.float32) for x in (model.level, model.spread, model.weights)
         )
-        return level[None] + spread[None] * long_product(self.features(rows, model), weights)
+        return level[None] + spread[None] * long_product(self.basis(rows, model), weights)
 
 
 def learned(
@@ -117,8 +117,8 @@ def learned(
     a run's first creatures are not like its later ones.
     """
     count = int(model.count) + len(inputs)
-    kept = np.concatenate([model.inputs, inputs.astype(float)])[-KEPT:]
-    known = np.concatenate([model.outputs, outputs.astype(float)])[-KEPT:]
+    kept = np.concatenate([model.inputs, inputs.astype(float)])[-WINDOW:]
+    known = np.concatenate([model.outputs, outputs.astype(float)])[-WINDOW:]
     anew = _doublings(count) > _doublings(int(model.count))
     model = replace(model, count=np.asarray(count), inputs=kept, outputs=known)
     if anew:
@@ -126,8 +126,8 @@ def learned(
         model = _scaled(regression, model, first)
     if not model.ready:
         return model
-    features = np.asarray(regression.features(jnp.asarray(inputs, jnp.float32), model))
-    return _updated(model, features.astype(float), outputs.astype(float))
+    basis = np.asarray(regression.basis(jnp.asarray(inputs, jnp.float32), model))
+    return _updated(model, basis.astype(float), outputs.astype(float))
 
 
 def _doublings(count: int) -> int:
@@ -152,10 +152,10 @@ def _scaled(regression: Regression, model: Model, first: bool) -> Model:
     )
 
 
-def _updated(model: Model, features: np.ndarray, outputs: np.ndarray) -> Model:
+def _updated(model: Model, basis: np.ndarray, outputs: np.ndarray) -> Model:
     inverse, weights = model.inverse.copy(), model.weights.copy()
     standard = (outputs - model.level) / model.spread
-    for phi, y in zip(features, standard, strict=True):
+    for phi, y in zip(basis, standard, strict=True):
         # Sums over the first axis add row after row on every processor.
         gain = np.sum(inverse * phi[:, None], 0)
         size = 1 + np.sum((gain * phi)[:, None], 0)

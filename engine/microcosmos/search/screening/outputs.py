@@ -12,7 +12,7 @@ from ..cells import Axis, Cells
 from ..evaluation import Evaluation
 from ..measures import MEASURES
 from .choice import Predicted
-from .features import Described
+from .description import Described
 from .model import Model, Regression
 
 SLOWEST = 1e-6
@@ -53,7 +53,7 @@ class Outputs:
         self, described: Described, regression: Regression, model: Model, cells: Cells
     ) -> Predicted:
         """Return the predictions of a model for creatures."""
-        found = regression.predict(described.features, model)
+        found = regression.predict(described.inputs, model)
         errors = jnp.sqrt(jnp.asarray(model.errors, jnp.float32))
         axes = len(self.axes)
         measures = jnp.zeros((len(found), self.measures), found.dtype)

@@ -60,7 +60,7 @@ def test_known_measures_are_those_of_the_simulation(strokes_of, parts):
     known, measured = np.asarray(described.known), np.asarray(measures)[:, columns]
     np.testing.assert_allclose(known[:, :-1], measured[:, :-1], rtol=1e-6)
     assert np.all(np.isnan(known[:, -1]))
-    assert np.all(np.isfinite(described.features))
+    assert np.all(np.isfinite(described.inputs))
 
 
 def test_shapes_alone_nearly_tell_curvature_and_symmetry(strokes_of):
@@ -68,11 +68,11 @@ def test_shapes_alone_nearly_tell_curvature_and_symmetry(strokes_of):
     strokes = strokes_of(task={"steps": 1500})
     genotypes = newcomers(strokes.task, 24)
     program = jax.jit(lambda g: jax.lax.map(lambda x: describe(strokes, ("speed",), x), g))
-    features = np.asarray(program(genotypes).features)
+    inputs = np.asarray(program(genotypes).inputs)
     evaluated = jax.jit(lambda g: jax.lax.map(lambda x: search.evaluate(strokes.task, x), g))
     measures = np.asarray(evaluated(genotypes).measures)
     swims = measures[:, search.MEASURES.index("speed")] > 0
-    curved, symmetric = features[swims, 16], features[swims, 18]
+    curved, symmetric = inputs[swims, 16], inputs[swims, 18]
     pairs = ((curved, "curvature_mean", 0.9), (symmetric, "symmetry", 0.5))
     for guess, name, least in pairs:
         measured = measures[swims, search.MEASURES.index(name)]

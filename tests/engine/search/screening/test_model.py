@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from microcosmos.search.screening import READY, Regression, learned, with_errors
-from microcosmos.search.screening.model import KEPT, NEWEST, RIDGE
+from microcosmos.search.screening.model import NEWEST, RIDGE, WINDOW
 
 INPUTS, OUTPUTS = 6, 2
 
@@ -29,7 +29,7 @@ def test_recursive_least_squares_is_ridge_regression(regression):
     for row in range(READY, READY + 40, 8):
         rows = slice(row, row + 8)
         model = learned(regression, model, inputs[rows], outputs[rows])
-    phi = np.asarray(regression.features(jnp.asarray(inputs), model), float)
+    phi = np.asarray(regression.basis(jnp.asarray(inputs), model), float)
     y = (outputs - model.level) / model.spread
     closed = np.linalg.solve(phi.T @ phi + RIDGE * np.eye(phi.shape[1]), phi.T @ y)
     np.testing.assert_allclose(model.weights, closed, atol=1e-6)
@@ -63,10 +63,10 @@ def test_it_is_learned_anew_from_the_newest_whenever_evaluations_double(regressi
 
 
 def test_old_evaluations_are_forgotten(regression):
-    rows = KEPT + 100
+    rows = WINDOW + 100
     model = learned(regression, regression.init(), *samples(rows))
     assert model.count == rows
-    assert len(model.inputs) == len(model.outputs) == KEPT
+    assert len(model.inputs) == len(model.outputs) == WINDOW
     np.testing.assert_array_equal(model.inputs, samples(rows)[0][100:])
 
 

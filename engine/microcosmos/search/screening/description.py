@@ -1,4 +1,4 @@
-"""Numbers that describe a stroke, from which a model predicts the result of a simulation."""
+"""Description of a creature before its simulation: numbers from which a model predicts."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -22,24 +22,24 @@ from .stroke import PHASES, Stroke, Strokes
 HARMONICS, WAVES = 4, 3
 """Harmonics in time, from 0, and waves along the body of the modes of bending."""
 
-Features = Float[Array, "feature"]
+Inputs = Float[Array, "input"]
 Spectrum = Float[Array, "harmonic joint"]
 
 
 class Described(eqx.Module):
     """What is known of a creature before it is simulated."""
 
-    features: Float[Array, "*block feature"]
+    inputs: Float[Array, "*block input"]
     known: Float[Array, "*block axis"]
     """Values on the archive's axes; NaN where only a simulation tells."""
 
 
 def describe(strokes: Strokes, axes: tuple[str, ...], genotype: Genotype) -> Described:
-    """Return the features of a creature, and its values on axes of which none is simulated."""
+    """Return the inputs for a model, and values on axes where they need no simulation."""
     driven, stroke = strokes.of(genotype)
     known = _known(strokes.task, driven, genotype)
     values = [jnp.asarray(known.get(name, jnp.nan), jnp.float32) for name in axes]
-    return Described(features(strokes, driven, stroke), jnp.stack(values))
+    return Described(inputs_of(strokes, driven, stroke), jnp.stack(values))
 
 
 def _known(task: Task, driven: Drive, genotype: Genotype) -> dict[str, Array]:
@@ -52,7 +52,7 @@ def _known(task: Task, driven: Drive, genotype: Genotype) -> dict[str, Array]:
     return {"hidden_nodes": hidden, "connections": connections, "nodes": nodes, **form}
 
 
-def features(strokes: Strokes, driven: Drive, stroke: Stroke) -> Features:
+def inputs_of(strokes: Strokes, driven: Drive, stroke: Stroke) -> Inputs:
     """Return numbers about a creature: its speed by resistive force theory, its shapes, its
     form, and the modes of its bending."""
     world = driven.world
