@@ -80,6 +80,8 @@ def save(plan: Plan, state: State) -> bytes:
         pairs = zip(PREDICTIONS, state.screened.predictions.T, strict=True)
         tree["screening"] = dict(pairs)
         loop["model"] = vars(state.screened.model)
+    if state.first is not None:
+        tree["archive"]["first"] = state.first.of(cells)
     if isinstance(state.cells, search.Voronoi):
         tree["archive"]["centroids"] = state.cells.centroids
     if state.initial is not None:
@@ -132,6 +134,8 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
         predictions = np.stack([tree["screening"][name] for name in PREDICTIONS], 1)
         model = search.screening.Model(**loop["model"])
         restored = replace(restored, screened=Screened(model, predictions))
+    if restored.first is not None:
+        restored = replace(restored, first=restored.first.replaced(cells, archive["first"]))
     if "centroids" in archive:  # Another machine may have found slightly other ones.
         restored = replace(restored, cells=search.voronoi(plan.axes, archive["centroids"]))
     return prolonged(restored) if restored.generation < plan.generations else restored
