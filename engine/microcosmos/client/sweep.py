@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any, Self
 
 from .columns import frame
-from .formatting import MEASURES, counts_as_text
+from .formatting import CORRECTED, MEASURES, counts_as_text
 from .polling import ENDED, follow_sweep
 from .record import Field, Record
 from .run import Run
@@ -62,7 +62,7 @@ class Sweep(Record):
                 "seed": run.spec.get("seed"),
                 "status": run.status,
                 "generation": run.generation,
-                **{name: run.record[name] for name in (*MEASURES, "evaluations")},
+                **{name: run.record[name] for name in (*MEASURES, *CORRECTED, "evaluations")},
                 "run": run.id,
             }
             for run in self.runs()
