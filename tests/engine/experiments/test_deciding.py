@@ -202,6 +202,22 @@ def test_it_stops_between_blocks(plan, programs):
         deciding.decide(plan, programs, state, creatures(plan, rows), first, lambda: True)
 
 
+def test_a_run_records_the_mean_and_the_first_evaluation(course_of):
+    states, reports, experiment, _ = course_of("deciding")
+    state, last = states[-1], {e.cell: e for report in reports for e in report.elites}
+    occupied = np.flatnonzero(state.elites.occupied)
+    assert set(last) == set(occupied.tolist())
+    for cell in occupied.tolist():
+        measured = experiment.creature(state, cell)["measured"]
+        assert measured == last[cell].measured
+        assert measured["fitness"] == state.first.fitness[cell]
+        assert last[cell].fitness == np.asarray(state.elites.fitness)[cell]
+        assert measured["fitness"] != last[cell].fitness
+    assert set(state.first.count[occupied].tolist()) <= {2, 3}
+    offspring = 8 * len(reports)
+    assert state.evaluations > offspring + state.first.count[occupied].sum()
+
+
 def test_the_most_samples_are_at_least_the_fewest():
     with pytest.raises(
         ValidationError, match=r"`max_samples` must be at least `samples` \(20\)"
