@@ -14,6 +14,7 @@ import timing
 from microcosmos import device, spec
 from microcosmos.build import build
 from microcosmos.experiments import reevaluation
+from microcosmos.experiments.evolution import Evolution
 from microcosmos.search import never
 
 NEVER = 10**6
@@ -56,21 +57,30 @@ def scores(
 ) -> tuple[float, ...]:
     """Return the figures of `COLUMNS` for one search."""
     search = {"generations": NEVER, "stop": {"evaluations": evaluations}}
-    document = {"experiment": "quality-diversity", "seed": seed}
-    tested = {"reevaluation": {"every": NEVER, "samples": samples}}
-    decides = {"reevaluation": options and {**options, "every": NEVER}}
-    test = build(spec.parse(document | {"search": search | tested}))
-    experiment = replace(
-        build(spec.parse(document | {"search": search | decides})), repeats=None
+    tested = {"every": NEVER, "samples": samples}
+    decides = options and {**options, "every": NEVER}
+    test, plain = (
+        build(
+            spec.QualityDiversity.model_validate(
+                {"seed": seed, "search": search | {"reevaluation": part}}
+            )
+        )
+        for part in (tested, decides)
     )
+    assert isinstance(plain, Evolution)
+    assert isinstance(test, Evolution)
+    assert test.repeats
+    experiment = replace(plain, repeats=None)
     state = experiment.init()
     while not experiment.done(state):
-        state, report = experiment.advance(state)
+        state, _ = experiment.advance(state)
+    occupied = np.asarray(state.elites.occupied)
+    score = float(np.asarray(state.elites.fitness)[occupied].sum())
     again = replace(state, generation=NEVER + 1)
     again = reevaluation.evaluate(test.plan, test.repeats, again, never)
     corrected, coverage, hits = reevaluation.figures(test.repeats, again)
-    shares = (100 * report.coverage, corrected, 100 * coverage, 100 * hits)
-    return (report.generation, report.qd_score, *shares)
+    shares = (100 * occupied.mean(), corrected, 100 * coverage, 100 * hits)
+    return (state.generation, score, *shares)
 
 
 def spread(values: tuple[float, ...]) -> str:
