@@ -8,6 +8,7 @@ from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
 from ..creatures.storage import creatures_of, mark_garbage
+from ..runs.curves import corrected_at
 from ..services.services import Services
 from ..storage.artifacts import StoredFile, superfluous
 from ..tables import CHECKPOINT, Artifact, Elite, Generation, Result, Run
@@ -106,4 +107,6 @@ def rewind(session: Session, run: Run) -> bool:
     summaries = (Generation.run_id == run.id) & Generation.summary.is_not(None)
     newest = select(Generation.summary).where(summaries).order_by(Generation.generation.desc())
     run.summary = session.scalars(newest.limit(1)).one_or_none()
+    for name, value in corrected_at(session, run.id, last).items():
+        setattr(run, name, value)
     return True

@@ -14,7 +14,7 @@ from microcosmos.archive.report import Report
 from microcosmos.naming import LICENCE
 
 from ..creatures.storage import creature_columns, insert_and_lock, link
-from ..tables import Elite, Generation, Result
+from ..tables import CORRECTED, Elite, Generation, Result
 
 
 @dataclass(frozen=True)
@@ -44,8 +44,11 @@ def rows_of(report: Report, seconds: float) -> Rows:
         "infeasible": int(report.infeasible),
         "seconds": seconds,
     }
+    changed = {} if summary is None else {"summary": summary}
+    known = summary or {}
+    changed |= {name: known[name] for name in CORRECTED if name in known}
     return Rows(
-        run=run if summary is None else {**run, "summary": summary},
+        run=run | changed,
         curve={**run, "mean": finite(report.mean), "summary": summary},
         elites=[
             {

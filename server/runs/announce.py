@@ -19,6 +19,7 @@ log = logging.getLogger(__name__)
 
 VOLATILE_FIELDS = {
     *("generation", "progress", "evaluations", "qd_score", "coverage", "best", "infeasible"),
+    *("corrected_qd_score", "corrected_coverage", "hit_rate"),
     *("sparkline", "evaluations_per_second", "eta_seconds", "summary", "waiting_reason"),
 }
 """Fields that may differ at each reading; changes of these alone cause no event."""

@@ -8,7 +8,7 @@ from uuid import UUID
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from ..tables import Generation
+from ..tables import CORRECTED, Generation
 
 COUNT_PREFIX = "infeasible: "
 """Prefix of counts per generation, which are added up between two points."""
@@ -40,6 +40,15 @@ def summaries(
             points[place][name] = counted + value
     names = dict.fromkeys(name for point in points for name in point)
     return {name: [point.get(name) for point in points] for name in names}
+
+
+def corrected_at(session: Session, run_id: UUID, generation: int) -> dict[str, float | None]:
+    """Return the figures of the last reevaluation of elites up to a generation."""
+    before = (Generation.run_id == run_id) & (Generation.generation <= generation)
+    known = before & Generation.summary[CORRECTED[0]].as_float().is_not(None)
+    rows = select(Generation.summary).where(known).order_by(Generation.generation.desc())
+    summary = session.scalars(rows.limit(1)).one_or_none() or {}
+    return {name: summary.get(name) for name in CORRECTED}
 
 
 def numbers(summary: Mapping[str, Any]) -> dict[str, float]:

@@ -113,6 +113,11 @@ class RunRead(RunBrief):
     qd_score: float | None
     coverage: float | None
     best: float | None
+    corrected_qd_score: float | None
+    """After reevaluation of the elites, the last time; None without."""
+    corrected_coverage: float | None
+    hit_rate: float | None
+    """Share of reevaluations in the elite's own cell."""
     summary: dict[str, Any] | None
     infeasible: int
     sparkline: list[float]

@@ -9,6 +9,7 @@ from sqlalchemy import Select, exists, select
 from sqlalchemy.orm import Session
 
 from ..core.errors import ProblemError
+from ..runs.curves import corrected_at
 from ..services.services import Services
 from ..tables import FINISHED, Artifact, Elite, Generation, Run, Share
 from . import archive_files
@@ -83,6 +84,7 @@ class LiveShare:
             generation=share.generation,
             **{name: getattr(run, name) for name in copied},
             **{name: getattr(last or run, name) for name in figures},
+            **corrected_at(session, run_id, share.generation or 0),
         )
 
     def refuse_unless_holds(self, session: Session, creature: str) -> None:

@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session
 
 from ..runs.curves import numbers, thinned
 from ..runs.lifecycle import NOT_IN_BIN
-from ..tables import CANCELLED, FAILED, FINISHED, Generation, Run, Sweep
+from ..tables import CANCELLED, CORRECTED, FAILED, FINISHED, Generation, Run, Sweep
 from .overview import combinations
 from .schemas import (
     CaseSummary,
@@ -188,6 +188,7 @@ def figures_at(
     session: Session, runs: Sequence[Any], generation: int | None, has_archive: bool
 ) -> dict[UUID, dict[str, float]]:
     """Return the figures of each run at a generation; the last ones of a shorter finished run.
+    Those of the corrected archive are there if elites were reevaluated after that generation.
 
     Runs whose result is a table add the numbers of their newest summary until then.
     """
@@ -209,8 +210,10 @@ def figures_at(
     for run_id, *values, summary in session.execute(rows):
         figures = dict(zip(COLUMNS, values, strict=True))
         known = {name: value for name, value in figures.items() if value is not None}
-        of_table = {} if has_archive else numbers(summary or {})
-        found[run_id] = {**found.get(run_id, {}), **known, **of_table}
+        told = numbers(summary or {})
+        if has_archive:
+            told = {name: told[name] for name in CORRECTED if name in told}
+        found[run_id] = {**found.get(run_id, {}), **known, **told}
     return found
 
 

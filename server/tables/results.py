@@ -7,6 +7,9 @@ from sqlalchemy.orm import Mapped, mapped_column
 
 from .base import Base, Place, RunKey, Sha256
 
+CORRECTED = ("corrected_qd_score", "corrected_coverage", "hit_rate")
+"""Figures in the summary of a generation whose elites were reevaluated."""
+
 
 class Generation(Base):
     """A point of a run's curves."""

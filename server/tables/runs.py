@@ -71,6 +71,10 @@ class Run(Owned, Base):
     qd_score: Mapped[float | None]
     coverage: Mapped[float | None]
     best: Mapped[float | None]
+    corrected_qd_score: Mapped[float | None]
+    """From the last reevaluation, if there was one; so are the next two."""
+    corrected_coverage: Mapped[float | None]
+    hit_rate: Mapped[float | None]
     summary: Mapped[dict[str, Any] | None]
     """Figures of the whole result, if it is a table."""
     error: Mapped[str | None] = mapped_column(Text)

@@ -13,9 +13,11 @@ class Elite:
 
     cell: int
     fitness: float
+    """That by which it competes: a mean where means decide."""
     descriptors: tuple[float, ...]
-    """In raw units, in the order of the archive's axes."""
+    """In raw units, in the order of the archive's axes; means where means decide."""
     measures: dict[str, float]
+    """Of the first evaluation, as `measured`, which the same program repeats."""
     creature: str
     identity: bytes
     parents: tuple[str, ...]

@@ -1,7 +1,7 @@
 """Build the experiment of a spec."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial, singledispatch
 from typing import Any
@@ -12,7 +12,7 @@ import numpy as np
 
 from .. import device, genomes, neat, search, spec
 from ..archive.initial import counters, genes_of
-from ..experiments import Experiment, reevaluation
+from ..experiments import Experiment, deciding, reevaluation
 from ..experiments.evolution import Evolution
 from ..experiments.offspring import Lessons, Programs
 from ..experiments.state import InitialCreatures, Limits, Plan, Reevaluation
@@ -69,7 +69,9 @@ def build_evolution(
         lessons=build_lessons(chosen, emitters),
         screen=build_screening_programs(chosen, plan),
     )
-    return Evolution(plan, programs, build_repeats(chosen, plan))
+    return Evolution(
+        plan, programs, build_repeats(chosen, plan), build_deciding(chosen, plan, jitted)
+    )
 
 
 def build_lessons(
@@ -108,6 +110,20 @@ def build_repeats(chosen: spec.Evolution, plan: Plan) -> reevaluation.Programs |
         evaluate_block=build_disturbed_block(chosen.scene, plan.encoding.room),
         add=jax.jit(search.reevaluation.add),
         correct=jax.jit(search.reevaluation.corrected),
+    )
+
+
+def build_deciding(
+    chosen: spec.Evolution, plan: Plan, jitted: Callable[..., Any]
+) -> deciding.Programs | None:
+    """Build the programs of means that decide, if the spec asks for them."""
+    settings = plan.reevaluation
+    if settings is None or not plan.decides:
+        return None
+    return deciding.Programs(
+        disturb=jitted(lambda given, s: deciding.disturb(settings, plan.key, given, s)),
+        evaluate_block=build_disturbed_block(chosen.scene, plan.encoding.room),
+        cells_of=jitted(lambda cells, measures: cells.of(measures)),
     )
 
 
@@ -191,7 +207,8 @@ def build_reevaluation(chosen: spec.Evolution) -> Reevaluation | None:
         asked.phase, asked.pose, asked.viscosity, asked.energy and bool(chosen.world.energy)
     )
     size = (chosen.world.width, chosen.world.height)
-    return Reevaluation(asked.every, asked.samples, spread, size)
+    decides = asked.decides, asked.max_samples, asked.max_error
+    return Reevaluation(asked.every, asked.samples, spread, size, *decides)
 
 
 def names_of(emitters: tuple[spec.Emitter, ...]) -> tuple[str, ...]:

@@ -1,5 +1,6 @@
 """Commands that read runs and sweeps on a server: list, watch, pull, tabulate."""
 
+from collections.abc import Iterable
 from itertools import islice
 from pathlib import Path
 from typing import Annotated, Any
@@ -9,10 +10,10 @@ from rich.text import Text
 from typer import Argument, Option
 
 from ..client import Client, Run, Sweep
-from ..client.formatting import COLOURS, MEASURES, figure
+from ..client.formatting import COLOURS, MEASURES, corrected_titles, figure
 from .remote import RUNS, Id, Json, find, say, server_command, show, show_table
 
-COLUMNS = ("id", "name", "experiment", "status", "done", *MEASURES.values())
+COLUMNS = ("id", "name", "experiment", "status", "done")
 
 
 @server_command(RUNS)
@@ -55,7 +56,9 @@ def runs(
     if json:
         show(records[:limit])
         return
-    show_table(COLUMNS, map(_row, records[:limit]))
+    titles = MEASURES | corrected_titles(records[:limit])
+    rows = (_row(record, titles) for record in records[:limit])
+    show_table((*COLUMNS, *titles.values()), rows)
     if len(records) > limit:
         say(f"More runs exist: --limit {10 * limit} lists them.")
 
@@ -120,7 +123,7 @@ def watch_to_end(thing: Run | Sweep) -> None:
     raise typer.Exit(0 if statuses <= {"finished"} else 1)
 
 
-def _row(record: dict[str, Any]) -> list[Any]:
+def _row(record: dict[str, Any], measures: Iterable[str]) -> list[Any]:
     status = record["status"]
     return [
         record["id"][:8],
@@ -128,14 +131,15 @@ def _row(record: dict[str, Any]) -> list[Any]:
         record["experiment"],
         Text(status, COLOURS.get(status, "default")),
         f"{100 * record['progress']:.0f} %",
-        *(figure(name, record[name]) for name in MEASURES),
+        *(figure(name, record[name]) for name in measures),
     ]
 
 
 def _case(case: dict[str, Any]) -> dict[str, Any]:
     """Return median and quartiles of each measure, at the generation that all runs reached."""
     measures = {}
-    for name in MEASURES:
+    known = [{name: one["median"] for name, one in case["finals"].items()}]
+    for name in MEASURES | corrected_titles(known):
         final = case["finals"].get(name) or {}
         measures[name] = {part: final.get(part) for part in ("median", "low", "high")}
     return {

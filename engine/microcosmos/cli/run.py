@@ -175,9 +175,16 @@ def _summary(report: Any) -> str:
             f"{name.replace('_', ' ')} {f'{value:.4g}' if isinstance(value, float) else value}"
             for name, value in shown
         )
-    return (
+    text = (
         f"QD score {report.qd_score:.2f}  coverage {100 * report.coverage:.1f} %  "
         f"best {report.best:.2f}"
+    )
+    found = report.summary or {}
+    if "corrected_qd_score" not in found:
+        return text
+    return (
+        f"{text}  corrected: QD score {found['corrected_qd_score']:.2f}  coverage "
+        f"{100 * found['corrected_coverage']:.1f} %  hit rate {100 * found['hit_rate']:.1f} %"
     )
 
 

@@ -1,10 +1,17 @@
 """Numbers, durations and states of runs as text."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 MEASURES = {"qd_score": "QD score", "coverage": "coverage", "best": "best"}
 """Titles of the measures of an archive's quality."""
+CORRECTED = {
+    "corrected_qd_score": "corrected QD score",
+    "corrected_coverage": "corrected coverage",
+    "hit_rate": "hit rate",
+}
+"""Titles of those after reevaluation, which not every run has."""
+SHARES = ("coverage", "corrected_coverage", "hit_rate")
 UNITS = ((86400, "d", 3600, "h"), (3600, "h", 60, "min"), (60, "min", 1, "s"))
 COLOURS = {
     "finished": "green",
@@ -29,13 +36,20 @@ def duration(seconds: float | None) -> str:
 def figure(name: str, value: float | None) -> str:
     if value is None:
         return "–"
-    return f"{100 * value:.1f} %" if name == "coverage" else f"{value:.4g}"
+    return f"{100 * value:.1f} %" if name in SHARES else f"{value:.4g}"
+
+
+def corrected_titles(records: Sequence[Mapping[str, Any]]) -> dict[str, str]:
+    """Return the titles of measures after reevaluation, if any of the records has them."""
+    known = any(record.get(name) is not None for record in records for name in CORRECTED)
+    return CORRECTED if known else {}
 
 
 def figures(record: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Return the quality of a run's archive, or the summary of its table."""
     if record.get("qd_score") is not None:
-        return [(title, figure(name, record[name])) for name, title in MEASURES.items()]
+        titles = MEASURES | corrected_titles([record])
+        return [(title, figure(name, record[name])) for name, title in titles.items()]
     summary = record.get("summary") or {}
     numbers = ((name, value) for name, value in summary.items() if type(value) in (int, float))
     return [(name.replace("_", " "), f"{value:.4g}") for name, value in list(numbers)[:4]]

@@ -31,6 +31,10 @@ class Run(Record):
     coverage = Field[float | None]()
     best = Field[float | None]()
     """The best fitness; `archive().best()` is its creature."""
+    corrected_qd_score = Field[float | None]()
+    """After the last reevaluation of the elites; None without."""
+    corrected_coverage = Field[float | None]()
+    hit_rate = Field[float | None]()
     error = Field[str | None]()
 
     def __repr__(self) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any, Self
 
 from .columns import frame
-from .formatting import MEASURES, counts_as_text
+from .formatting import MEASURES, corrected_titles, counts_as_text
 from .polling import ENDED, follow_sweep
 from .record import Field, Record
 from .run import Run
@@ -56,16 +56,18 @@ class Sweep(Record):
     def rows(self) -> list[dict[str, Any]]:
         """Return the result of each run, beside the values of its case."""
         values = {str(run): case["values"] for case in self.cases for run in case["runs"]}
+        runs = list(self.runs())
+        measures = MEASURES | corrected_titles([run.record for run in runs])
         return [
             {
                 **values.get(run.id, {}),
                 "seed": run.spec.get("seed"),
                 "status": run.status,
                 "generation": run.generation,
-                **{name: run.record[name] for name in (*MEASURES, "evaluations")},
+                **{name: run.record[name] for name in (*measures, "evaluations")},
                 "run": run.id,
             }
-            for run in self.runs()
+            for run in runs
         ]
 
     def to_pandas(self) -> Any:

@@ -80,6 +80,8 @@ def save(plan: Plan, state: State) -> bytes:
         pairs = zip(PREDICTIONS, state.screened.predictions.T, strict=True)
         tree["screening"] = dict(pairs)
         loop["model"] = vars(state.screened.model)
+    if state.first is not None:
+        tree["archive"]["first"] = state.first.of(cells)
     if isinstance(state.cells, search.Voronoi):
         tree["archive"]["centroids"] = state.cells.centroids
     if state.initial is not None:
@@ -133,6 +135,8 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
         columns_of = {name: np.asarray(x) for name, x in loop["model"].items()}
         model = search.screening.Model(**columns_of)
         restored = replace(restored, screened=Screened(model, predictions))
+    if restored.first is not None:
+        restored = replace(restored, first=restored.first.replaced(cells, archive["first"]))
     if "centroids" in archive:  # Another machine may have found slightly other ones.
         restored = replace(restored, cells=search.voronoi(plan.axes, archive["centroids"]))
     return prolonged(restored) if restored.generation < plan.generations else restored

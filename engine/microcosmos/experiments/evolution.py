@@ -20,7 +20,7 @@ from ..archive.variety import variety
 from ..genomes import Genotype
 from ..search.emitters.population import Population
 from ..search.emitters.tensorneat import TensorNeatState
-from . import archive_file, lineage, reevaluation, screening
+from . import archive_file, deciding, lineage, reevaluation, screening
 from .offspring import Offspring, Programs, next_offspring
 from .state import CURVES, ENDS, MAX_INFEASIBLE, Infeasible, Plan, State, start
 
@@ -36,6 +36,8 @@ class Evolution:
     programs: Programs
     repeats: reevaluation.Programs | None = None
     """Programs that reevaluate elites; None: elites are evaluated once."""
+    decide: deciding.Programs | None = None
+    """Programs of means that decide; None: offspring compete by their first evaluation."""
 
     def init(self) -> State:
         """Raise `ValueError` if files of initial creatures are missing."""
@@ -58,10 +60,15 @@ class Evolution:
         )
         if self.plan.feasible:
             evaluation = search.judged(evaluation)
+        decided = deciding.undecided(evaluation)
+        if self.decide:
+            decided = deciding.decide(
+                self.plan, self.decide, state, genotypes, evaluation, stop
+            )
         seconds = (time.monotonic() - offspring.began) * jax.local_device_count()
-        after, elites, clipped, cells = self._inserted(state, offspring, evaluation)
+        after, elites, clipped, cells = self._inserted(state, offspring, decided)
         after = replace(after, device_seconds=state.device_seconds + seconds)
-        after = self._learned(state, after, genotypes, evaluation, cells)
+        after = self._learned(state, after, genotypes, decided.mean, cells)
         after = replace(after, ended=_ended(self.plan, after))
         corrected = (np.nan, np.nan, np.nan)
         if self.repeats and reevaluation.due(self.plan, after):
@@ -70,15 +77,15 @@ class Evolution:
         row = np.array([*_figures(after), clipped, *corrected])
         after = replace(after, curves=np.concatenate([after.curves, row[None]]))
         seconds = after.device_seconds - state.device_seconds
-        summary = _summary(self.plan, after, seconds, np.asarray(evaluation.status))
+        summary = _summary(self.plan, after, seconds, np.asarray(decided.mean.status))
         return after, _report(after, elites, {**summary, **offspring.results.summary()})
 
     def _inserted(
-        self, state: State, offspring: Offspring, evaluation: search.Evaluation
+        self, state: State, offspring: Offspring, decided: deciding.Decided
     ) -> tuple[State, tuple[Elite, ...], int, np.ndarray]:
         """Return the state with the offspring recorded, new elites, the number clipped, and
         cells."""
-        programs, children = self.programs, offspring.children
+        programs, children, evaluation = self.programs, offspring.children, decided.mean
         candidates = search.candidates(
             state.generation + 1,
             children.genotypes,
@@ -93,9 +100,9 @@ class Evolution:
         emitters = offspring.without_replaced(programs.tell(offspring.emitters, outcome))
         inserted = jax.device_get(inserted)
         clipped = search.clipped(candidates, state.cells)
-        simulated = offspring.results.simulated + len(evaluation.fitness)
+        simulated = offspring.results.simulated + decided.simulated
         after, new = lineage.record(
-            self.plan, state, children, evaluation, inserted, offspring.names
+            self.plan, state, children, decided, inserted, offspring.names
         )
         after = replace(
             after,

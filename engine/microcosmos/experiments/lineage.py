@@ -12,6 +12,7 @@ from .. import naming, search
 from ..archive.poses import PoseStream, decode
 from ..archive.report import Elite
 from ..genomes import Genotype, take, write
+from .deciding import Decided
 from .state import Lineage, Plan, State
 
 NO_NAME = np.zeros(32, np.uint8)
@@ -22,7 +23,7 @@ def record(
     plan: Plan,
     state: State,
     children: search.Children,
-    evaluation: search.Evaluation,
+    decided: Decided,
     inserted: search.Inserted,
     names: np.ndarray,
 ) -> tuple[State, tuple[Elite, ...]]:
@@ -33,22 +34,9 @@ def record(
     slots = np.flatnonzero(inserted.entered)
     cells = np.asarray(inserted.cell)[slots]
     ancestors = _ancestors_of(names, state.nearest_ancestors, np.asarray(children.parents))
-    operator, fitness = np.asarray(children.operator), np.asarray(evaluation.fitness)
-    measures = np.asarray(evaluation.measures)
     elites = tuple(
-        _elite(
-            plan,
-            take(children.genotypes, slot),
-            float(fitness[slot]),
-            measures[slot],
-            cell=int(cell),
-            generation=state.generation + 1,
-            operator=int(operator[slot]),
-            parents=ancestors[slot],
-            device=plan.device,
-            poses=jax.tree.map(lambda x, slot=slot: x[slot], evaluation.poses),
-        )
-        for slot, cell in zip(slots.tolist(), cells, strict=True)
+        _new_elite(plan, state, children, decided, ancestors, slot, cell)
+        for slot, cell in zip(slots.tolist(), cells.tolist(), strict=True)
     )
     new = _entries(plan, elites, ancestors[slots])
     creatures, operators = state.creatures.copy(), state.operators.copy()
@@ -67,7 +55,33 @@ def record(
         nearest_ancestors=nearest_ancestors,
         lineage=lineage,
         poses={**state.poses, **poses},
+        first=state.first and state.first.replaced(cells, decided.columns(slots)),
     ), elites
+
+
+def _new_elite(
+    plan: Plan,
+    state: State,
+    children: search.Children,
+    decided: Decided,
+    ancestors: np.ndarray,
+    slot: int,
+    cell: int,
+) -> Elite:
+    first, mean = decided.first, decided.mean
+    return _elite(
+        plan,
+        take(children.genotypes, slot),
+        float(first.fitness[slot]),
+        np.asarray(first.measures[slot]),
+        competing=(float(mean.fitness[slot]), np.asarray(mean.measures[slot])),
+        cell=cell,
+        generation=state.generation + 1,
+        operator=int(np.asarray(children.operator)[slot]),
+        parents=ancestors[slot],
+        device=plan.device,
+        poses=jax.tree.map(lambda x: x[slot], first.poses),
+    )
 
 
 def _entries(plan: Plan, elites: tuple[Elite, ...], parents: np.ndarray) -> Lineage:
@@ -91,11 +105,16 @@ def document(plan: Plan, state: State, cell: int) -> dict[str, Any]:
     """Return the creature file of a cell's elite."""
     elites = jax.tree.map(lambda x: np.asarray(x)[cell], state.elites)
     entry = np.flatnonzero(state.lineage.cell == cell)[-1]
+    competing, first = (float(elites.fitness), elites.measures), state.first
+    fitness, measures = (
+        (float(first.fitness[cell]), first.measures[cell]) if first else competing
+    )
     elite = _elite(
         plan,
         elites.genotypes,
-        float(elites.fitness),
-        elites.measures,
+        fitness,
+        measures,
+        competing=competing,
         cell=cell,
         generation=int(elites.generation),
         operator=int(state.operators[cell]),
@@ -156,6 +175,7 @@ def _elite(
     fitness: float,
     values: np.ndarray,
     *,
+    competing: tuple[float, np.ndarray],
     cell: int,
     generation: int,
     operator: int,
@@ -181,10 +201,11 @@ def _elite(
     provenance = naming.provenance(
         search.OPERATORS[operator], generation=generation, parents=named, seed=plan.seed
     )
+    mean, means = competing
     return Elite(
         cell=cell,
-        fitness=fitness,
-        descriptors=tuple(measured["descriptors"].values()),
+        fitness=mean,
+        descriptors=tuple(means[[axis.measure for axis in plan.axes]].tolist()),
         measures=measures,
         creature=creature,
         identity=naming.canonical(whole),

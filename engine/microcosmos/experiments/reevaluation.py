@@ -77,8 +77,13 @@ def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bo
     # A run with more generations would not reevaluate here.
     early = not state.ended and state.generation % plan.reevaluation.every != 0
     before = state.repeats if early else None
-    spent = state.device_seconds + seconds
-    return replace(state, repeats=repeats, unrepeated=before, device_seconds=spent)
+    return replace(
+        state,
+        evaluations=state.evaluations + plan.reevaluation.samples * len(cells),
+        repeats=repeats,
+        unrepeated=before,
+        device_seconds=state.device_seconds + seconds,
+    )
 
 
 def figures(programs: Programs, state: State) -> tuple[float, float, float]:

@@ -13,6 +13,7 @@ from jaxtyping import Array, Float, Int, PRNGKeyArray, PyTree, UInt8
 from .. import neat, search
 from ..archive.poses import PoseStream
 from ..genomes import Encoding, Genotype
+from .first import FirstEvaluations, no_first
 
 CURVES = (
     "qd_score",
@@ -57,13 +58,17 @@ class Limits:
 
 @dataclass(frozen=True)
 class Reevaluation:
-    """When elites are reevaluated, and under which conditions."""
+    """When elites are reevaluated, under which conditions, and whether means decide; see
+    `spec.Reevaluation`."""
 
     every: int
     samples: int
     spread: search.reevaluation.Spread
     size: tuple[int, int]
     """Size of the world, in cells."""
+    decides: bool = False
+    max_samples: int = 12
+    max_error: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -118,6 +123,11 @@ class Plan:
     """Names of the emitters, each unique."""
     initial: InitialCreatures | None = None
     """Initial creatures; a file of the run also holds them."""
+
+    @property
+    def decides(self) -> bool:
+        """True if means decide which offspring enter."""
+        return self.reevaluation is not None and self.reevaluation.decides
 
     @property
     def axes(self) -> tuple[search.Axis, ...]:
@@ -183,6 +193,7 @@ class State(eqx.Module):
     generation: int
     """Generations completed."""
     evaluations: int
+    """Simulations of a creature: offspring, gradients and reevaluations."""
     infeasible: int
     cells: search.Cells
     """The plan's, or those of the machine on which the run began."""
@@ -217,15 +228,25 @@ class State(eqx.Module):
     """The plan's; the first generations evaluate them."""
     screened: Screened | None = None
     """None without screening."""
+    first: FirstEvaluations | None = None
+    """None unless means decide."""
 
 
 def prolonged(state: State) -> State:
     """Return the last state of a run as it would be if more generations followed."""
     if state.unrepeated is None:
         return state
-    curves = state.curves.copy()
+    early = np.sum(np.asarray(state.repeats.count) - np.asarray(state.unrepeated.count))
+    evaluations, curves = state.evaluations - int(early), state.curves.copy()
+    curves[-1, CURVES.index("evaluations")] = evaluations
     curves[-1, -N_CORRECTED:] = np.nan
-    return replace(state, curves=curves, repeats=state.unrepeated, unrepeated=None)
+    return replace(
+        state,
+        evaluations=evaluations,
+        curves=curves,
+        repeats=state.unrepeated,
+        unrepeated=None,
+    )
 
 
 def start(plan: Plan) -> State:
@@ -264,4 +285,5 @@ def start(plan: Plan) -> State:
         devices=(plan.device,),
         initial=plan.initial,
         screened=plan.screening and start_screening(plan.screening),
+        first=no_first(plan.cell_count, len(plan.measures)) if plan.decides else None,
     )

@@ -44,6 +44,13 @@ class Axis(eqx.Module):
         low, high = exact.logarithm(self.low), exact.logarithm(self.high)
         return jnp.exp(low + place * (high - low))
 
+    @property
+    def span(self) -> float:
+        """Length of the axis, on a log axis that of the natural logarithm."""
+        if not self.logarithmic:
+            return self.high - self.low
+        return float(exact.logarithm(self.high) - exact.logarithm(self.low))
+
     def bin(self, value: Float[Array, "*batch"]) -> Int[Array, "*batch"]:
         """Return numbers of half-open bins; values beyond an end are in the outer bin."""
         return jnp.searchsorted(self.edges, value, side="right").astype(jnp.int32)

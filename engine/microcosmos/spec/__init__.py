@@ -27,6 +27,7 @@ from .neuroevolution import Neuroevolution
 from .obstacles import Pattern, Post, Wall, solid_runs
 from .plugins import PluginUse, PluginVersion, plugins_in
 from .quality_diversity import QualityDiversity
+from .reevaluation import Reevaluation
 from .refinement import Refinement
 from .scaling import Scaling
 from .scene import Fold, Gait, Scene
@@ -34,7 +35,6 @@ from .search import (
     Archive,
     Descriptor,
     Generations,
-    Reevaluation,
     Screening,
     Search,
     Stop,

@@ -51,6 +51,7 @@ class Estimate:
 def estimate(spec: Spec) -> Estimate:
     """Return an upper estimate of a worker's memory, and the work of the whole run.
 
+    The evaluations of a search include reevaluations.
     Memory counts one block: the populations before, during and after a step, the coupling's
     windows of 16 cells per node, and the controls of all steps; for an archive also the
     offspring and their variation. It leaves out the memory of JAX itself.
@@ -70,14 +71,27 @@ def _(spec: Evolution) -> Estimate:
     archive += 2 * spec.archive.cells * (POSE * count + PATH)
     vary = 4 * search.batch * spec.genome.max_nodes**2 * FLOAT
     gradients = sum(spec.gradients) * search.generations
-    evaluations = search.batch * search.generations + gradients
+    again = reevaluations(spec)
+    evaluations = search.batch * search.generations + gradients + again
     record = 2 * (48 * search.generations + 96 * min(evaluations, 4 * spec.archive.cells))
     computed = ceil(search.batch / search.block) * search.block * search.generations
     one = simulation_bytes(spec.scene, spec.genome.max_nodes)
     memory = search.block * one + archive + vary + record + emitter_gradient_bytes(spec)
     memory += screening_bytes(spec, genome)
-    cell_steps = (computed + GRADIENT * gradients) * cell_steps_of(spec.scene)
+    cell_steps = (computed + again + GRADIENT * gradients) * cell_steps_of(spec.scene)
     return Estimate(memory, evaluations, cell_steps)
+
+
+def reevaluations(spec: Evolution) -> int:
+    """Return the reevaluations of a search with a full archive; of means that decide, as many
+    as if each of the offspring had the fewest samples."""
+    search, again = spec.search, spec.search.reevaluation
+    if again is None:
+        return 0
+    offspring = search.batch * search.generations
+    times = ceil(search.generations / again.every)
+    tested = times * min(spec.archive.cells, offspring)
+    return again.samples * (tested + (offspring if again.decides else 0))
 
 
 def screening_bytes(spec: Evolution, genome: int) -> int:

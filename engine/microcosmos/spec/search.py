@@ -11,7 +11,8 @@ from . import measures
 from .base import Digest, Part, field, sourced
 from .emitters import Emitter, NeatEmitter, refuse_uneven, slots
 from .plugins import OR_PLUGIN, MaybePlugin, PluginVersion, complete_plugin, completed
-from .sources import CVT, MAP_ELITES, OURS, PAPER, REEVALUATION, SCREENING
+from .reevaluation import Reevaluation
+from .sources import CVT, MAP_ELITES, OURS, PAPER, SCREENING
 
 Fitness = Literal[
     "speed",
@@ -167,25 +168,6 @@ class Stop(Part):
     run of the spec may end at another generation."""
     fitness: float | None = field(None, unit="fitness")
     """Target fitness."""
-
-
-class Reevaluation(Part):
-    """Repeated evaluation of elites under disturbed conditions, to test their robustness."""
-
-    model_config = sourced(REEVALUATION)
-
-    every: int = field(25, ge=1, le=1_000_000, unit="generations")
-    """Interval; elites are also evaluated after the last generation."""
-    samples: int = field(4, ge=1, le=100, unit="evaluations")
-    """Evaluations per elite each time."""
-    phase: bool = True
-    """Start a periodic timer at a random phase."""
-    pose: bool = True
-    """Start the body at a random position and angle."""
-    viscosity: float = field(0.05, ge=0.0, le=0.5)
-    """Largest relative change of the viscosity."""
-    energy: bool = True
-    """Move the packets of energy to random places."""
 
 
 class Screening(Part):

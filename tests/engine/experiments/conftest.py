@@ -22,6 +22,7 @@ NEUROEVOLUTION = SMALL | {
     "genome": {"max_nodes": 10, "max_connections": 16},
     "search": {"generations": 5, "batch": 16, "block": 8, "reevaluation": {"every": 3}},
 }
+DECIDES = {"every": 3, "samples": 2, "max_samples": 3, "decides": True}
 TINY = SMALL | {
     "seed": 2,
     "body": {"nodes": 8},
@@ -40,6 +41,8 @@ def learner(control, **emitter):
 SPECS = {
     "quality-diversity": SMALL,
     "neuroevolution": NEUROEVOLUTION,
+    "deciding": SMALL
+    | {"search": {"generations": 5, "batch": 8, "block": 4, "reevaluation": DECIDES}},
     "folding": {
         "experiment": "folding",
         "targets": [{"digit": 1}, {"digit": 3}],

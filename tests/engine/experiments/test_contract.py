@@ -16,13 +16,8 @@ from microcosmos.spec import parse
 LONG = ("lamarckian", "cma-me", "tensorneat")
 LEARNERS = ("cma-mae", "cma-mega", "lamarckian", "cma-me", "tensorneat")
 COMPUTED = (
-    "quality-diversity",
-    "neuroevolution",
-    "folding",
-    "refinement",
-    "gaits",
-    "zoo",
-    "screened",
+    *("quality-diversity", "neuroevolution", "deciding", "folding", "refinement", "gaits"),
+    *("zoo", "screened"),
 )
 OTHER = {
     "quality-diversity": {"task": {"steps": 61}},
@@ -81,6 +76,7 @@ def test_a_new_build_of_the_same_spec_gives_the_same_bytes(name, course_of, fini
     [
         ("quality-diversity", 2),
         ("neuroevolution", 3),
+        ("deciding", 2),
         pytest.param("neuroevolution", 4, marks=pytest.mark.long),
     ],
 )

@@ -57,6 +57,12 @@ def test_elites_are_evaluated_again_on_schedule_and_at_the_end(experiment, cours
     assert (again[np.asarray(final.elites.occupied)] >= 1).all()
     assert not again[~np.asarray(final.elites.occupied)].any()
     assert 0 <= reports[-1].summary["hit_rate"] <= 1
+    elites = [np.asarray(states[number].elites.occupied).sum() for number in (3, 5)]
+    assert [states[number].evaluations for number in (2, 3, 5)] == [
+        32,
+        48 + 4 * elites[0],
+        80 + 4 * sum(elites),
+    ]
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,8 @@ arms levels branches bins centroids packets placements vortices terms emitters l
 updates digit edges forcing_iterations constraint_iterations share seed refinement.steps
 stretch shear bend gap length_scale faintest spread survival crossover learning_rate
 weight_rate replace_rate activation_rate toggle_rate add_node_rate add_connection_rate
-Reevaluation.viscosity Energy.rate folding.rate CmaMegaEmitter.rate
+Reevaluation.viscosity Reevaluation.max_error Screening.unscreened Energy.rate folding.rate
+CmaMegaEmitter.rate
 iso line step weight_step diversity Weights.scale refinement.length PopulationEmitter.threshold
 Bounds.low Bounds.high Graph.nodes Polyline.points softest body_rate shape_rate segment_rate
 GrownBody.segments GrownBody.copies GrownBody.limbs GrownBody.rings unscreened

@@ -42,6 +42,17 @@ def save(attempt, record):
     return save
 
 
+def test_corrected_figures_are_those_of_the_last_reevaluation(claim_run, report, row, attempt):
+    for generation, score in enumerate((None, 9.0, None, 8.0, None), 1):
+        summary = {"corrected_qd_score": score, "corrected_coverage": 0.5, "hit_rate": 0.7}
+        attempt.record(report(generation, summary=summary if score else {}), 1.0)
+        if generation == 3:
+            attempt.save(3, b"state after 3")
+    assert (row().corrected_qd_score, row().hit_rate) == (8.0, 0.7)
+    claim_run()
+    assert (row().generation, row().corrected_qd_score) == (3, 9.0)
+
+
 def test_generations_after_the_checkpoint_are_repeated(
     claim_run, report, row, attempt, record, count
 ):

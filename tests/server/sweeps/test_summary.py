@@ -121,6 +121,18 @@ def test_finals_of_a_table_come_from_its_summary(claimed, api, sweep, table):
     assert "`gaits` has no seed" in refused["detail"]
 
 
+def test_finals_have_the_corrected_figures_of_archives(claimed, api, post, report):
+    found = post(seeds=1).json()
+    corrected = {"corrected_qd_score": 8.0, "corrected_coverage": 0.5, "hit_rate": 0.75}
+    attempt = claimed(found["cases"][0]["runs"][0])
+    attempt.record(report(1, summary={**corrected, "clipped": 3}), 1.0)
+    (case,) = api.get(f"sweeps/{found['id']}/summary").json()["cases"]
+    assert {name: case["finals"][name]["values"] for name in corrected} == {
+        name: [value] for name, value in corrected.items()
+    }
+    assert "clipped" not in case["finals"]
+
+
 @pytest.mark.parametrize(
     ("runs", "common"),
     [

@@ -2290,6 +2290,10 @@ export interface components {
             attempt: number;
             /** Best */
             best: number | null;
+            /** Corrected Coverage */
+            corrected_coverage: number | null;
+            /** Corrected Qd Score */
+            corrected_qd_score: number | null;
             /** Coverage */
             coverage: number | null;
             /**
@@ -2320,6 +2324,8 @@ export interface components {
             generation: number;
             /** Generations */
             generations: number;
+            /** Hit Rate */
+            hit_rate: number | null;
             /**
              * Id
              * Format: uuid

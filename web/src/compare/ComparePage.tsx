@@ -8,7 +8,7 @@ import { type OtherRun, curveViewOf, overlayPlots } from "../charts/curves/curve
 import { type Plot, scoresOf } from "../charts/curves/plots";
 import { LineSample, MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
 import { StatusBadge, timeOf } from "../run/RunStatus";
-import { SCORES } from "../run/figures";
+import { CORRECTED, SCORES, hasCorrected } from "../run/figures";
 import { differences, valueText } from "../run/spec/difference";
 import type { Curves as Columns } from "../store/curves";
 import { useCurvesOf, useExperiments } from "../store/fetch";
@@ -115,8 +115,14 @@ interface Compared {
 
 type FormattedFigure = [title: string, format: (run: Run) => string];
 
-const FIGURES: FormattedFigure[] = [
-  ...SCORES.map(([name, title, format]): FormattedFigure => [title, (run) => format(run[name], 5)]),
+const scoresAs = ([name, title, format]: (typeof SCORES | typeof CORRECTED)[number]): FormattedFigure => [
+  title,
+  (run) => format(run[name], 5),
+];
+
+const figuresOf = (runs: Run[]): FormattedFigure[] => [
+  ...SCORES.map(scoresAs),
+  ...(runs.some(hasCorrected) ? CORRECTED.map(scoresAs) : []),
   [text.generations, (run) => `${count(run.generation)} / ${count(run.generations)}`],
   [text.evaluations, (run) => count(run.evaluations)],
   [text.infeasible, (run) => count(run.infeasible)],
@@ -126,7 +132,8 @@ const FIGURES: FormattedFigure[] = [
 ];
 
 function Figures({ runs }: { runs: Compared[] }) {
-  const rows = FIGURES.map(([title, format]) => ({ title, values: runs.map(({ run }) => format(run)) }));
+  const figures = figuresOf(runs.map(({ run }) => run));
+  const rows = figures.map(([title, format]) => ({ title, values: runs.map(({ run }) => format(run)) }));
   return (
     <Card id="figures" title={text.figures}>
       <RunTable runs={runs} corner={text.figure} rows={rows} />

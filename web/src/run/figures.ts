@@ -15,6 +15,20 @@ export const SCORES: [name: "qd_score" | "coverage" | "best", title: string, for
   ["best", text.bestFitness, number],
 ];
 
+type Corrected = "corrected_qd_score" | "corrected_coverage" | "hit_rate";
+
+/** Figures after re-evaluation of the elites, which only some runs have. */
+export const CORRECTED: [name: Corrected, title: string, format: Format][] = [
+  ["corrected_qd_score", text.correctedQdScore, number],
+  ["corrected_coverage", text.correctedCoverage, percent],
+  ["hit_rate", text.hitRate, percent],
+];
+
+export const hasCorrected = (run: Run) => (run.corrected_qd_score ?? null) !== null;
+
+const correctedOf = (run: Run): Figure[] =>
+  hasCorrected(run) ? CORRECTED.map(([name, title, format]): Figure => [title, format(run[name])]) : [];
+
 const summaryOf = (run: Run, name: string) => {
   const value = run.summary?.[name];
   return typeof value === "number" ? value : null;
@@ -46,6 +60,7 @@ export function figuresOf(run: Run): Figure[] {
     default:
       return [
         ...SCORES.map(([name, title, format]): Figure => [title, format(run[name])]),
+        ...correctedOf(run),
         [text.infeasible, count(run.infeasible)],
         ...varietyOf(run),
       ];
@@ -69,7 +84,8 @@ export function keyFigureOf(run: Run): Figure {
   // Small measurements have no exponent: the list shows their memory.
   const small = run.experiment === "scaling" && summaryOf(run, "exponent") === null;
   const [name, value] = figuresOf(run)[small ? 2 : (KEY_FIGURE[run.experiment] ?? 0)]!;
-  return [name === text.qdScore ? name : name.toLowerCase(), value];
+  if (name !== text.qdScore) return [name.toLowerCase(), value];
+  return [name, hasCorrected(run) ? text.andCorrected(value, number(run.corrected_qd_score)) : value];
 }
 
 /** The name of a generation of a run. */

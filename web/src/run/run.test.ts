@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { LogEntry, Run } from "../api/types";
-import { endReasonOf, figuresOf } from "./figures";
+import { endReasonOf, figuresOf, keyFigureOf } from "./figures";
 import { activityOf, elapsedOf } from "./RunStatus";
 import { atLeast, summaryOf, textOf } from "./LogCard";
 
@@ -80,5 +80,23 @@ describe("the variety of a search", () => {
       ["Motion distance", "0.123 body lengths"],
       ["Kinds of motion", "12"],
     ]);
+  });
+});
+
+describe("the figures of a search whose elites were re-evaluated", () => {
+  const scores = { qd_score: 67.1, coverage: 0.605, best: 0.6, infeasible: 3, summary: null };
+  const run = { experiment: "quality-diversity", ...scores } as unknown as Run;
+  const corrected = { corrected_qd_score: 55.9, corrected_coverage: 0.5, hit_rate: 0.71 };
+
+  it("have the corrected ones beside those as found", () => {
+    expect(keyFigureOf(run)).toEqual(["QD score", "67.1"]);
+    expect(Object.fromEntries(figuresOf(run))).not.toHaveProperty("Hit rate");
+    expect(keyFigureOf({ ...run, ...corrected })).toEqual(["QD score", "67.1 (corrected 55.9)"]);
+    expect(Object.fromEntries(figuresOf({ ...run, ...corrected }))).toMatchObject({
+      "QD score": "67.1",
+      "Corrected QD score": "55.9",
+      "Corrected coverage": "50 %",
+      "Hit rate": "71 %",
+    });
   });
 });

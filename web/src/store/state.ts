@@ -128,12 +128,19 @@ export function withSnapshot(
 export const withElitesEvent = (state: State, event: wire.ElitesEvent): State =>
   withDetail(state, event.run, (detail) => details.withElitesEvent(detail, event));
 
+/** Figures that a run keeps until its elites are re-evaluated again. */
+const CORRECTED = ["corrected_qd_score", "corrected_coverage", "hit_rate"] as const;
+
+const pick = (summary: wire.Values, names: readonly string[]) =>
+  Object.fromEntries(names.filter((name) => name in summary).map((name) => [name, summary[name]]));
+
 export function withGenerationEvent(state: State, event: wire.GenerationEvent): State {
   const next = withDetail(state, event.run, (detail) => details.withGenerationEvent(detail, event));
   const run = state.runs.get(event.run);
   if (!run || event.generation <= run.generation) return next;
   const { generation, qd_score, coverage, best, evaluations, infeasible } = event;
-  const figures = { generation, qd_score, coverage, best, evaluations, infeasible };
+  const corrected = pick(event.summary ?? {}, CORRECTED);
+  const figures = { generation, qd_score, coverage, best, evaluations, infeasible, ...corrected };
   const progress = Math.min(1, generation / run.generations);
   const sparkline = withPoint(run.sparkline, run.generation, qd_score, generation);
   return withRun(next, { ...run, ...figures, progress, sparkline });

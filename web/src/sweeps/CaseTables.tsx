@@ -3,7 +3,7 @@
 import type { Member, Spread } from "../api/types";
 import { DASH, count, number, words } from "../ui/format";
 import { LineSample } from "../charts/lineStyle";
-import { SCORES } from "../run/figures";
+import { CORRECTED, SCORES } from "../run/figures";
 import { Card } from "../ui/Page";
 import { type Column, Table } from "../ui/Table";
 import { type ShownCase, memberName } from "./summaryPlots";
@@ -51,6 +51,7 @@ type Format = (value: number | null) => string;
 
 const KNOWN_FIGURES: [name: string, title: string, format: Format][] = [
   ...SCORES,
+  ...CORRECTED,
   ["evaluations", text.evaluations, count],
 ];
 

@@ -130,6 +130,7 @@ def _runs() -> None:
         *_required(sa.BigInteger(), "evaluations", "infeasible"),
         sa.Column("seconds", sa.Double(), nullable=False),
         *_optional(sa.Double(), "qd_score", "coverage", "best"),
+        *_optional(sa.Double(), "corrected_qd_score", "corrected_coverage", "hit_rate"),
         *_optional(sa.Uuid(), "sweep", "forked_from", "owner"),
         *_optional(sa.Integer(), "sweep_index", "n_initial"),
         sa.CheckConstraint(

@@ -1,5 +1,7 @@
-"""Writes the archive file of a screened search; run by `test_devices` with the number of devices
-and the path of the file."""
+"""Writes the archive file of a screened search.
+
+`test_devices` runs it with the number of devices and the path of the file.
+"""
 
 import os
 import sys
