@@ -2,7 +2,7 @@
 
 Presets over five seeds, whose elites are simulated again in variants that should not matter;
 bodies that evolve, against frozen plans and chains, in a channel and past posts;
-four searches at equal evaluations, five seeds each, submitted over HTTP; a run that is
+five searches at equal evaluations, five seeds each, submitted over HTTP; a run that is
 killed, stopped, paused and resumed, whose archive has to be byte for byte the undisturbed
 one, as has that of a second installation, on PostgreSQL and a Redis server; creatures that
 sense and collect energy; searches with derivatives and without; a page that is left open for

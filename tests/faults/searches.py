@@ -23,6 +23,9 @@ METHODS = {
     "random": {"search": {"emitters": [{"operator": "random"}]}},
     "NEAT": {"experiment": "neuroevolution"},
     "MAP-Elites, NEAT": {"search": {"emitters": [{"operator": "neat"}]}},
+    "MAP-Elites, NEAT, screened": {
+        "search": {"emitters": [{"operator": "neat"}], "screening": {}},
+    },
     "MAP-Elites, iso+line, direct": {
         "control": {"encoding": "direct"},
         "search": {"emitters": [{"operator": "iso+line"}]},
@@ -36,6 +39,8 @@ BARS = {
     (6_400, "MAP-Elites, NEAT", "qd_score"): 1.3,
     (3_200, "MAP-Elites, NEAT", "best"): 1.2,
     (3_200, "NEAT", "best"): 1.0,
+    (6_400, "MAP-Elites, NEAT, screened", "qd_score"): 2.0,
+    (6_400, "MAP-Elites, NEAT, screened", "best"): 1.1,
 }
 """Least ratios of medians to those of random search."""
 FIGURES = {

@@ -15,9 +15,9 @@ def test_the_number_of_devices_makes_no_difference(tmp_path):
     given = {"JAX_PLATFORMS": "cpu", "MICROCOSMOS_TEST_CACHE": str(tmp_path / "cache")}
     environment = os.environ | given | {"XLA_FLAGS": ""}  # Compiled as the product is.
     files = []
-    for devices in (1, 2, 3):
+    for devices in (1, 3):
         path = tmp_path / f"{devices}.h5"
         command = [sys.executable, str(PROGRAM), str(devices), str(path)]
         subprocess.run(command, env=environment, check=True)
         files.append(path.read_bytes())
-    assert files[0] == files[1] == files[2]
+    assert files[0] == files[1]
