@@ -90,9 +90,9 @@ def compacted(children: Graph, before: Counters) -> tuple[Graph, Counters]:
     network: Any = children.network if isinstance(children, BodyGraph) else children
     innovation, one = _dense(network.innovation, network.connection_used, before.innovation)
     node, two = _dense(network.node_id, network.node_used, before.node)
-    network, three = replace(network, innovation=innovation, node_id=node), before.segment
+    network = eqx.tree_at(lambda x: (x.innovation, x.node_id), network, (innovation, node))
     if not isinstance(children, BodyGraph):
-        return network, Counters(one, two, three)
+        return network, Counters(one, two, before.segment)
     segment, three = _dense(children.plan.number, children.plan.used, before.segment)
     plan = children.plan._replace(number=segment)
     return BodyGraph(plan, network), Counters(one, two, three)

@@ -22,7 +22,7 @@ weight_rate replace_rate activation_rate toggle_rate add_node_rate add_connectio
 Reevaluation.viscosity Energy.rate folding.rate CmaMegaEmitter.rate
 iso line step weight_step diversity Weights.scale refinement.length PopulationEmitter.threshold
 Bounds.low Bounds.high Graph.nodes Polyline.points softest body_rate shape_rate segment_rate
-GrownBody.segments GrownBody.copies GrownBody.limbs GrownBody.rings
+GrownBody.segments GrownBody.copies GrownBody.limbs GrownBody.rings exploration unscreened
 """
 """Counts, shares, what genes and weights are measured in, and lists of places in cells."""
 
