@@ -1,8 +1,11 @@
 """Build the emitters of a spec."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 from .. import neat, search, spec
+from ..experiments.state import Plan
 from ..genomes import Encoding
 from ..search import emitters, qdax, tensorneat
 from ..search.emitters.tensorneat import TensorNeat
@@ -15,6 +18,27 @@ def build_emitters(chosen: spec.Evolution, encoding: Encoding) -> tuple[search.E
     """Build the emitters, each with its slots of a generation."""
     pairs = zip(chosen.emitters, chosen.slots, strict=True)
     return tuple(_build(emitter, slots, chosen, encoding) for emitter, slots in pairs)
+
+
+def build_bandit(chosen: spec.Evolution) -> emitters.Bandit | None:
+    """Build what divides each batch among the emitters, if the spec asks for it."""
+    asked = getattr(chosen.search, "bandit", None)
+    return asked and emitters.Bandit(asked.window, asked.exploration)
+
+
+def build_emission(plan: Plan) -> Callable[..., Any]:
+    """Build the function that emits a generation; see `experiments.offspring.Programs.emit`."""
+
+    def fixed(states, elites, counters, generation, emitter, *, key=plan.key):
+        given = states, elites, counters, generation
+        return emitters.emit(plan.emitters, *given, key=key)
+
+    def divided(states, elites, counters, generation, emitter, *, key=plan.key):
+        given = elites, counters, generation, emitter
+        children, counters = emitters.emit_chosen(plan.emitters, *given, key=key)
+        return children, states, counters
+
+    return divided if plan.bandit else fixed
 
 
 def _build(

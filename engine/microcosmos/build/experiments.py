@@ -19,7 +19,7 @@ from ..experiments.state import InitialCreatures, Limits, Plan, Reevaluation
 from ..search.emitters.tensorneat import TensorNeat
 from .cells import build_cells
 from .creatures import build_block, build_disturbed_block, identity_template
-from .emitters import build_emitters
+from .emitters import build_bandit, build_emission, build_emitters
 from .folding import build_folding
 from .plugins import measures_of, plugin_versions
 from .refinement import build_refinement
@@ -52,7 +52,7 @@ def build_evolution(
 ) -> Evolution:
     """Build a search with an archive."""
     plan = with_initial(build_plan(chosen), chosen, initial)
-    emitters, key = plan.emitters, plan.key
+    emitters = plan.emitters
     on_host = any(isinstance(emitter, TensorNeat) for emitter in emitters)
     small = plan.cell_count * plan.batch <= SMALL
     options = device.quick_options() if small else {}
@@ -60,7 +60,7 @@ def build_evolution(
     compiled = (lambda program: program) if on_host else jitted
     # Each program is compiled for this run's sizes and seed.
     programs = Programs(
-        emit=compiled(lambda *given: search.emitters.emit(emitters, *given, key=key)),
+        emit=compiled(build_emission(plan)),
         evaluate_block=build_block(chosen.scene, room_of(chosen)),
         insert=search.insert_program(options),
         credit=jitted(search.emitters.credit),
@@ -158,6 +158,7 @@ def build_plan(chosen: spec.Evolution) -> Plan:
         device=device.device_kind(portable=is_portable(chosen)),
         limits=build_stop_limits(chosen.search.stop),
         reevaluation=build_reevaluation(chosen),
+        bandit=build_bandit(chosen),
         feasible=chosen.search.feasible,
         force_free=chosen.coupling.force_free,
         measures=measures_of(scene),

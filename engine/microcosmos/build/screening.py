@@ -10,7 +10,8 @@ import jax
 from .. import device, search, spec
 from ..experiments import screening
 from ..experiments.state import Plan, Screening
-from ..search.emitters import Emitter, emit
+from ..search.emitters import with_slots
+from .emitters import build_emission
 from .scene import build_layout, build_period, build_task
 
 FIRST_ROUND = 2**30
@@ -39,12 +40,13 @@ def build_screening_programs(chosen: spec.Evolution, plan: Plan) -> screening.Pr
     if plan.screening is None:
         return None
     outputs, regression = _outputs(plan), plan.screening.regression
-    emitters = tuple(_widened(one, plan.screening.candidates) for one in plan.emitters)
+    times, states = plan.screening.candidates, (None,) * len(plan.emitters)
+    wide = tuple(with_slots(one, times * one.slots) for one in plan.emitters)
+    emission = build_emission(replace(plan, emitters=wide))
 
-    def candidates(elites, counters, generation, number):
+    def candidates(elites, counters, generation, number, emitter):
         key = jax.random.fold_in(plan.key, FIRST_ROUND + number)
-        states = (None,) * len(emitters)
-        children, _, counters = emit(emitters, states, elites, counters, generation, key=key)
+        children, _, counters = emission(states, elites, counters, generation, emitter, key=key)
         return children, counters
 
     return screening.Programs(
@@ -56,7 +58,7 @@ def build_screening_programs(chosen: spec.Evolution, plan: Plan) -> screening.Pr
             ),
             compiler_options=device.compiler_options(),
         ),
-        best=jax.jit(search.screening.best, static_argnums=3),
+        best=jax.jit(search.screening.best, static_argnums=4),
         outputs=outputs.of,
     )
 
@@ -74,8 +76,3 @@ def build_description(chosen: spec.Evolution, plan: Plan) -> Callable[..., Any]:
 
 def _outputs(plan: Plan) -> search.screening.Outputs:
     return search.screening.Outputs(plan.axes, len(plan.measures), plan.feasible)
-
-
-def _widened(emitter: Emitter, times: int) -> Any:
-    widened: Any = emitter
-    return replace(widened, slots=times * emitter.slots)

@@ -113,7 +113,9 @@ class Evolution:
             counters=offspring.counters,
             emitters=emitters,
             repeats=programs.forget(state.repeats, inserted.cell, inserted.entered),
-            outcomes=np.concatenate([state.outcomes, self._outcomes(inserted)[None]]),
+            outcomes=np.concatenate(
+                [state.outcomes, self._outcomes(offspring.emitter, inserted)[None]]
+            ),
             failures=_failures(state, children.genotypes, np.asarray(evaluation.status)),
         )
         return after, new, clipped, np.asarray(inserted.cell)
@@ -151,11 +153,12 @@ class Evolution:
     def restore(self, data: bytes, *, other_device: bool = False) -> State:
         return archive_file.restore(self.plan, data, other_device=other_device)
 
-    def _outcomes(self, inserted: search.Inserted) -> np.ndarray:
+    def _outcomes(self, emitter: np.ndarray, inserted: search.Inserted) -> np.ndarray:
+        """Return a row of `OUTCOMES` for each emitter, from the emitter of each slot."""
         entered, fresh = np.asarray(inserted.entered), np.asarray(inserted.fresh)
         counts = np.stack([np.ones(len(entered), int), entered & fresh, entered & ~fresh], 1)
-        slots = [emitter.slots for emitter in self.plan.emitters]
-        return np.add.reduceat(counts, np.cumsum([0, *slots[:-1]]))
+        own = np.arange(len(self.plan.emitters))[:, None] == emitter[None]
+        return own.astype(int) @ counts
 
 
 def _failures(state: State, genotypes: Genotype, status: np.ndarray) -> Infeasible:
@@ -212,7 +215,9 @@ def _summary(plan: Plan, state: State, seconds: float, status: np.ndarray) -> di
     values = dict(zip(CURVES, state.curves[-1].tolist(), strict=True))
     found: dict[str, Any] = {"device_seconds": seconds, "clipped": int(values["clipped"])}
     for i, name in enumerate(plan.names):
-        _, inserted, improved = state.outcomes[-1, i].tolist()
+        children, inserted, improved = state.outcomes[-1, i].tolist()
+        if plan.bandit:
+            found[f"{name}: children"] = children
         found |= {f"{name}: inserted": inserted, f"{name}: improved": improved}
     for name in ("corrected_qd_score", "corrected_coverage", "hit_rate"):
         if np.isfinite(values[name]):

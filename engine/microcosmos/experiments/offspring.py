@@ -66,6 +66,8 @@ class Programs:
     """The compiled parts of a generation."""
 
     emit: Callable[..., tuple[search.Children, tuple, neat.Counters]]
+    """Children from the emitters' states, an archive, counters, a generation and the emitter of
+    each slot."""
     evaluate_block: Callable[[Genotype], search.Evaluation]
     insert: Callable[..., tuple[search.Elites, search.Inserted]]
     credit: Callable[..., search.Elites]
@@ -90,6 +92,8 @@ class Offspring:
     """Names of the creatures that parents were drawn from, by cell."""
     from_archive: bool
     """Whether parents are elites, not initial creatures."""
+    emitter: np.ndarray
+    """The number of each slot's emitter, −1 for an initial creature."""
     before: tuple[tuple[Any] | None, ...] = ()
     """The earlier state of each emitter some of whose children were replaced."""
 
@@ -104,15 +108,28 @@ def next_offspring(
 ) -> Offspring:
     """Return the next generation's children."""
     first, initial = state.generation * plan.batch, state.initial
+    emitter = divided(plan, state)
     if initial is None or first >= len(initial.creature):
         if programs.screen and state.screened and state.screened.model.ready:
-            return _screened(plan, programs, programs.screen, state, stop)
-        return _emitted(plan, programs, state, state.elites, state.creatures, stop)
+            return _screened(plan, programs, programs.screen, state, emitter, stop)
+        names = state.creatures
+        return _emitted(plan, programs, state, state.elites, names, emitter, stop)
     found, names = _initial_archive(plan, state, initial)
-    offspring = _emitted(plan, programs, state, found, names, stop)
+    offspring = _emitted(plan, programs, state, found, names, emitter, stop)
     offspring = replace(offspring, from_archive=False)
     places = np.arange(first, min(first + plan.batch, len(initial.creature)))
     return _with_initial(plan, state, offspring, initial, places)
+
+
+def divided(plan: Plan, state: State) -> np.ndarray:
+    """Return the number of the emitter of each slot of the next generation."""
+    slots = tuple(emitter.slots for emitter in plan.emitters)
+    if plan.bandit is not None:
+        children, inserted, improved = state.outcomes[-plan.bandit.window :].sum(0).T
+        if children.any():  # Before the first generation nothing is known.
+            known = children.tolist(), (inserted + improved).tolist()
+            slots = plan.bandit.slots(*known, plan.batch)
+    return np.repeat(np.arange(len(slots), dtype=np.int32), slots)
 
 
 def _emitted(
@@ -121,17 +138,18 @@ def _emitted(
     state: State,
     elites: search.Elites,
     names: np.ndarray,
+    emitter: np.ndarray,
     stop: Callable[[], bool],
 ) -> Offspring:
     children, emitters, counters = programs.emit(
-        state.emitters, elites, state.counters, jnp.asarray(state.generation)
+        state.emitters, elites, state.counters, jnp.asarray(state.generation), emitter
     )
     children, began = jax.device_get(children), time.monotonic()
     slots = tuple(emitter.slots for emitter in plan.emitters)
     children, emitters, results = _teach(
         programs.lessons, slots, children, emitters, block=plan.block, stop=stop
     )
-    return Offspring(children, emitters, counters, results, began, names, from_archive=True)
+    return Offspring(children, emitters, counters, results, began, names, True, emitter)
 
 
 def _screened(
@@ -139,15 +157,14 @@ def _screened(
     programs: Programs,
     given: screening.Programs,
     state: State,
+    emitter: np.ndarray,
     stop: Callable[[], bool],
 ) -> Offspring:
     began = time.monotonic()
-    pool, counters = screening.candidates(plan, given, programs.insert, state, stop)
-    children, counters = screening.chosen(plan, given, state, pool, counters)
+    pool, counters = screening.candidates(plan, given, programs.insert, state, emitter, stop)
+    children, counters = screening.chosen(plan, given, state, pool, counters, emitter)
     results, names = LessonResults(), state.creatures
-    return Offspring(
-        children, state.emitters, counters, results, began, names, from_archive=True
-    )
+    return Offspring(children, state.emitters, counters, results, began, names, True, emitter)
 
 
 def _initial_archive(
@@ -192,7 +209,8 @@ def _with_initial(
         (kept,) if first < count and not isinstance(kept, Population) else None
         for kept, first in pairs
     )
-    return replace(offspring, children=children, before=before)
+    emitter = put(offspring.emitter, np.full(count, -1, np.int32))
+    return replace(offspring, children=children, before=before, emitter=emitter)
 
 
 def _teach(

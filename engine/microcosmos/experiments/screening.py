@@ -26,7 +26,8 @@ class Programs:
     """The compiled parts of screening."""
 
     emit: Callable[..., tuple[search.Children, neat.Counters]]
-    """Candidates of a round, from an archive, counters, a generation and the round."""
+    """Candidates of a round, from an archive, counters, a generation, the round and the emitter
+    of each."""
     describe: Callable[[Genotype], search.screening.Described]
     """Descriptions of a block of genotypes."""
     predict: Callable[..., Predicted]
@@ -51,15 +52,20 @@ def candidates(
     programs: Programs,
     insert: Callable[..., tuple[search.Elites, search.Inserted]],
     state: State,
+    emitter: Int[np.ndarray, "slot"],
     stop: Callable[[], bool],
 ) -> tuple[Pool, neat.Counters]:
-    """Return the candidates of all rounds, and the counters after their genes."""
+    """Return the candidates of all rounds, and the counters after their genes.
+
+    Takes the number of each slot's emitter, in ascending order.
+    """
     assert plan.screening is not None
     elites, counters, parts = state.elites, state.counters, []
+    of = np.repeat(emitter, plan.screening.candidates)
     ancestors = np.arange(plan.cell_count, dtype=np.int32)
     for number in range(plan.screening.rounds):
         children, counters = programs.emit(
-            elites, counters, jnp.asarray(state.generation), jnp.asarray(number)
+            elites, counters, jnp.asarray(state.generation), jnp.asarray(number), of
         )
         children = jax.device_get(children)
         parents = np.asarray(children.parents)
@@ -80,13 +86,16 @@ def candidates(
             entered = np.asarray(inserted.entered)
             ancestors[np.asarray(inserted.cell)[entered]] = parents[entered, 0]
     children, predicted = jax.tree.map(lambda *rows: np.concatenate(rows), *parts)
-    slots = [plan.screening.candidates * emitter.slots for emitter in plan.emitters]
-    emitter = np.tile(np.repeat(np.arange(len(slots)), slots), plan.screening.rounds)
-    return Pool(children, predicted, emitter), counters
+    return Pool(children, predicted, np.tile(of, plan.screening.rounds)), counters
 
 
 def chosen(
-    plan: Plan, programs: Programs, state: State, pool: Pool, counters: neat.Counters
+    plan: Plan,
+    programs: Programs,
+    state: State,
+    pool: Pool,
+    counters: neat.Counters,
+    emitter: Int[np.ndarray, "slot"],
 ) -> tuple[search.Children, neat.Counters]:
     """Return the children to simulate, and the counters after their genes.
 
@@ -95,15 +104,14 @@ def chosen(
     """
     assert plan.screening is not None
     height, rows = search.screening.heights(state.elites), []
-    for number, emitter in enumerate(plan.emitters):
-        own = pool.emitter == number
-        free = round(plan.screening.unscreened * emitter.slots)
-        found, height = programs.best(
-            pool.predicted, height, jnp.asarray(own), emitter.slots - free
+    for number, slots in enumerate(np.bincount(emitter).tolist()):
+        own, free = pool.emitter == number, round(plan.screening.unscreened * slots)
+        places, height = programs.best(
+            pool.predicted, height, jnp.asarray(own), slots - free, plan.batch
         )
-        taken = np.zeros(len(own), bool)
-        taken[np.asarray(found)] = True
-        rows += [np.asarray(found), np.flatnonzero(own & ~taken)[:free]]
+        found, taken = np.asarray(places)[: slots - free], np.zeros(len(own), bool)
+        taken[found] = True
+        rows += [found, np.flatnonzero(own & ~taken)[:free]]
     children = jax.tree.map(lambda x: x[np.concatenate(rows)], pool.children)
     if not isinstance(children.genotypes, Graph):
         return children, counters

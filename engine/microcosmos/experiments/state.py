@@ -33,7 +33,8 @@ N_CORRECTED = 3
 """Columns of `CURVES` from reevaluation."""
 
 OUTCOMES = ("children", "inserted", "improved")
-"""Counts of an emitter's children: all, those in new cells, those that replaced an elite."""
+"""Counts of an emitter's children: all, those in new cells, those that replaced an elite.
+Initial creatures are nobody's children."""
 
 PREDICTIONS = ("fitness_error", "cell_hits", "feasible")
 """Figures of a generation's predictions: root mean square error of the fitness of feasible
@@ -110,6 +111,8 @@ class Plan:
     limits: Limits = Limits()
     reevaluation: Reevaluation | None = None
     screening: Screening | None = None
+    bandit: search.emitters.Bandit | None = None
+    """What divides each batch among the emitters; None: their slots do."""
     feasible: bool = False
     """True if a creature at a limit, too fast or pushing itself is no elite."""
     force_free: bool = True

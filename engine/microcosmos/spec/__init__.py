@@ -1,5 +1,6 @@
 """Specs: validated models of everything that a run can be, with all defaults."""
 
+from .bandit import Bandit
 from .base import Part, field_path
 from .body import Body, Chain, GrownBody, PluginBody, SwimmerBody, is_unavailable, shape
 from .control import OUTPUTS, Control, Genome

@@ -8,6 +8,7 @@ from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 from ..naming import WITHOUT_GRADIENT, MeasureName
 from ..plugins.declaration import refuse_empty_axis
 from . import measures
+from .bandit import Bandit
 from .base import Digest, Part, field, sourced
 from .emitters import Emitter, NeatEmitter, refuse_uneven, slots
 from .plugins import OR_PLUGIN, MaybePlugin, PluginVersion, complete_plugin, completed
@@ -187,8 +188,9 @@ class Screening(Part):
     """Share of the offspring that is simulated whatever the prediction."""
 
 
-SCREENED = ("random", "neat", "iso+line", "gaussian")
-"""Operators whose offspring can be screened: they learn nothing from the outcome."""
+STATELESS = ("random", "neat", "iso+line", "gaussian")
+"""Operators that learn nothing from the outcome, so that any of their offspring, and any number
+of them, may be evaluated."""
 
 MAX_INITIAL = 4096
 """Most initial creatures of a search."""
@@ -234,6 +236,8 @@ class Search(Generations):
     """Sources of offspring."""
     screening: Screening | None = None
     """Prediction of offspring before they are simulated; empty: none."""
+    bandit: Bandit | None = None
+    """Division of each batch by the emitters' success; empty: by their `share`."""
 
     @property
     def slots(self) -> tuple[int, ...]:
@@ -253,11 +257,21 @@ class Search(Generations):
 
     @model_validator(mode="after")
     def refuse_learners(self) -> Self:
-        learners = [one.operator for one in self.emitters if one.operator not in SCREENED]
-        if self.screening and learners:
-            allowed = ", ".join(SCREENED)
+        learners = [one.operator for one in self.emitters if one.operator not in STATELESS]
+        for name in ("screening", "bandit"):
+            if learners and getattr(self, name):
+                allowed = ", ".join(STATELESS)
+                raise ValueError(
+                    f"`emitters` must be among {allowed} with `{name}`, got {learners[0]!r}, "
+                    "which learns from all of its offspring"
+                )
+        return self
+
+    @model_validator(mode="after")
+    def refuse_lone(self) -> Self:
+        if self.bandit and len(self.emitters) < 2:
             raise ValueError(
-                f"`emitters` must be among {allowed} with `screening`, got {learners[0]!r}, "
-                "which learns from all of its offspring"
+                "`emitters` must be at least two with `bandit`, which divides the batch among "
+                f"them, got {len(self.emitters)}"
             )
         return self

@@ -30,4 +30,8 @@ DELTAS = (
 )
 ADAM = "Kingma and Ba, ICLR 2015, algorithm 1"
 DIGITS = "Alpaydin and Kaynak, UCI (1998), doi:10.24432/C50P49"
+BANDIT = (
+    "Cully, GECCO 2021; UCB1: Auer, Cesa-Bianchi and Fischer, Mach. Learn. 47, 235 (2002); "
+    "window: Garivier and Moulines, arXiv:0805.3415"
+)
 SCREENING = "Gaier, Asteroth and Mouret, Evol. Comput. 26, 381 (2018)"

@@ -13,12 +13,13 @@ from microcosmos.build import build
 from microcosmos.experiments import OtherDevice, Stopped
 from microcosmos.spec import parse
 
-LONG = ("lamarckian", "cma-me", "tensorneat")
+LONG = ("lamarckian", "cma-me", "tensorneat", "screened-bandit")
 LEARNERS = ("cma-mae", "cma-mega", "lamarckian", "cma-me", "tensorneat")
 COMPUTED = (
     *("quality-diversity", "neuroevolution", "deciding", "folding", "refinement", "gaits"),
     *("zoo", "screened"),
 )
+DIVIDED = ("bandit", "screened-bandit")
 OTHER = {
     "quality-diversity": {"task": {"steps": 61}},
     "neuroevolution": {"seed": 6},
@@ -34,7 +35,7 @@ def marked(*names, long=LONG):
     return [pytest.param(name, marks=[pytest.mark.long] * (name in long)) for name in names]
 
 
-@pytest.fixture(scope="module", params=marked(*COMPUTED, *LEARNERS))
+@pytest.fixture(scope="module", params=marked(*COMPUTED, *LEARNERS, *DIVIDED))
 def computed(request, course_of):
     """A run whose numbers repeat, those of searches that learn among them."""
     with jax.numpy_rank_promotion("allow" if request.param in LEARNERS else "raise"):

@@ -57,6 +57,11 @@ def test_initial_creatures_are_evaluated_first_each_once(forked, forking, files)
         assert json.loads(elite.identity)["world"]["viscosity"] == 0.2
 
 
+def test_initial_creatures_are_no_emitters_children(forking, files):
+    children = forking[0][-1].outcomes[:, 0, 0].tolist()
+    assert children == [0, 32 - len(files), 16, 16]
+
+
 def test_later_creatures_descend_from_the_initial_ones(forking, files):
     recorded, initial = set(), set(names_of(files))
     for report in forking[1]:

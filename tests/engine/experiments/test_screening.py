@@ -12,6 +12,7 @@ from microcosmos import neat, search
 from microcosmos.archive import file
 from microcosmos.build import build
 from microcosmos.experiments import screening
+from microcosmos.experiments.offspring import divided
 from microcosmos.experiments.state import PREDICTIONS
 from microcosmos.search.screening import READY
 from microcosmos.spec import parse
@@ -26,7 +27,8 @@ def pool(course):
     """The candidates of the last generation."""
     plan, programs = course.experiment.plan, course.experiment.programs
     state = course.states[-2]
-    return screening.candidates(plan, programs.screen, programs.insert, state, search.never)
+    given = programs.insert, state, divided(plan, state), search.never
+    return screening.candidates(plan, programs.screen, *given)
 
 
 def test_predictions_are_recorded_from_the_first_screened_generation_on(course):
@@ -59,7 +61,9 @@ def test_every_emitter_fills_its_slots_with_its_own_candidates(course, pool):
     plan, programs = course.experiment.plan, course.experiment.programs
     found, counters = pool
     assert len(found.emitter) == 2 * 3 * 16
-    children, _ = screening.chosen(plan, programs.screen, course.states[-2], found, counters)
+    state = course.states[-2]
+    given = state, found, counters, divided(plan, state)
+    children, _ = screening.chosen(plan, programs.screen, *given)
     operators = [search.OPERATORS[code] for code in children.operator]
     assert set(operators[:12]) <= {"neat", "crossover"}
     assert set(operators[12:]) == {"random"}
@@ -93,10 +97,11 @@ def test_candidates_of_later_rounds_descend_from_predicted_ones(course, pool):
 def test_numbers_of_genes_have_no_gaps_after_the_choice(course):
     before, after = course.states[-2], course.states[-1]
     plan, programs = course.experiment.plan, course.experiment.programs
+    emitter = divided(plan, before)
     found, counters = screening.candidates(
-        plan, programs.screen, programs.insert, before, search.never
+        plan, programs.screen, programs.insert, before, emitter, search.never
     )
-    children, kept = screening.chosen(plan, programs.screen, before, found, counters)
+    children, kept = screening.chosen(plan, programs.screen, before, found, counters, emitter)
     network = children.genotypes
     numbers = np.asarray(network.innovation)[np.asarray(network.connection_used)]
     new = np.unique(numbers[numbers >= int(before.counters.innovation)])

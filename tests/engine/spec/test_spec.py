@@ -186,3 +186,17 @@ def test_strategies_of_cma_mae_have_equal_parts_of_the_offspring():
     assert spec.emitters[0].emitters == 3
     with pytest.raises(ValueError, match=r"must divide its 16 offspring .* evenly, got 3"):
         parse(whole | {"search": {"batch": 32, "emitters": emitters}})
+
+
+def test_a_bandit_divides_among_several_emitters_that_learn_nothing():
+    neat, learner = {"operator": "neat"}, {"operator": "cma-mae"}
+    search = {"bandit": {"window": 10}, "emitters": [neat, {"operator": "random"}]}
+    found = parse({"experiment": "quality-diversity", "search": search | {"screening": {}}})
+    assert (found.search.bandit.window, found.search.bandit.exploration) == (10, 0.05)
+    alone = refusal(search=search | {"emitters": [neat]})
+    assert re.search("search: .*`emitters` must be at least two with `bandit`, .* got 1", alone)
+    learning = refusal(
+        **direct(), search=search | {"emitters": [learner, {"operator": "random"}]}
+    )
+    assert re.search("must be among random, neat, .* with `bandit`, got 'cma-mae'", learning)
+    assert "search.bandit.window" in refusal(search=search | {"bandit": {"window": 0}})

@@ -1,5 +1,6 @@
 """Emitters: sources of children."""
 
+from .bandit import Bandit
 from .cma_mae import CmaMae
 from .cma_mega import CmaMega
 from .elites import Random, newcomers
@@ -12,8 +13,10 @@ from .emitter import (
     Outcome,
     begin,
     emit,
+    emit_chosen,
     outcome,
     tell,
+    with_slots,
 )
 from .lamarckian import Lamarckian
 from .neat import Neat

@@ -1,7 +1,7 @@
 """Emitters: sources of children, which learn the outcome of their evaluation."""
 
 from dataclasses import replace
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 import equinox as eqx
 import jax
@@ -155,9 +155,7 @@ def emit(
     Every slot has its own key, derived from the seed, the generation and the slot. Equal
     mutations get equal numbers, also in children of different emitters.
     """
-    batch = sum(emitter.slots for emitter in emitters)
-    turn = jax.random.fold_in(key, generation)
-    keys = jax.vmap(lambda slot: jax.random.fold_in(turn, slot))(jnp.arange(batch))
+    keys = _keys(key, generation, sum(emitter.slots for emitter in emitters))
     found, kept, genes, first = [], [], [], 0
     for emitter, state in zip(emitters, states, strict=True):
         chosen = keys[first : first + emitter.slots]
@@ -167,22 +165,66 @@ def emit(
         genes.append(novelty)
         first += emitter.slots
     children = jax.tree.map(lambda *parts: jnp.concatenate(parts), *found)
-    novelty = _joined(genes, [emitter.slots for emitter in emitters])
-    if novelty is not None:
-        assert isinstance(children.genotypes, Graph)
-        genotypes, counters = number(children.genotypes, novelty, counters)
-        children = replace(children, genotypes=genotypes)
+    parts = _filled(genes, [emitter.slots for emitter in emitters])
+    novelty = jax.tree.map(lambda *rows: jnp.concatenate(rows), *parts)
+    children, counters = _numbered(children, novelty, counters)
     return children, tuple(kept), counters
 
 
-def _joined(parts: list[Novelty | None], slots: list[int]) -> Novelty | None:
-    """Return the new genes of all emitters' children, None if no emitter makes any."""
+def emit_chosen(
+    emitters: tuple[Emitter, ...],
+    archive: Elites,
+    counters: Counters,
+    generation: Int[Array, ""],
+    chosen: Int[Array, "slot"],
+    *,
+    key: PRNGKeyArray,
+) -> tuple[Children, Counters]:
+    """Return children, one of the chosen emitter for each slot.
+
+    The emitters must have no state. All emit for all slots, so one program serves every
+    choice; a child is the same as that of `emit` if its emitter has the slot.
+    """
+    slots = chosen.shape[0]
+    keys = _keys(key, generation, slots)
+    found = [with_slots(one, slots).emit(None, archive, keys=keys) for one in emitters]
+
+    def of_chosen(*rows):
+        return jnp.stack(rows)[chosen, jnp.arange(slots)]
+
+    children = jax.tree.map(of_chosen, *(offspring for offspring, _, _ in found))
+    parts = _filled([novelty for _, _, novelty in found], [slots] * len(found))
+    return _numbered(children, jax.tree.map(of_chosen, *parts), counters)
+
+
+def with_slots(emitter: Emitter, slots: int) -> Any:
+    """Return an emitter without a state with another number of slots."""
+    dataclass: Any = emitter
+    return replace(dataclass, slots=slots)
+
+
+def _keys(key: PRNGKeyArray, generation: Int[Array, ""], slots: int) -> Keys:
+    turn = jax.random.fold_in(key, generation)
+    return jax.vmap(lambda slot: jax.random.fold_in(turn, slot))(jnp.arange(slots))
+
+
+def _filled(parts: list[Novelty | None], slots: list[int]) -> list[Novelty] | list[None]:
+    """Return the new genes of every emitter's children, or None of each if none makes any."""
     like = next((part for part in parts if part is not None), None)
     if like is None:
-        return None
+        return [None] * len(parts)
     pairs = zip(parts, slots, strict=True)
-    whole = [no_novelty(like, count) if part is None else part for part, count in pairs]
-    return jax.tree.map(lambda *rows: jnp.concatenate(rows), *whole)
+    return [no_novelty(like, count) if part is None else part for part, count in pairs]
+
+
+def _numbered(
+    children: Children, novelty: Novelty | None, counters: Counters
+) -> tuple[Children, Counters]:
+    if novelty is None:
+        return children, counters
+    assert isinstance(children.genotypes, Graph)
+    genotypes, counters = number(children.genotypes, novelty, counters)
+    return replace(children, genotypes=genotypes), counters
 
 
 def tell(

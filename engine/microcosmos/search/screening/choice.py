@@ -41,24 +41,28 @@ def best(
     predicted: Predicted,
     height: Float[Array, "cell"],
     able: Bool[Array, "candidate"],
-    count: int,
+    count: Int[Array, ""] | int,
+    most: int,
 ) -> tuple[Int[Array, "chosen"], Float[Array, "cell"]]:
     """Return the numbers of `count` candidates, largest expected gain first, and new heights.
 
     Each choice raises what the next one in its cell has to exceed. Only `able` ones are chosen.
+    Numbers after the first `count` of `most` are 0.
     """
 
-    def choose(state, _):
-        height, able = state
+    def choose(place, state):
+        found, height, able = state
         gain = expected_gain(predicted, height[predicted.cell])
         chosen = jnp.argmax(jnp.where(able, gain, -jnp.inf))
         cell = predicted.cell[chosen]
         likely, rise = predicted.feasible[chosen], predicted.fitness[chosen] - height[cell]
         height = height.at[cell].add(likely * jnp.maximum(rise, 0.0))
-        return (height, able.at[chosen].set(False)), chosen
+        found = found.at[place].set(chosen.astype(jnp.int32))
+        return found, height, able.at[chosen].set(False)
 
-    (height, _), found = jax.lax.scan(choose, (height, able), None, count)
-    return found.astype(jnp.int32), height
+    none = jnp.zeros(most, jnp.int32)
+    found, height, _ = jax.lax.fori_loop(0, count, choose, (none, height, able))
+    return found, height
 
 
 def expected_gain(predicted: Predicted, height: Candidates) -> Candidates:
