@@ -72,9 +72,7 @@ SPECS["bandit"] = SMALL | {
     "search": SMALL["search"] | {"generations": 6, "emitters": SEVERAL, "bandit": {"window": 3}}
 }
 SCREENED = {"batch": 64, "screening": {"rounds": 2, "candidates": 4}}
-SPECS["screened-bandit"] = SPECS["bandit"] | {
-    "search": SPECS["bandit"]["search"] | SCREENED | {"generations": 10}
-}
+SPECS["screened-bandit"] = SPECS["bandit"] | {"search": SPECS["bandit"]["search"] | SCREENED}
 SPECS["zoo"] = SMALL | {
     "body": {"builder": "grown", "nodes": 26, "length": 20.0, "segments": 4, "rings": 1}
     | {"segment_nodes": 15, "limbs": 6},
