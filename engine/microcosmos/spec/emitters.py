@@ -51,7 +51,7 @@ class LineEmitter(SelectingEmitter):
     model_config = sourced(LINE)
 
     operator: Literal["iso+line"] = "iso+line"
-    iso: float = field(0.02, gt=0.0, le=2.0)
+    iso: float = field(0.1, gt=0.0, le=2.0)
     """Standard deviation of the isotropic step; genes lie within ±1."""
     line: float = field(0.2, gt=0.0, le=2.0)
     """Standard deviation of the step along the line, relative to the line's length."""

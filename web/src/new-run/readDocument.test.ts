@@ -62,7 +62,7 @@ describe("a creature", () => {
     const full = completeSpec(spec, EXPERIMENTS) as { search: { emitters: Spec[] }; control: Spec };
     expect(full.control.encoding).toBe("direct");
     expect(full.search.emitters).toEqual([
-      { operator: "iso+line", select: "mixed", share: 1, iso: 0.02, line: 0.2 },
+      { operator: "iso+line", select: "mixed", share: 1, iso: 0.1, line: 0.2 },
     ]);
   });
 
