@@ -6,6 +6,7 @@ import pytest
 
 from microcosmos import search
 from microcosmos.build import build, build_task
+from microcosmos.experiments.offspring import divided
 from microcosmos.spec import estimate, parse
 
 SPECS = {
@@ -32,7 +33,8 @@ def test_programs_take_no_more_than_was_estimated(name):
     networks = jax.tree.map(lambda x: x[: spec.search.block], state.elites.genotypes)
     task = build_task(spec.scene, room=run.plan.encoding.room)
     batched = jax.jit(jax.vmap(lambda network: search.evaluate(task, network)))
-    given = (state.emitters, state.elites, state.counters, jnp.asarray(1))
+    emitter = divided(run.plan, state)
+    given = (state.emitters, state.elites, state.counters, jnp.asarray(1), emitter)
     together = taken(run.programs.emit, *given)
     together += max(taken(run.programs.evaluate_block, networks), taken(batched, networks))
     assert together <= estimate(spec).memory_bytes
