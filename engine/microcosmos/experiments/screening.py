@@ -129,7 +129,9 @@ def predict(
     """Return predictions for genotypes, in NumPy."""
     assert state.screened is not None
     described = _described(plan, programs, genotypes, stop)
-    return jax.device_get(programs.predict(described, state.screened.model, state.cells))
+    return jax.device_get(
+        programs.predict(described, state.screened.model.predictor, state.cells)
+    )
 
 
 def learn(
@@ -151,7 +153,7 @@ def learn(
     outputs = programs.outputs(evaluation)
     finite = np.all(np.isfinite(outputs), 1) & np.asarray(evaluation.status != 1)
     if model.ready:
-        found = jax.device_get(programs.predict(described, model, state.cells))
+        found = jax.device_get(programs.predict(described, model.predictor, state.cells))
         figures = _figures(found, evaluation, cells, plan.cell_count)
         model = with_errors(model, found.outputs[finite], outputs[finite])
     inputs = np.asarray(described.inputs)[finite]

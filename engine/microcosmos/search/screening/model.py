@@ -63,6 +63,11 @@ class Model(eqx.Module):
         """Whether predictions are worth using."""
         return bool(self.count >= READY)
 
+    @property
+    def predictor(self) -> "Model":
+        """The model without its evaluations, whose number would compile programs anew."""
+        return replace(self, inputs=self.inputs[:0], outputs=self.outputs[:0])
+
 
 @dataclass(frozen=True)
 class Regression:
