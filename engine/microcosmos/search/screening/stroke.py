@@ -3,8 +3,8 @@
 The controller is evaluated at equal phases of its clock instead of at every step, which costs a
 hundredth of it. Actuators bound the bend, slow the clock and lag, as in `genomes.actuators`.
 
-The kinematics are those of `filaments.rest_positions` and `filaments.fitted`, here for all phases
-at once and in portable arithmetic: which offspring are simulated must not depend on a processor.
+The kinematics are those of `filaments.rest_positions` and `filaments.fitted`, for all phases at
+once and in portable arithmetic: which offspring are simulated must not depend on a processor.
 """
 
 from dataclasses import dataclass, replace
