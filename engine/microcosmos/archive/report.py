@@ -55,6 +55,8 @@ class Report:
     best: float | None = None
     mean: float | None = None
     elites: tuple[Elite, ...] = ()
+    emptied: tuple[int, ...] = ()
+    """Places that lost their elite in this generation and have no new one."""
     rows: tuple[Row, ...] = ()
     summary: Mapping[str, Value] | None = None
     """Further figures of the generation or the result so far."""

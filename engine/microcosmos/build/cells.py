@@ -1,6 +1,22 @@
-"""Build the cells of an archive."""
+"""Build the cells of an archive, or another container."""
 
 from .. import search, spec
+from ..spec import containers
+
+
+def build_container(
+    archive: spec.Archive, measures: tuple[str, ...] = search.MEASURES
+) -> search.Container:
+    """Build the archive's container over recorded measures."""
+    cells = build_cells(archive, measures)
+    match archive.container:
+        case containers.DominatedNovelty(size=size, neighbours=neighbours):
+            return search.DominatedNovelty(cells, size, neighbours)
+        case containers.Fronts():
+            raise NotImplementedError
+        case containers.LearnedAxes():
+            raise NotImplementedError
+    return cells
 
 
 def build_cells(

@@ -17,7 +17,7 @@ from ..experiments.evolution import Evolution
 from ..experiments.offspring import Lessons, Programs
 from ..experiments.state import InitialCreatures, Limits, Plan, Reevaluation
 from ..search.emitters.tensorneat import TensorNeat
-from .cells import build_cells
+from .cells import build_container
 from .creatures import build_block, build_disturbed_block, identity_template
 from .emitters import build_bandit, build_emission, build_emitters
 from .folding import build_folding
@@ -150,7 +150,7 @@ def build_plan(chosen: spec.Evolution) -> Plan:
         generations=chosen.search.generations,
         block=chosen.search.block,
         descriptors=tuple(axis.name for axis in chosen.archive.descriptors),
-        cells=build_cells(chosen.archive, measures_of(scene)),
+        container=build_container(chosen.archive, measures_of(scene)),
         encoding=encoding,
         emitters=build_emitters(chosen, encoding),
         names=names_of(chosen.emitters),

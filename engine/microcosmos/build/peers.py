@@ -70,4 +70,4 @@ def to_repertoire(archive: bytes | str | os.PathLike) -> Any:
     if not isinstance(chosen, spec.Evolution):
         raise ValueError(f"`archive` must be a search's, got {chosen.experiment}'s")
     state = build_evolution(chosen).restore(data, other_device=True)
-    return qdax.to_repertoire(state.elites, state.cells)
+    return qdax.to_repertoire(state.elites, state.container)

@@ -82,8 +82,11 @@ def save(plan: Plan, state: State) -> bytes:
         loop["model"] = vars(state.screened.model)
     if state.first is not None:
         tree["archive"]["first"] = state.first.of(cells)
-    if isinstance(state.cells, search.Voronoi):
-        tree["archive"]["centroids"] = state.cells.centroids
+    around = search.cells_of(state.container)
+    if isinstance(around, search.Voronoi):
+        tree["archive"]["centroids"] = around.centroids
+    if isinstance(state.container, search.Survival) and (learned := state.container.arrays()):
+        loop["container"] = learned
     if state.initial is not None:
         genes = columns(state.initial.genotypes)
         tree["initial"] = {"creature": state.initial.creature, "genomes": genes}
@@ -137,8 +140,13 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
         restored = replace(restored, screened=Screened(model, predictions))
     if restored.first is not None:
         restored = replace(restored, first=restored.first.replaced(cells, archive["first"]))
+    container = restored.container
     if "centroids" in archive:  # Another machine may have found slightly other ones.
-        restored = replace(restored, cells=search.voronoi(plan.axes, archive["centroids"]))
+        found = search.voronoi(plan.axes, archive["centroids"])
+        container = search.with_cells(container, found)
+    if isinstance(container, search.Survival) and "container" in loop:
+        container = container.with_arrays(loop["container"])
+    restored = replace(restored, container=container)
     return prolonged(restored) if restored.generation < plan.generations else restored
 
 

@@ -172,7 +172,7 @@ def _would_enter(
 ) -> Bool[np.ndarray, "row"]:
     """Return which creatures are not below the elite of their cell."""
     elites, mean = jax.device_get((state.elites, mean))
-    cell = np.asarray(programs.cells_of(state.cells, jnp.asarray(mean.measures)))
+    cell = np.asarray(programs.cells_of(state.container, jnp.asarray(mean.measures)))
     free = ~elites.occupied[cell]
     able = (mean.status == 0) & np.isfinite(mean.fitness)
     able &= np.all(np.isfinite(mean.measures), 1)

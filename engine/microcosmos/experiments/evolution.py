@@ -78,7 +78,8 @@ class Evolution:
         after = replace(after, curves=np.concatenate([after.curves, row[None]]))
         seconds = after.device_seconds - state.device_seconds
         summary = _summary(self.plan, after, seconds, np.asarray(decided.mean.status))
-        return after, _report(after, elites, {**summary, **offspring.results.summary()})
+        summary |= offspring.results.summary()
+        return after, _report(after, elites, emptied(state, after.elites), summary)
 
     def _inserted(
         self, state: State, offspring: Offspring, decided: deciding.Decided
@@ -93,22 +94,27 @@ class Evolution:
             jnp.asarray(evaluation.measures),
             jnp.asarray(evaluation.status == 0),
         )
-        elites, inserted = programs.insert(state.elites, candidates, state.cells)
+        container = search.refreshed(
+            state.container, state.elites, candidates, state.generation + 1
+        )
+        elites, inserted = programs.insert(state.elites, candidates, container)
         if offspring.from_archive:
             elites = programs.credit(elites, children.parents[:, 0], inserted)
         outcome = search.emitters.outcome(candidates, inserted)
         emitters = offspring.without_replaced(programs.tell(offspring.emitters, outcome))
         inserted = jax.device_get(inserted)
-        clipped = search.clipped(candidates, state.cells)
+        clipped = search.clipped(candidates, container.axes)
         simulated = offspring.results.simulated + decided.simulated
         after, new = lineage.record(
             self.plan, state, children, decided, inserted, offspring.names
         )
+        after = lineage.without(after, emptied(state, elites))
         after = replace(
             after,
             generation=state.generation + 1,
             evaluations=state.evaluations + simulated,
             infeasible=state.infeasible + int(np.count_nonzero(evaluation.status)),
+            container=container,
             elites=elites,
             counters=offspring.counters,
             emitters=emitters,
@@ -188,14 +194,22 @@ def _ended(plan: Plan, state: State) -> int:
 
 def _figures(state: State) -> tuple[float, ...]:
     """Return the first columns of `CURVES`, summed in double precision."""
-    occupied = np.asarray(state.elites.occupied)
-    fitness = np.asarray(state.elites.fitness, np.float64)[occupied]
+    of_cells = search.best_of_cells(state.elites, state.container)
+    fitness = of_cells[np.isfinite(of_cells)]
     best, mean = (fitness.max(), fitness.mean()) if len(fitness) else (0.0, 0.0)
-    coverage = len(fitness) / len(occupied)
+    coverage = len(fitness) / len(of_cells)
     return fitness.sum(), coverage, best, mean, state.evaluations, state.infeasible
 
 
-def _report(state: State, elites: tuple[Elite, ...], summary: dict[str, Any]) -> Report:
+def emptied(before: State, elites: search.Elites) -> tuple[int, ...]:
+    """Return the places that lost their elite and have no new one."""
+    lost = np.asarray(before.elites.occupied) & ~np.asarray(elites.occupied)
+    return tuple(np.flatnonzero(lost).tolist())
+
+
+def _report(
+    state: State, elites: tuple[Elite, ...], lost: tuple[int, ...], summary: dict[str, Any]
+) -> Report:
     values = dict(zip(CURVES, state.curves[-1].tolist(), strict=True))
     return Report(
         generation=state.generation,
@@ -206,6 +220,7 @@ def _report(state: State, elites: tuple[Elite, ...], summary: dict[str, Any]) ->
         evaluations=state.evaluations,
         infeasible=state.infeasible,
         elites=elites,
+        emptied=lost,
         summary=summary,
     )
 

@@ -59,6 +59,19 @@ def record(
     ), elites
 
 
+def without(state: State, emptied: tuple[int, ...]) -> State:
+    """Return the state without records of the elites of places that are empty now."""
+    if not emptied:
+        return state
+    creatures, operators = state.creatures.copy(), state.operators.copy()
+    device_of, lost = state.device_of.copy(), list(emptied)
+    creatures[lost], operators[lost], device_of[lost] = 0, 0, 0
+    poses = {cell: one for cell, one in state.poses.items() if cell not in emptied}
+    return replace(
+        state, creatures=creatures, operators=operators, device_of=device_of, poses=poses
+    )
+
+
 def _new_elite(
     plan: Plan,
     state: State,

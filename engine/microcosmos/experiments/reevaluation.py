@@ -72,7 +72,7 @@ def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bo
         if plan.feasible:
             found = search.judged(found)
         everywhere = jax.tree.map(in_all_cells, found)
-        repeats = programs.add(repeats, jnp.asarray(done), everywhere, state.cells)
+        repeats = programs.add(repeats, jnp.asarray(done), everywhere, state.container)
     seconds = (time.monotonic() - began) * jax.local_device_count()
     # A run with more generations would not reevaluate here.
     early = not state.ended and state.generation % plan.reevaluation.every != 0
@@ -91,7 +91,7 @@ def figures(programs: Programs, state: State) -> tuple[float, float, float]:
     count = np.asarray(state.repeats.count)
     if not count.any():
         return np.nan, np.nan, np.nan
-    corrected = programs.correct(state.elites, state.repeats, state.cells)
+    corrected = programs.correct(state.elites, state.repeats, state.container)
     corrected = np.asarray(corrected, np.float64)
     there = corrected[np.isfinite(corrected)]
     hits = np.asarray(state.repeats.hits).sum() / count.sum()

@@ -82,7 +82,7 @@ def candidates(
                 jnp.asarray(predicted.measures),
                 jnp.asarray(likely),
             )
-            elites, inserted = insert(elites, rows, state.cells)
+            elites, inserted = insert(elites, rows, state.container)
             entered = np.asarray(inserted.entered)
             ancestors[np.asarray(inserted.cell)[entered]] = parents[entered, 0]
     children, predicted = jax.tree.map(lambda *rows: np.concatenate(rows), *parts)
@@ -130,7 +130,7 @@ def predict(
     assert state.screened is not None
     described = _described(plan, programs, genotypes, stop)
     return jax.device_get(
-        programs.predict(described, state.screened.model.predictor, state.cells)
+        programs.predict(described, state.screened.model.predictor, state.container)
     )
 
 
@@ -153,7 +153,7 @@ def learn(
     outputs = programs.outputs(evaluation)
     finite = np.all(np.isfinite(outputs), 1) & np.asarray(evaluation.status != 1)
     if model.ready:
-        found = jax.device_get(programs.predict(described, model.predictor, state.cells))
+        found = jax.device_get(programs.predict(described, model.predictor, state.container))
         figures = _figures(found, evaluation, cells, plan.cell_count)
         model = with_errors(model, found.outputs[finite], outputs[finite])
     inputs = np.asarray(described.inputs)[finite]

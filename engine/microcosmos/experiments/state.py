@@ -102,7 +102,7 @@ class Plan:
     generations: int
     block: int
     descriptors: tuple[str, ...]
-    cells: search.Cells
+    container: search.Container
     encoding: Encoding
     emitters: tuple[search.Emitter, ...]
     counters: neat.Counters
@@ -134,11 +134,11 @@ class Plan:
 
     @property
     def axes(self) -> tuple[search.Axis, ...]:
-        return self.cells.axes
+        return self.container.axes
 
     @property
     def cell_count(self) -> int:
-        return self.cells.count
+        return self.container.count
 
     @property
     def batch(self) -> int:
@@ -198,8 +198,8 @@ class State(eqx.Module):
     evaluations: int
     """Simulations of a creature: offspring, gradients and reevaluations."""
     infeasible: int
-    cells: search.Cells
-    """The plan's, or those of the machine on which the run began."""
+    container: search.Container
+    """The plan's, or that of the machine on which the run began, with what it has learned."""
     elites: search.Elites
     counters: neat.Counters
     emitters: tuple[PyTree[Array], ...]
@@ -261,7 +261,7 @@ def start(plan: Plan) -> State:
         generation=0,
         evaluations=0,
         infeasible=0,
-        cells=plan.cells,
+        container=plan.container,
         elites=search.no_elites(plan.cell_count, len(plan.measures), plan.genotype),
         counters=plan.counters,
         emitters=search.emitters.begin(plan.emitters, key=plan.key),

@@ -3,7 +3,19 @@
 from . import cvt, emitters, folding, gradients, reevaluation, screening
 from .ask_tell import Found, Search
 from .blocks import Stopped, block_program, evaluate_blocks, mapped, never
-from .cells import Axis, Cells, Grid, Voronoi, voronoi
+from .cells import Axis, Cells, Grid, Voronoi, places, voronoi
+from .containers import (
+    Container,
+    DominatedNovelty,
+    Survival,
+    best_of_cells,
+    cells_of,
+    dominated_novelty,
+    insert,
+    insert_program,
+    refreshed,
+    with_cells,
+)
 from .crossing import crossing
 from .emitters import NO_PARENT, OPERATORS, Children, Emitter, Outcome
 from .evaluation import (
@@ -23,8 +35,6 @@ from .insertion import (
     candidates,
     clipped,
     digest,
-    insert,
-    insert_program,
     no_elites,
 )
 from .measures import MEASURES, Measure, Motion, motion, observe

@@ -19,10 +19,11 @@ from jaxtyping import Array, Int, PyTree
 
 from ..archive import file
 from ..neat import Counters
-from .cells import Cells, Voronoi
+from .cells import Voronoi
+from .containers import Container, Survival, best_of_cells, cells_of, insert
 from .emitters import Children, Emitter, Learner, begin, credit, emit, outcome, tell
 from .emitters.tensorneat import TensorNeat
-from .insertion import Elites, Inserted, candidates, insert, no_elites
+from .insertion import Elites, Inserted, candidates, no_elites, sound
 from .leaves import filled, leaves
 from .spaces import Numbers, Space
 
@@ -56,10 +57,10 @@ class Found(NamedTuple):
 class Search:
     """A search on any evaluation function, by `ask` and `tell`.
 
-    `space` is `Vectors` or `Networks`, `cells` a `Grid` or `voronoi` of `Axis`, and emitters
-    are those of `search.emitters`, whose slots together are the batch. The function gives each
-    genotype a fitness, which is maximised, and `measures` numbers: as many as the axes need,
-    or more. The same seed and outcomes give the same search.
+    `space` is `Vectors` or `Networks`, `container` a `Grid` or `voronoi` of `Axis` or another
+    container, and emitters are those of `search.emitters`, whose slots together are the batch.
+    The function gives each genotype a fitness, which is maximised, and `measures` numbers: as
+    many as the axes need, or more. The same seed and outcomes give the same search.
 
     Raises `ValueError` without emitters, or for emitters that need derivatives or another
     library's loop.
@@ -68,14 +69,14 @@ class Search:
     def __init__(
         self,
         space: Space,
-        cells: Cells,
+        container: Container,
         emitters: Sequence[Emitter],
         *,
         seed: int = 0,
         measures: int | None = None,
     ) -> None:
-        self.space, self.cells, self.emitters = space, cells, tuple(emitters)
-        needed = 1 + max(axis.measure for axis in cells.axes)
+        self.space, self.container, self.emitters = space, container, tuple(emitters)
+        needed = 1 + max(axis.measure for axis in container.axes)
         self.seed, self.measures = seed, needed if measures is None else measures
         if self.measures < needed:
             raise ValueError(f"`measures` must be at least {needed}, got {self.measures}")
@@ -85,13 +86,13 @@ class Search:
         self._progress = Progress(
             generation=jnp.zeros((), jnp.int32),
             infeasible=jnp.zeros((), jnp.int32),
-            elites=no_elites(cells.count, self.measures, jax.eval_shape(space, key=key)),
+            elites=no_elites(container.count, self.measures, jax.eval_shape(space, key=key)),
             counters=space.counters,
             emitters=begin(self.emitters, key=key),
         )
         self._children: Children | None = None
         self._emit = jax.jit(partial(_emitted, self.emitters, key=key))
-        self._tell = jax.jit(partial(_told, self.emitters, cells), donate_argnums=0)
+        self._tell = jax.jit(partial(_told, self.emitters, container), donate_argnums=0)
         self._runs: dict[Function, Callable] = {}
 
     def ask(self) -> Any:
@@ -148,7 +149,7 @@ class Search:
             fitness, measures = fitness.astype(jnp.float32), measures.astype(jnp.float32)
             feasible = jnp.ones(self.batch, bool)
             given = children, fitness, measures, feasible
-            return _told(self.emitters, self.cells, after, *given)[0]
+            return _told(self.emitters, self.container, after, *given)[0]
 
         return jax.lax.fori_loop(0, count, generation, progress)
 
@@ -169,16 +170,17 @@ class Search:
     @property
     def coverage(self) -> float:
         """Share of the cells that have an elite."""
-        return float(np.mean(np.asarray(self._progress.elites.occupied)))
+        best = best_of_cells(self._progress.elites, self.container)
+        return float(np.mean(np.isfinite(best)))
 
     @property
     def qd_score(self) -> float:
-        """Sum of the elites' fitness; fitness should not be negative."""
-        return float(np.sum(self.elites.fitness, dtype=np.float64))
+        """Sum of the best fitness of each cell; fitness should not be negative."""
+        return float(np.nansum(best_of_cells(self._progress.elites, self.container)))
 
     @property
     def elites(self) -> Found:
-        """The fittest of each occupied cell."""
+        """The elites, in the order of their cells or places."""
         return self._found(np.flatnonzero(self._progress.elites.occupied))
 
     @property
@@ -214,11 +216,12 @@ class Search:
         self._progress, self._children = filled(self._progress, tree), None
 
     def _description(self) -> dict[str, Any]:
-        elites, cells = self._progress.elites, self.cells
+        elites, cells = self._progress.elites, cells_of(self.container)
         around = np.asarray(cells.centroids).tobytes() if isinstance(cells, Voronoi) else b""
         return {
             "seed": self.seed,
             "measures": self.measures,
+            "container": _described(self.container),
             "axes": [vars(axis) for axis in cells.axes],
             "cells": [cells.count, sha256(around).hexdigest()],
             "space": [type(self.space).__name__, *_numbers(self.space)],
@@ -250,18 +253,18 @@ def _emitted(
 
 def _told(
     emitters: tuple[Emitter, ...],
-    cells: Cells,
+    container: Container,
     before: Progress,
     children: Children,
     fitness: Array,
     measures: Array,
     feasible: Array,
 ) -> tuple[Progress, Inserted]:
-    used = np.array([axis.measure for axis in cells.axes])
-    feasible &= jnp.isfinite(fitness) & jnp.all(jnp.isfinite(measures[:, used]), 1)
     number = before.generation + 1
     rows = candidates(number, children.genotypes, fitness, measures, feasible)
-    elites, inserted = insert(before.elites, rows, cells)
+    feasible = sound(rows, container.axes)
+    rows = replace(rows, occupied=feasible)
+    elites, inserted = insert(before.elites, rows, container)
     after = Progress(
         generation=number,
         infeasible=before.infeasible + jnp.sum(~feasible, dtype=jnp.int32),
@@ -278,6 +281,11 @@ def _checked(name: str, given: Numbers, kind: Any, shape: tuple[int, ...]) -> np
         raise ValueError(f"`{name}` must have shape {shape}, got {found.shape}")
     with np.errstate(over="ignore"):  # Beyond single precision a number is not finite.
         return found.astype(kind)
+
+
+def _described(container: Container) -> list[Any]:
+    numbers = _numbers(container) if isinstance(container, Survival) else []
+    return [type(container).__name__, *numbers]
 
 
 def _numbers(settings: Any) -> list[Any]:

@@ -1,7 +1,5 @@
 """Insertion into cells by a total order, independent of the order of arrival."""
 
-from collections.abc import Callable, Mapping
-
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -10,7 +8,7 @@ from jax.typing import DTypeLike
 from jaxtyping import Array, Bool, Float, Int, UInt32
 
 from ..genomes import Genotype, words
-from .cells import Cells
+from .cells import Axis, Cells
 
 MAX_INT = np.int32(np.iinfo(np.int32).max)
 SIGN_BIT = np.uint32(1 << 31)
@@ -75,27 +73,22 @@ class Inserted(eqx.Module):
     """Fitness above the cell's earlier elite; above 0 if the cell was empty."""
 
 
-def clipped(candidates: Elites, cells: Cells) -> int:
+def clipped(candidates: Elites, axes: tuple[Axis, ...]) -> int:
     """Count the feasible candidates beyond an end of an axis; its outer bins take them."""
     beyond = np.zeros(len(candidates.occupied), bool)
-    for axis in cells.axes:
+    for axis in axes:
         value = np.asarray(candidates.measures)[:, axis.measure]
         beyond |= (value < axis.low) | (value > axis.high)
     return int(np.count_nonzero(beyond & np.asarray(candidates.occupied)))
 
 
-def insert(archive: Elites, candidates: Elites, cells: Cells) -> tuple[Elites, Inserted]:
-    """Return the archive with the best of each cell, and the result for each candidate.
-
-    The order is total: fitness, then the smaller digest of the genome, then the earlier
-    generation and slot. So equal creatures and equal fitness give the same archive on every
-    device. Candidates that are not `occupied`, or whose fitness or descriptors are not finite,
-    never enter.
-    """
+def insert_into_cells(
+    archive: Elites, candidates: Elites, cells: Cells
+) -> tuple[Elites, Inserted]:
+    """Return the archive with the best of each cell, and the result for each candidate; see
+    `insert`."""
     count, rows = archive.occupied.shape[0], candidates.occupied.shape[0]
-    able = candidates.occupied & jnp.isfinite(candidates.fitness)
-    descriptors = jnp.stack([candidates.measures[:, axis.measure] for axis in cells.axes], 1)
-    able &= jnp.all(jnp.isfinite(descriptors), 1)
+    able = sound(candidates, cells.axes)
     cell = jnp.where(able, cells.of(candidates.measures), count)
     there = jnp.minimum(cell, count - 1)
     fresh = able & ~archive.occupied[there]
@@ -112,15 +105,27 @@ def insert(archive: Elites, candidates: Elites, cells: Cells) -> tuple[Elites, I
     return archive, Inserted(cell, entered, fresh, improvement)
 
 
-def insert_program(
-    options: Mapping[str, object] | None = None, *, donate: bool = False
-) -> Callable[..., tuple[Elites, Inserted]]:
-    """Compile `insert`, with these options of the compiler.
+def sound(candidates: Elites, axes: tuple[Axis, ...]) -> Bool[Array, "row"]:
+    """Return the candidates that may enter: feasible, with finite fitness and descriptors."""
+    able = candidates.occupied & jnp.isfinite(candidates.fitness)
+    descriptors = jnp.stack([candidates.measures[:, axis.measure] for axis in axes], 1)
+    return able & jnp.all(jnp.isfinite(descriptors), 1)
 
-    With `donate` it overwrites the old archive, which must not be used.
+
+def ranked(rows: Elites) -> tuple[Int[Array, "row"], Bool[Array, "row"]]:
+    """Return each row's position in the total order, and whether no earlier row has its genes.
+
+    Rows that are not `occupied` come last.
     """
-    given = (0,) if donate else ()
-    return jax.jit(insert, donate_argnums=given, compiler_options=dict(options or {}))
+    first, second, generation, slot = _rank(rows)
+    unfit = jnp.where(rows.occupied, -_height(rows.fitness), MAX_INT)
+    order = jnp.lexsort((slot, generation, second, first, unfit))
+    index = jnp.arange(len(order), dtype=jnp.int32)
+    position = jnp.zeros_like(index).at[order].set(index)
+    alike = jnp.lexsort((position, second, first))
+    equal = (first[alike[1:]] == first[alike[:-1]]) & (second[alike[1:]] == second[alike[:-1]])
+    repeated = jnp.concatenate([jnp.zeros(1, bool), equal])
+    return position, ~jnp.zeros(len(order), bool).at[alike].set(repeated)
 
 
 def digest(genotypes: Genotype) -> UInt32[Array, "row 2"]:

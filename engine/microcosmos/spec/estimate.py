@@ -67,13 +67,13 @@ def _(spec: Evolution) -> Estimate:
         rows += SEGMENT * spec.body.segments
     genome = FLOAT * (gene_count(spec.control, estimated_shape(spec.body)) or rows)
     count = simulated_nodes(spec.scene)
-    archive = 4 * (spec.archive.cells + 2 * search.batch) * (genome + 160)
-    archive += 2 * spec.archive.cells * (POSE * count + PATH)
+    archive = 4 * (spec.archive.places + 2 * search.batch) * (genome + 160)
+    archive += 2 * spec.archive.places * (POSE * count + PATH)
     vary = 4 * search.batch * spec.genome.max_nodes**2 * FLOAT
     gradients = sum(spec.gradients) * search.generations
     again = reevaluations(spec)
     evaluations = search.batch * search.generations + gradients + again
-    record = 2 * (48 * search.generations + 96 * min(evaluations, 4 * spec.archive.cells))
+    record = 2 * (48 * search.generations + 96 * min(evaluations, 4 * spec.archive.places))
     computed = ceil(search.batch / search.block) * search.block * search.generations
     one = simulation_bytes(spec.scene, spec.genome.max_nodes)
     memory = search.block * one + archive + vary + record + emitter_gradient_bytes(spec)
@@ -90,7 +90,7 @@ def reevaluations(spec: Evolution) -> int:
         return 0
     offspring = search.batch * search.generations
     times = ceil(search.generations / again.every)
-    tested = times * min(spec.archive.cells, offspring)
+    tested = times * min(spec.archive.places, offspring)
     return again.samples * (tested + (offspring if again.decides else 0))
 
 

@@ -13,7 +13,7 @@ from .emitters import Emitter, PopulationEmitter, gradients, refuse_unfit_emitte
 from .encodings import Controller, refuse_cramped
 from .placement import refuse_blocked, refuse_crowded
 from .scene import Scene, refuse_misfit, refuse_senseless, refuse_swept
-from .search import Archive, Generations, Task
+from .search import STATELESS, Archive, Generations, Task
 from .world import Steric, World
 
 Name = TypeVar("Name", bound=str)
@@ -100,6 +100,26 @@ class Evolution(Part, Generic[Name, SearchSpec]):
                 f"`search.initial` must have at most `search.batch` ({batch}) creatures for a "
                 f"population, got {initial}"
             )
+        return self
+
+    @model_validator(mode="after")
+    def check_container(self) -> Self:
+        """Raise `ValueError` for what needs one elite in each cell, where there is not."""
+        container = self.archive.container
+        if container is None:
+            return self
+        for name in ("reevaluation", "screening"):
+            if getattr(self.search, name, None):
+                raise ValueError(
+                    f"`search.{name}` must be empty with `archive.container`, got settings"
+                )
+        allowed = (*STATELESS, "population")
+        for emitter in self.emitters:
+            if emitter.operator not in allowed:
+                raise ValueError(
+                    f"`search.emitters` must be among {', '.join(allowed)} with "
+                    f"`archive.container`, got {emitter.operator!r}, which learns from cells"
+                )
         return self
 
     @property

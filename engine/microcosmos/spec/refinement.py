@@ -40,6 +40,11 @@ class Refinement(Part):
         if encoding in ("gait", "fold"):
             raise ValueError(f"`creature` must have genes to refine, got a {encoding}")
         refuse_flat_axes(self.archive, "refinement")
+        if self.archive.container is not None:
+            kind = self.archive.container.kind
+            raise ValueError(
+                f"`archive.container` must be empty for a refinement, got {kind!r}"
+            )
         if self.feasible:
             refuse_without_feasible(scene_of(file).coupling, "feasible")
         return self

@@ -10,6 +10,7 @@ from ..plugins.declaration import refuse_empty_axis
 from . import measures
 from .bandit import Bandit
 from .base import Digest, Part, field, sourced
+from .containers import Container, DominatedNovelty, Fronts, LearnedAxes
 from .emitters import Emitter, NeatEmitter, refuse_uneven, slots
 from .plugins import OR_PLUGIN, MaybePlugin, PluginVersion, complete_plugin, completed
 from .reevaluation import Reevaluation
@@ -106,7 +107,7 @@ MAX_CELLS = 2**20
 
 
 class Archive(Part):
-    """An archive over one to eight descriptors, with one elite per cell."""
+    """An archive over one to eight descriptors, with one elite per cell by default."""
 
     model_config = sourced(MAP_ELITES)
 
@@ -120,6 +121,8 @@ class Archive(Part):
     grid of bins."""
     seed: int = field(0, ge=0, lt=2**32)
     """Random seed of the tessellation."""
+    container: Container | None = None
+    """What is kept instead of one elite per cell; empty: one elite per cell."""
 
     @property
     def plugins(self) -> dict[str, PluginVersion]:
@@ -136,6 +139,18 @@ class Archive(Part):
     def cells(self) -> int:
         return prod(self.shape)
 
+    @property
+    def places(self) -> int:
+        """Return the largest number of elites."""
+        match self.container:
+            case Fronts(size=size):
+                return size * self.cells
+            case DominatedNovelty(size=size):
+                return size
+            case LearnedAxes(axes=axes, bins=bins):
+                return bins**axes
+        return self.cells
+
     @model_validator(mode="after")
     def refuse_impossible(self) -> Self:
         names = [d.name for d in self.descriptors]
@@ -146,6 +161,10 @@ class Archive(Part):
             raise ValueError(
                 f"`descriptors` must make at most {MAX_CELLS:,} cells, got {product} = "
                 f"{self.cells:,}: reduce `bins` or set `centroids`"
+            )
+        if self.places > MAX_CELLS:
+            raise ValueError(
+                f"`container` must have at most {MAX_CELLS:,} places, got {self.places:,}"
             )
         return self
 

@@ -71,6 +71,9 @@ SEVERAL = [
 SPECS["bandit"] = SMALL | {
     "search": SMALL["search"] | {"generations": 6, "emitters": SEVERAL, "bandit": {"window": 3}}
 }
+SPECS["dominated-novelty"] = SMALL | {
+    "archive": {"container": {"kind": "dominated-novelty", "size": 24}}
+}
 SCREENED = {"batch": 64, "screening": {"rounds": 2, "candidates": 4}}
 SPECS["screened-bandit"] = SPECS["bandit"] | {"search": SPECS["bandit"]["search"] | SCREENED}
 SPECS["zoo"] = SMALL | {

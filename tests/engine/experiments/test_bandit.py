@@ -73,7 +73,7 @@ def test_the_order_in_which_children_arrive_changes_no_outcome(course):
         jnp.asarray(found.measures),
         jnp.asarray(found.status == 0),
     )
-    elites, cells = course.states[2].elites, state.cells
+    elites, cells = course.states[2].elites, state.container
     expected = course.states[3].outcomes[-1]
     for seed in range(5):
         order = np.random.default_rng(seed).permutation(experiment.plan.batch)

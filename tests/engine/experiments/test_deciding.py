@@ -88,7 +88,7 @@ def generation(plan, programs):
             jnp.asarray(mean.measures),
             jnp.asarray(mean.status == 0),
         )
-        elites, _ = search.insert(state.elites, candidates, state.cells)
+        elites, _ = search.insert(state.elites, candidates, state.container)
         return replace(state, generation=state.generation + 1, elites=elites), decided
 
     return next_state
@@ -144,7 +144,7 @@ def test_creatures_compete_in_the_cells_of_their_means(plan, generation):
     rows = [(fitness, 0.5, 2.0) for fitness in (1.0, 1.5, 2.0, 2.5)]
     state, decided = generation(start(plan), rows, np.zeros(4))
     first, mean = (
-        set(np.asarray(state.cells.of(jnp.asarray(one.measures))).tolist())
+        set(np.asarray(state.container.of(jnp.asarray(one.measures))).tolist())
         for one in (decided.first, decided.mean)
     )
     assert set(np.flatnonzero(state.elites.occupied).tolist()) == mean
@@ -186,7 +186,7 @@ def test_the_archive_holds_the_best_whatever_the_order_and_the_batches(seed, pla
         archives.append(state.elites)
     place = np.asarray(archives[0].measures)[:, plan.axes[0].measure]
     cells = np.asarray(
-        plan.cells.of(jnp.asarray(measured(plan, rows[:, 0], rows[:, 1]).measures))
+        plan.container.of(jnp.asarray(measured(plan, rows[:, 0], rows[:, 1]).measures))
     )
     best = {cell: rows[cells == cell, 0].max() for cell in cells.tolist()}
     for elites in archives:

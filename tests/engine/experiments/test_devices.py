@@ -35,6 +35,7 @@ def files(specs, cache):
     "name",
     [
         "bandit",
+        "dominated-novelty",
         *(pytest.param(f"screened{x}", marks=pytest.mark.long) for x in ("", "-bandit")),
     ],
 )

@@ -6,17 +6,13 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from elite_rows import AXES, awkward, candidates, same
 
 from microcosmos import genomes, search
 
-AXES = (
-    search.Axis(measure=0, low=1e-4, high=1e2, bins=6, logarithmic=True),
-    search.Axis(measure=1, low=0.0, high=1.0, bins=4, logarithmic=False),
-)
 AROUND = np.random.default_rng(1).random((24, 2)).astype(np.float32)
 CELLS = {"grid": search.Grid(AXES), "cvt": search.voronoi(AXES, AROUND)}
 COUNT = 24
-AWKWARD = [np.nan, np.inf, -np.inf, 1e38, -1e38, -0.0, 0.0, 1e-40, -1e-40, 1.0, -1.0]
 
 insert = jax.jit(search.insert)
 
@@ -42,34 +38,6 @@ def genotypes(request):
     return networks if request.param == "networks" else vectors
 
 
-def candidates(genotypes, count, seed, generation=0, levels=4):
-    """Random rows in which equal fitness and equal cells are common."""
-    random = np.random.default_rng(seed)
-    first, second = 10 ** random.uniform(-5, 3, count), random.uniform(-0.2, 1.2, count)
-    measures = np.stack([first, second], 1)
-    return search.Elites(
-        occupied=jnp.asarray(random.random(count) < 0.9),
-        fitness=jnp.asarray(random.integers(0, levels, count), jnp.float32),
-        measures=jnp.asarray(measures, jnp.float32),
-        generation=jnp.full(count, generation, jnp.int32),
-        slot=jnp.arange(count, dtype=jnp.int32),
-        curiosity=jnp.ones(count, jnp.float32),
-        genotypes=genotypes(random, count),
-    )
-
-
-def awkward(genotypes, count, seed, generation=0):
-    """The same with every kind of odd number in fitness and descriptors."""
-    rows = candidates(genotypes, count, seed, generation)
-    random = np.random.default_rng(seed)
-    fitness, measures = np.array(rows.fitness), np.array(rows.measures)
-    odd = random.random(count) < 0.6
-    fitness[odd] = random.choice(AWKWARD, odd.sum())
-    odd = random.random((count, 2)) < 0.4
-    measures[odd] = random.choice(AWKWARD, odd.sum())
-    return replace(rows, fitness=jnp.asarray(fitness), measures=jnp.asarray(measures))
-
-
 def nothing(genotypes):
     one = jax.tree.map(lambda x: x[0], genotypes(np.random.default_rng(0), 1))
     return search.no_elites(COUNT, 2, one)
@@ -79,11 +47,6 @@ def all_of(batches, cells, archive):
     for rows in batches:
         archive, _ = insert(archive, rows, cells)
     return archive
-
-
-def same(a, b):
-    pairs = zip(jax.tree.leaves(a), jax.tree.leaves(b), strict=True)
-    return all(np.asarray(x).tobytes() == np.asarray(y).tobytes() for x, y in pairs)
 
 
 def by_dictionary(batches, cells):

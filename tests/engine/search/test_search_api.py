@@ -186,7 +186,7 @@ def test_tell_before_ask_is_refused():
     ("other", "message"),
     [
         (lambda: on_vectors(seed=3), "`seed` must be the file's, 0, got 3"),
-        (lambda: on_vectors(AROUND), "`cells` must be the file's"),
+        (lambda: on_vectors(AROUND), "`container` must be the file's"),
         (
             lambda: search.Search(SPACE, GRID, vector_emitters(GRID)[:1]),
             "`emitters` must be the file's",

@@ -77,7 +77,7 @@ def test_on_simulations_it_is_the_loop_of_an_experiment(changes):
             return genotypes
 
     measures = len(plan.measures)
-    loop = search.Search(Space(), plan.cells, plan.emitters, seed=5, measures=measures)
+    loop = search.Search(Space(), plan.container, plan.emitters, seed=5, measures=measures)
     for _ in range(4):
         state, _ = experiment.advance(state)
         program = experiment.programs.evaluate_block

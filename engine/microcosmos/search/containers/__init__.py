@@ -1,0 +1,72 @@
+"""Containers of elites: one elite in each cell, or survivors of a competition of all."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Float
+
+from ..cells import Cells, Grid, Voronoi
+from ..insertion import Elites, Inserted, insert_into_cells
+from .novelty import DominatedNovelty, dominated_novelty
+from .survival import Survival, insert_survivors
+
+Container = Cells | Survival
+
+
+def insert(
+    archive: Elites, candidates: Elites, container: Container
+) -> tuple[Elites, Inserted]:
+    """Return the archive after the candidates of a generation, and the result for each.
+
+    Ties are broken by a total order: fitness, then the smaller digest of the genome, then the
+    earlier generation and slot. So the same candidates give the same archive on every device,
+    in whatever order. Candidates that are not `occupied`, or whose fitness or descriptors are
+    not finite, never enter.
+    """
+    if isinstance(container, Survival):
+        return insert_survivors(archive, candidates, container)
+    return insert_into_cells(archive, candidates, container)
+
+
+def insert_program(
+    options: Mapping[str, object] | None = None, *, donate: bool = False
+) -> Callable[..., tuple[Elites, Inserted]]:
+    """Compile `insert`, with these options of the compiler.
+
+    With `donate` it overwrites the old archive, which must not be used.
+    """
+    given = (0,) if donate else ()
+    return jax.jit(insert, donate_argnums=given, compiler_options=dict(options or {}))
+
+
+def cells_of(container: Container) -> Cells:
+    """Return the cells in which the figures of a container are taken."""
+    return container.cells if isinstance(container, Survival) else container
+
+
+def best_of_cells(elites: Elites, container: Container) -> Float[np.ndarray, "cell"]:
+    """Return the best fitness in each cell in double precision, NaN in empty ones."""
+    occupied, fitness = np.asarray(elites.occupied), np.asarray(elites.fitness, np.float64)
+    if not isinstance(container, Survival):
+        return np.where(occupied, fitness, np.nan)
+    cell = np.asarray(container.cells.of(jnp.asarray(elites.measures)))
+    best = np.full(container.cells.count, -np.inf)
+    np.maximum.at(best, cell[occupied], fitness[occupied])
+    return np.where(np.isfinite(best), best, np.nan)
+
+
+def with_cells(container: Container, cells: Cells) -> Container:
+    """Return the container with other cells."""
+    return replace(container, cells=cells) if isinstance(container, Survival) else cells
+
+
+def refreshed(
+    container: Container, archive: Elites, candidates: Elites, generation: int
+) -> Container:
+    """Return the container with which a generation, counted from 1, is inserted."""
+    if isinstance(container, Survival):
+        return container.refreshed(archive, candidates, generation)
+    return container

@@ -1,0 +1,101 @@
+"""Containers whose elites survive a competition of all, instead of one in each cell.
+
+In every generation the elites and the candidates form one pool; a container says which of it
+survive. A survivor keeps its place, newcomers take the free places in the total order.
+"""
+
+from abc import abstractmethod
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Int
+
+from ..cells import Axis, Cells
+from ..insertion import Elites, Inserted, ranked, sound
+
+
+class Survival(eqx.Module):
+    """A container of `count` places with at most one elite each; their numbers mean nothing.
+
+    Figures are those of the best in each of `cells`, so that all containers compare.
+    """
+
+    cells: eqx.AbstractVar[Cells]
+
+    @property
+    @abstractmethod
+    def count(self) -> int:
+        """Number of places."""
+
+    @abstractmethod
+    def survivors(self, pool: Elites, position: Int[Array, "row"]) -> Bool[Array, "row"]:
+        """Return which rows of a pool survive, at most `count` of those that are `occupied`.
+
+        `position` is each row's in the total order: distinct, the first is 0, rows that are not
+        occupied come last. The result must not depend on the order of rows. The first `count`
+        rows are the archive's, in the order of places.
+        """
+
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        return self.cells.axes
+
+    def refreshed(self, archive: Elites, candidates: Elites, generation: int) -> "Survival":
+        """Return the container with which a generation, counted from 1, is inserted."""
+        return self
+
+    def arrays(self) -> Mapping[str, Any]:
+        """Return what the container has learned, for the archive file."""
+        return {}
+
+    def with_arrays(self, arrays: Mapping[str, Any]) -> "Survival":
+        """Return the container with what `arrays` returned."""
+        return self
+
+
+def insert_survivors(
+    archive: Elites, candidates: Elites, container: Survival
+) -> tuple[Elites, Inserted]:
+    """Return the archive with the survivors of archive and candidates; see `insert`.
+
+    Of equal genotypes only the first in the total order may survive.
+    """
+    count, rows = container.count, len(candidates.occupied)
+    able = sound(candidates, container.axes)
+    pool = jax.tree.map(
+        lambda old, new: jnp.concatenate([old, new]),
+        archive,
+        replace(candidates, occupied=able),
+    )
+    position, distinct = ranked(pool)
+    pool = replace(pool, occupied=pool.occupied & distinct)
+    kept = container.survivors(pool, position) & pool.occupied
+    stays, entered = kept[:count], kept[count:]
+    # The k-th newcomer in the total order takes the k-th free place.
+    rank = _rank(jnp.where(entered, position[count:], count + rows))
+    free = jnp.nonzero(~stays, size=count, fill_value=count)[0].astype(jnp.int32)
+    place = jnp.where(entered, free[jnp.minimum(rank, count - 1)], count)
+    there = jnp.minimum(place, count - 1)
+    fresh = entered & ~archive.occupied[there]
+    before = jnp.where(fresh, 0.0, archive.fitness[there])
+    improvement = jnp.where(entered, candidates.fitness - before, -jnp.inf)
+    # Rows that do not enter get distinct indices beyond the archive, which are dropped.
+    to = jnp.where(entered, place, count + jnp.arange(rows))
+
+    def placed(old, new):
+        left = jnp.where(stays.reshape(-1, *[1] * (old.ndim - 1)), old, jnp.zeros_like(old))
+        return left.at[to].set(new, mode="drop", unique_indices=True)
+
+    found = jax.tree.map(placed, archive, candidates)
+    return found, Inserted(place, entered, fresh, improvement)
+
+
+def _rank(position: Int[Array, "row"]) -> Int[Array, "row"]:
+    """Return the place of each row among the rows sorted by position."""
+    order = jnp.argsort(position, stable=True)
+    ranks = jnp.arange(len(position), dtype=jnp.int32)
+    return jnp.zeros_like(ranks).at[order].set(ranks)

@@ -1,0 +1,80 @@
+"""What an archive keeps instead of one elite in each cell."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from ..naming import MeasureName
+from .base import Part, field, sourced
+from .sources import AURORA, DOMINATED_NOVELTY, MOME
+
+
+class Fronts(Part):
+    """Pareto fronts: in each cell the elites that no other exceeds in fitness and in a measure.
+
+    Of a front that is too long those remain that are farthest from their neighbours on it.
+    """
+
+    model_config = sourced(MOME)
+
+    kind: Literal["fronts"] = "fronts"
+    measure: MeasureName = "cost_of_transport"
+    """Second objective."""
+    goal: Literal["least", "most"] = "least"
+    """Whether the least or the most of the measure is best."""
+    size: int = field(8, ge=2, le=64, unit="elites")
+    """Longest front of a cell."""
+
+
+class DominatedNovelty(Part):
+    """Dominated novelty search: elites that are far from all that are fitter.
+
+    The bins of the descriptors only serve the figures.
+    """
+
+    model_config = sourced(DOMINATED_NOVELTY)
+
+    kind: Literal["dominated-novelty"] = "dominated-novelty"
+    size: int = field(256, ge=2, le=4096, unit="elites")
+    """Number of elites."""
+    neighbours: int = field(3, ge=1, le=64, unit="elites")
+    """Nearest fitter elites whose mean distance decides."""
+
+
+class LearnedAxes(Part):
+    """Cells along axes that are learned: principal components of the elites' measures.
+
+    The axes are learned after the first generation, after generation `first`, and whenever the
+    number of generations has doubled; all elites then compete for the new cells. The bins of
+    the descriptors only serve the figures.
+    """
+
+    model_config = sourced(AURORA)
+
+    kind: Literal["learned"] = "learned"
+    axes: int = field(2, ge=1, le=4)
+    """Number of axes."""
+    bins: int = field(16, ge=2, le=256)
+    """Bins along each axis."""
+    first: int = field(10, ge=2, le=1_000_000, unit="generations")
+    """Generation after which the axes are learned for the second time."""
+    measures: tuple[MeasureName, ...] = ()
+    """Measures of which the axes are made; empty: all that are recorded."""
+
+    @model_validator(mode="after")
+    def refuse_too_few(self) -> "LearnedAxes":
+        if len(set(self.measures)) < len(self.measures):
+            raise ValueError(f"`measures` must not repeat, got {list(self.measures)}")
+        if self.measures and len(self.measures) < self.axes:
+            raise ValueError(
+                f"`measures` must be at least as many as `axes` ({self.axes}), got "
+                f"{len(self.measures)}"
+            )
+        return self
+
+
+Container = Annotated[
+    Fronts | DominatedNovelty | LearnedAxes,
+    Field(discriminator="kind"),
+]
+"""What an archive keeps instead of one elite in each cell."""
