@@ -132,6 +132,7 @@ def table(generation: int, *rows: dict[str, Any], summary: Any = None) -> Any:
         evaluations=generation,
         infeasible=0,
         elites=(),
+        emptied=(),
         rows=tuple(
             SimpleNamespace(
                 values=values,
@@ -151,6 +152,7 @@ def report(
     measures: dict[str, float] | None = None,
     summary: dict[str, Any] | None = None,
     poses: bool = False,
+    emptied: tuple[int, ...] = (),
 ) -> Any:
     """The report of a generation: new elites by cell, with their fitness, or also poses."""
     efforts = {"bending_effort": 0.25, "stretching_effort": 0.5}
@@ -190,6 +192,7 @@ def report(
         evaluations=16 * generation,
         infeasible=generation,
         elites=tuple(elite(*item) for item in (elites or {}).items()),
+        emptied=emptied,
         rows=(),
         summary=summary,
     )
