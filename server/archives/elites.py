@@ -21,7 +21,7 @@ def all_time(run: Run, names: Sequence[str] = ()) -> Select[*tuple[Any, ...]]:
     return joined.where(recorded_in(run))
 
 
-def emptied(run: Run, generation: int, after: int = -1) -> Select[tuple[int, int]]:
+def emptied(run: Run, generation: int, after: int = -1) -> Select[int, int]:
     """Select cells, with the generation, that lost their elite after generation `after` and
     have no new one as of a generation."""
     entered = Elite.generation.between(after + 1, generation)
@@ -30,7 +30,7 @@ def emptied(run: Run, generation: int, after: int = -1) -> Select[tuple[int, int
     return mine.where(Elite.creature.is_(None)).order_by(Elite.cell)
 
 
-def losses(run: Run) -> Select[tuple[int, int]]:
+def losses(run: Run) -> Select[int, int]:
     """Select all cells that lost their elite without a new one, with the generation."""
     mine = select(Elite.cell, Elite.generation).where(recorded_in(run))
     return mine.where(Elite.creature.is_(None)).order_by(Elite.generation, Elite.cell)

@@ -150,7 +150,7 @@ def _columns(found: Sequence[Any], names: Sequence[str]) -> dict[str, Any]:
     }
 
 
-def _emptied(session: Session, found: Select[tuple[int, int]]) -> dict[str, list[int]]:
+def _emptied(session: Session, found: Select[int, int]) -> dict[str, Any]:
     rows = session.execute(found).all()
     cells, generations = [row.cell for row in rows], [row.generation for row in rows]
     return {"emptied": cells, "emptied_generation": generations}

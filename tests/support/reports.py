@@ -20,6 +20,7 @@ DEMO = QualityDiversity.model_validate(
     | {"task": _DEMO["task"] | {"fitness": "displacement"}}
 )
 """The demonstration with another fitness and other axes, in which these reports are made."""
+PROVENANCE = {"parents": ["ab" * 32], "operator": "neat", "seed": 0, "version": "0.1.0"}
 
 
 def archive_file(spec: dict[str, Any]) -> bytes:
@@ -174,13 +175,7 @@ def report(
                 "room": [24, 64],
                 "device": "a device",
             },
-            provenance={
-                "parents": ["ab" * 32],
-                "operator": "neat",
-                "generation": generation,
-                "seed": 0,
-                "version": "0.1.0",
-            },
+            provenance=PROVENANCE | {"generation": generation},
         )
 
     return SimpleNamespace(

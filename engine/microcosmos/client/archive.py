@@ -58,7 +58,7 @@ class Archive:
             return None
         cell, fitness = self.cell, self.fitness
         if self.kind == "pool":
-            cell, fitness = _fittest(bins(self.descriptors.T, self.axes), fitness)
+            cell, fitness = _fittest(bins([*self.descriptors.T], self.axes), fitness)
         return drawing.archive_map(self.axes, cell, fitness, repr(self)[1:-1])
 
     def best(self) -> Creature:

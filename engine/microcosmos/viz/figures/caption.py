@@ -45,7 +45,7 @@ def _elites(found: Archive) -> str:
     """Return the numbers of elites and cells, and the coverage."""
     number, cells = len(found.cells), found.spec.archive.cells
     if found.pool:
-        covered = f"they cover {100 * found.curves['coverage'][-1]:.1f} % of {cells:,} bins"
+        covered = f"they cover {100 * found.curves['coverage'][-1]:.1f} % of {cells:,} cells"
         return f"Archive of {number:,} elites; {covered}"
     return f"Archive of {number:,} elites in {cells:,} cells ({100 * number / cells:.1f} %)"
 

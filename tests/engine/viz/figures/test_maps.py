@@ -61,7 +61,7 @@ def test_elites_of_a_container_stand_where_their_measures_are(made):
     assert np.argwhere(np.isfinite(values)).tolist() == [[0, 0], [4, 3]]
     assert (values[0, 0], values[4, 3]) == (3.0, 1.0)
     text = caption.of_archive(found, None)
-    assert "Archive of 3 elites; they cover 50.0 % of 20 bins over bending" in text
+    assert "Archive of 3 elites; they cover 50.0 % of 20 cells over bending" in text
     assert "Where elites share a place, the fittest is shown. MAP-Elites with" in text
 
 
