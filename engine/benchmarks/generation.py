@@ -51,7 +51,7 @@ def filled(run: Evolution, state: State) -> State:
     newcomer = jax.jit(jax.vmap(lambda key: plan.encoding.newcomer(key=key)))
     parts = [jax.device_get(newcomer(keys[i : i + 4096])) for i in range(0, count, 4096)]
     measures = random.random((count, len(plan.measures))).astype(np.float32)
-    for axis, place in zip(plan.axes, plan.container.centres.T, strict=True):
+    for axis, place in zip(plan.axes, search.cells_of(plan.container).centres.T, strict=True):
         measures[:, axis.measure] = np.asarray(axis.value(jnp.asarray(place)))
     elites = replace(
         state.elites,

@@ -111,7 +111,7 @@ def bins(values: Sequence[np.ndarray], axes: Sequence[dict[str, Any]]) -> np.nda
         np.minimum((unit(x, axis) * axis["bins"]).astype(int), axis["bins"] - 1)
         for x, axis in zip(values, axes, strict=True)
     ]
-    return np.ravel_multi_index(places, shape)
+    return np.asarray(np.ravel_multi_index(places, shape))
 
 
 def ends(axis: dict[str, Any]) -> tuple[float, float]:

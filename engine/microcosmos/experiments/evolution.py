@@ -74,6 +74,8 @@ class Evolution:
         if self.repeats and reevaluation.due(self.plan, after):
             after = reevaluation.evaluate(self.plan, self.repeats, after, stop)
             corrected = reevaluation.figures(self.repeats, after)
+            # Reevaluations count, so they may use up the budget.
+            after = replace(after, ended=after.ended or _ended(self.plan, after))
         row = np.array([*_figures(after), clipped, *corrected])
         after = replace(after, curves=np.concatenate([after.curves, row[None]]))
         seconds = after.device_seconds - state.device_seconds
