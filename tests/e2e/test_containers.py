@@ -47,6 +47,7 @@ def test_the_elites_of_a_front_are_listed_and_shown(page, idle, fronts):
     listed.nth(1).click()
     expect(listed.nth(1)).to_have_attribute("aria-pressed", "true")
     expect(reading).to_contain_text("Fitness 3")
+    expect(reading).to_contain_text("one of 2 at this position")
     page.wait_for_url(re.compile("cell=700"))
     name = reading.locator("code").inner_text()
     the_map(page).press("Enter")

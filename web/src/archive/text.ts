@@ -37,6 +37,7 @@ export const text = {
   generation: "Generation",
   open: "Open",
   bestOf: "best of",
+  oneOf: "one of",
   here: "at this position",
   tileSize: "Tile size",
   galleryLabel: (select: boolean) => `Gallery. Arrow keys move between creatures, ${keyHelp(select)}`,
