@@ -20,7 +20,7 @@ from jaxtyping import Array, Int, PyTree
 from ..archive import file
 from ..neat import Counters
 from .cells import Voronoi
-from .containers import Container, Survival, best_of_cells, cells_of, insert
+from .containers import Container, Survival, best_of_cells, cells_of, insert, needed_measures
 from .emitters import Children, Emitter, Learner, begin, credit, emit, outcome, tell
 from .emitters.tensorneat import TensorNeat
 from .insertion import Elites, Inserted, candidates, no_elites, sound
@@ -76,7 +76,7 @@ class Search:
         measures: int | None = None,
     ) -> None:
         self.space, self.container, self.emitters = space, container, tuple(emitters)
-        needed = 1 + max(axis.measure for axis in container.axes)
+        needed = needed_measures(container)
         self.seed, self.measures = seed, needed if measures is None else measures
         if self.measures < needed:
             raise ValueError(f"`measures` must be at least {needed}, got {self.measures}")

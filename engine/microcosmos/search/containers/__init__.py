@@ -10,7 +10,9 @@ from jaxtyping import Float
 
 from ..cells import Cells, Grid, Voronoi
 from ..insertion import Elites, Inserted, insert_into_cells
+from .fronts import Fronts, crowding_distance, front
 from .novelty import DominatedNovelty, dominated_novelty
+from .quality import FrontFigures, front_figures, hypervolume
 from .survival import Survival, insert_survivors
 
 Container = Cells | Survival
@@ -45,6 +47,14 @@ def insert_program(
 def cells_of(container: Container) -> Cells:
     """Return the cells in which the figures of a container are taken."""
     return container.cells if isinstance(container, Survival) else container
+
+
+def needed_measures(container: Container) -> int:
+    """Return how many measures a container needs."""
+    axes = container.axes
+    if isinstance(container, Fronts):
+        axes = (*axes, container.second)
+    return 1 + max(axis.measure for axis in axes)
 
 
 def best_of_cells(elites: Elites, container: Container) -> Float[np.ndarray, "cell"]:
