@@ -17,7 +17,9 @@ def measured(state: State) -> State:
     if state.fronts is None:
         return state
     assert isinstance(state.container, search.Fronts)
-    row = np.array(search.front_figures(state.elites, state.container))
+    elites, there = state.elites, np.asarray(state.elites.occupied)
+    rows = np.asarray(elites.fitness)[there], np.asarray(elites.measures)[there]
+    row = np.array(search.front_figures(*rows, state.container))
     return replace(state, fronts=np.concatenate([state.fronts, row[None]]))
 
 

@@ -34,6 +34,14 @@ def pool(seed, count=120, kind=candidates, levels=5):
     return replace(rows, measures=jnp.concatenate([rows.measures, column], 1))
 
 
+def all_of(fitness, measures):
+    """Rows of distinct genomes that are all feasible."""
+    count = len(fitness)
+    given = (jnp.asarray(x, jnp.float32) for x in (fitness, measures))
+    genotypes = vectors(np.random.default_rng(0), count)
+    return search.candidates(1, genotypes, *given, jnp.ones(count, bool))
+
+
 def odd_pool(seed, count=120):
     return pool(seed, count, lambda *given, levels: awkward(*given))
 
@@ -95,11 +103,7 @@ def test_of_a_long_front_the_ends_and_the_least_crowded_survive(size):
         angle = random.uniform(0, np.pi / 2, 60) * random.uniform(0.8, 1.0, 60)
         fitness, cost = np.cos(angle), 10 ** (3 - 3 * np.sin(angle))
         measures = np.stack([random.random(60), np.zeros(60), cost], 1)
-        rows = search.candidates(
-            1, vectors(random, 60), *(jnp.asarray(x, jnp.float32) for x in (fitness, measures)),
-            jnp.ones(60, bool),
-        )  # fmt: skip
-        rows, position = ranked(rows, fronts)
+        rows, position = ranked(all_of(fitness, measures), fronts)
         front, cell = on_fronts(rows, np.asarray(position), fronts)
         found = np.asarray(survivors(fronts, rows, position))
         place = np.asarray(COST.place(rows.measures[:, 2]))
@@ -118,10 +122,7 @@ def test_equally_crowded_rows_are_kept_by_the_total_order():
     fronts = search.Fronts(search.Grid((search.Axis(0, 0.0, 1.0, 1),)), COST, 4, least=False)
     steps = np.arange(7.0)
     measures = np.stack([steps * 0, steps, 10 ** (steps / 2)], 1)
-    rows = search.candidates(
-        1, vectors(np.random.default_rng(0), 7), jnp.asarray(7 - steps, jnp.float32),
-        jnp.asarray(measures, jnp.float32), jnp.ones(7, bool),
-    )  # fmt: skip
+    rows = all_of(7 - steps, measures)
     distance = search.crowding_distance(
         jnp.zeros(7, jnp.int32), rows.fitness, jnp.asarray(steps), jnp.arange(7)
     )
@@ -146,7 +147,8 @@ def test_a_front_does_not_depend_on_when_its_elites_came(least):
     whole, _ = insert(one, rows, fronts)
     parts = one
     for start in range(0, 240, 40):
-        parts, _ = insert(parts, jax.tree.map(lambda x: x[start : start + 40], rows), fronts)  # noqa: B023
+        batch = jax.tree.map(lambda x, start=start: x[start : start + 40], rows)
+        parts, _ = insert(parts, batch, fronts)
     slots = (np.sort(np.asarray(x.slot)[np.asarray(x.occupied)]) for x in (whole, parts))
     np.testing.assert_array_equal(*slots)
 
@@ -176,20 +178,64 @@ def test_areas_of_cells_add_up_whatever_is_dominated_or_below_the_reference():
 def test_figures_of_an_archive():
     fronts = search.Fronts(GRID, COST, 3)
     measures = [[1e-3, 0.1, 10.0], [1e-3, 0.1, 100.0], [10.0, 0.9, 1.0], [10.0, 0.9, 1e6]]
-    rows = search.candidates(
-        1,
-        vectors(np.random.default_rng(0), 4),
-        jnp.asarray([0.25, 0.5, 0.25, 1.0], jnp.float32),
-        jnp.asarray(measures, jnp.float32),
-        jnp.ones(4, bool),
-    )
+    rows = all_of([0.25, 0.5, 0.25, 1.0], measures)
     empty = search.no_elites(fronts.count, 3, genomes.Vector(jnp.zeros(3)))
-    assert search.front_figures(empty, fronts) == (0, 0, 0, 0)
+    assert search.front_figures(np.zeros(0), np.zeros((0, 3)), fronts) == (0, 0, 0, 0)
     archive, _ = insert(empty, rows, fronts)
-    found = search.front_figures(archive, fronts)
+    there = np.asarray(archive.occupied)
+    found = search.front_figures(archive.fitness[there], archive.measures[there], fronts)
     # On the axis from 1,000 to 1 costs of 10 and 100 are at 2/3 and 1/3.
     first_cell = 0.25 * 2 / 3 + 0.25 / 3
     np.testing.assert_allclose(found.moqd_score, first_cell + 0.25)
     np.testing.assert_allclose(found.hypervolume, 0.25 + 0.25 / 3)
     np.testing.assert_allclose(found.largest_sum, 1.25)
     assert found.mean_length == 2
+
+
+SPACE = search.Vectors(4)
+
+
+def two_optima(vectors):
+    """Nearness to two points, and the first two arguments as descriptors."""
+    near = [1 - np.mean((vectors - top) ** 2, 1) / 4 for top in (-0.5, 0.5)]
+    return near[0], np.stack([vectors[:, 0], vectors[:, 1], near[1]], 1)
+
+
+def search_for(second=2, least=False):
+    axes = tuple(search.Axis(i, -1.0, 1.0, 3) for i in range(2))
+    objective = search.Axis(second, 0.0, 1.0, 1)
+    fronts = search.Fronts(search.Grid(axes), objective, 4, least)
+    emitter = search.emitters.IsoLine(32, SPACE, iso=0.1, line=0.2)
+    return search.Search(SPACE, fronts, [emitter], seed=1)
+
+
+def test_a_search_of_ones_own_fills_fronts_and_continues_from_its_file():
+    loop, scores, file = search_for(), [], b""
+    for number in range(12):
+        if number == 6:
+            file = loop.save()
+        loop.tell(*two_optima(loop.ask()))
+        found = loop.elites
+        figures = search.front_figures(found.fitness, found.measures, loop.container)
+        scores.append(figures.moqd_score)
+    assert scores[-1] > 1.05 * scores[0]
+    assert 1 < figures.mean_length <= 4
+    again = search_for()
+    again.restore(file)
+    for _ in range(6):
+        again.tell(*two_optima(again.ask()))
+    assert again.save() == loop.save()
+    first, measures = two_optima(found.genotypes)
+    np.testing.assert_array_equal(found.fitness, np.float32(first))
+    np.testing.assert_array_equal(found.measures, np.float32(measures))
+
+
+@pytest.mark.parametrize("other", [{"second": 1}, {"least": True}])
+def test_a_search_for_another_second_objective_refuses_the_file(other):
+    with pytest.raises(ValueError, match="must be the file's"):
+        search_for(**other).restore(search_for().save())
+
+
+def test_a_search_needs_the_measure_of_the_second_objective():
+    with pytest.raises(ValueError, match="`measures` must be at least 3, got 2"):
+        search.Search(SPACE, search_for().container, search_for().emitters, measures=2)

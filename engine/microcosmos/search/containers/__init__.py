@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
-from ..cells import Cells, Grid, Voronoi
+from ..cells import Axis, Cells, Grid, Voronoi
 from ..insertion import Elites, Inserted, insert_into_cells
 from .fronts import Fronts, crowding_distance, front
 from .novelty import DominatedNovelty, dominated_novelty
@@ -49,12 +49,11 @@ def cells_of(container: Container) -> Cells:
     return container.cells if isinstance(container, Survival) else container
 
 
-def needed_measures(container: Container) -> int:
-    """Return how many measures a container needs."""
-    axes = container.axes
+def measured_axes(container: Container) -> tuple[Axis, ...]:
+    """Return the axes of all measures that a container needs."""
     if isinstance(container, Fronts):
-        axes = (*axes, container.second)
-    return 1 + max(axis.measure for axis in axes)
+        return *container.axes, container.second
+    return container.axes
 
 
 def best_of_cells(elites: Elites, container: Container) -> Float[np.ndarray, "cell"]:

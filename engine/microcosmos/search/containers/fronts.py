@@ -32,9 +32,7 @@ class Fronts(Survival):
 
     def __check_init__(self) -> None:
         if self.size < 2:
-            raise ValueError(
-                f"`size` must be at least 2, the ends of a front, got {self.size}"
-            )
+            raise ValueError(f"`size` must be at least 2, the ends of a front, got {self.size}")
 
     @property
     def count(self) -> int:
@@ -109,7 +107,7 @@ def crowding_distance(
 
 
 def _highest(cell: Rows, value: Rows) -> Rows:
-    """Return the largest value of each row and those before it in its cell; cells are sorted."""
+    """Return the largest value up to each row of its cell; cells are sorted."""
     place = jnp.arange(len(cell), dtype=jnp.int32)
 
     def doubled(number: Int[Array, ""], highest: Rows) -> Rows:

@@ -7,15 +7,16 @@ objectives: Janmohamed, Pierrot and Cully, GECCO 2023, arXiv:2302.12668.
 from math import fsum
 from typing import NamedTuple
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float, Int
 
 from ... import exact
 from ..cells import Axis
-from ..insertion import Elites
 from .fronts import Fronts
 
+Rows = np.ndarray | jax.Array
 Objective = Float[np.ndarray, "row"]
 
 
@@ -36,20 +37,18 @@ class FrontFigures(NamedTuple):
     """Elites for each cell that has one."""
 
 
-def front_figures(elites: Elites, fronts: Fronts) -> FrontFigures:
-    """Return the figures of an archive of fronts."""
-    there = np.flatnonzero(elites.occupied)
-    if not len(there):
+def front_figures(fitness: Rows, measures: Rows, fronts: Fronts) -> FrontFigures:
+    """Return the figures of elites, given as fitness (row) and measures (row, measure)."""
+    if not len(fitness):
         return FrontFigures(0.0, 0.0, 0.0, 0.0)
-    measures = np.asarray(elites.measures)[there]
     cell = np.asarray(fronts.cells.of(jnp.asarray(measures)))
-    first = np.asarray(elites.fitness, np.float64)[there]
+    first, measures = np.asarray(fitness, np.float64), np.asarray(measures)
     second = scaled(fronts.second, measures[:, fronts.second.measure], least=fronts.least)
     return FrontFigures(
         moqd_score=hypervolume(cell, first, second),
         hypervolume=hypervolume(np.zeros_like(cell), first, second),
         largest_sum=float(np.max(first + second)),
-        mean_length=len(there) / len(np.unique(cell)),
+        mean_length=len(cell) / len(np.unique(cell)),
     )
 
 
