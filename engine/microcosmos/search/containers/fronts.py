@@ -1,4 +1,4 @@
-"""Pareto fronts in the cells of an archive (MOME: Pierrot et al., GECCO 2022, arXiv:2202.03057).
+"""Pareto fronts in cells: MOME (Pierrot et al., GECCO 2022, arXiv:2202.03057).
 
 Of a front that is too long the least crowded remain, as in MOME-PGX (Janmohamed, Pierrot and
 Cully, GECCO 2023, arXiv:2302.12668); crowding distance: Deb et al., IEEE Trans. Evol. Comput.
@@ -20,7 +20,7 @@ Rows = Int[Array, "row"]
 
 
 class Fronts(Survival):
-    """In each cell the elites that no other exceeds in fitness and in a second objective."""
+    """In each cell the elites that no other equals or exceeds in both of two objectives."""
 
     cells: Cells
     second: Axis
