@@ -2,6 +2,7 @@
 
 from .. import search, spec
 from ..spec import containers
+from ..spec.measures import MEASURES
 
 
 def build_container(
@@ -12,8 +13,11 @@ def build_container(
     match archive.container:
         case containers.DominatedNovelty(size=size, neighbours=neighbours):
             return search.DominatedNovelty(cells, size, neighbours)
-        case containers.Fronts():
-            raise NotImplementedError
+        case containers.Fronts(measure=name, goal=goal, size=size):
+            usual = MEASURES[name]
+            ends = usual.low, usual.high
+            second = search.Axis(measures.index(name), *ends, 1, usual.scale == "log10")
+            return search.Fronts(cells, second, size, goal == "least")
         case containers.LearnedAxes():
             raise NotImplementedError
     return cells

@@ -18,6 +18,7 @@ from ..archive import file, poses
 from ..genomes import columns, from_columns
 from ..search.leaves import filled, leaves
 from ..version import VERSION
+from . import fronts
 from .resume_check import devices_of
 from .state import (
     CURVES,
@@ -45,19 +46,7 @@ def save(plan: Plan, state: State) -> bytes:
     state = jax.device_get(state)
     cells = np.flatnonzero(state.elites.occupied)
     elites = jax.tree.map(lambda x: x[cells], state.elites)
-    loop = {
-        "generation": np.int64(state.generation),
-        "evaluations": np.int64(state.evaluations),
-        "infeasible": np.int64(state.infeasible),
-        "ended": np.int64(state.ended),
-        "counters": vars(state.counters),
-        "nearest_ancestors": state.nearest_ancestors,
-        "emitters": leaves(state.emitters),
-    }
-    if np.isfinite(plan.limits.device_hours):  # Without the limit it only changes bytes.
-        loop["device_seconds"] = np.float64(state.device_seconds)
-    if state.unrepeated is not None:
-        loop["unrepeated"] = vars(jax.tree.map(lambda x: x[cells], state.unrepeated))
+    loop = _loop(plan, state, cells)
     tree = {
         "archive": {
             "cell": cells.astype(np.int32),
@@ -75,22 +64,42 @@ def save(plan: Plan, state: State) -> bytes:
         "lineage": vars(state.lineage),
         "infeasible": vars(state.failures) | {"genotypes": columns(state.failures.genotypes)},
         "loop": loop,
+        **fronts.columns(state),
     }
     if state.screened is not None:
         pairs = zip(PREDICTIONS, state.screened.predictions.T, strict=True)
         tree["screening"] = dict(pairs)
-        loop["model"] = vars(state.screened.model)
     if state.first is not None:
         tree["archive"]["first"] = state.first.of(cells)
     around = search.cells_of(state.container)
     if isinstance(around, search.Voronoi):
         tree["archive"]["centroids"] = around.centroids
-    if isinstance(state.container, search.Survival) and (learned := state.container.arrays()):
-        loop["container"] = learned
     if state.initial is not None:
         genes = columns(state.initial.genotypes)
         tree["initial"] = {"creature": state.initial.creature, "genomes": genes}
     return file.dump(tree, _attributes(plan, state))
+
+
+def _loop(plan: Plan, state: State, cells: np.ndarray) -> dict[str, Any]:
+    """Return what only the next generation needs."""
+    loop = {
+        "generation": np.int64(state.generation),
+        "evaluations": np.int64(state.evaluations),
+        "infeasible": np.int64(state.infeasible),
+        "ended": np.int64(state.ended),
+        "counters": vars(state.counters),
+        "nearest_ancestors": state.nearest_ancestors,
+        "emitters": leaves(state.emitters),
+    }
+    if np.isfinite(plan.limits.device_hours):  # Without the limit it only changes bytes.
+        loop["device_seconds"] = np.float64(state.device_seconds)
+    if state.unrepeated is not None:
+        loop["unrepeated"] = vars(jax.tree.map(lambda x: x[cells], state.unrepeated))
+    if state.screened is not None:
+        loop["model"] = vars(state.screened.model)
+    if isinstance(state.container, search.Survival) and (learned := state.container.arrays()):
+        loop["container"] = learned
+    return loop
 
 
 def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
@@ -127,6 +136,7 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
         ),
         devices=devices,
         unrepeated=before or None,
+        fronts=fronts.from_columns(tree),
         poses=dict(zip(cells.tolist(), poses.streams(tree, attributes), strict=True)),
         initial=initial
         and InitialCreatures(
@@ -140,14 +150,18 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
         restored = replace(restored, screened=Screened(model, predictions))
     if restored.first is not None:
         restored = replace(restored, first=restored.first.replaced(cells, archive["first"]))
-    container = restored.container
+    restored = replace(restored, container=_container(plan, archive, loop))
+    return prolonged(restored) if restored.generation < plan.generations else restored
+
+
+def _container(plan: Plan, archive: dict[str, Any], loop: dict[str, Any]) -> search.Container:
+    container = plan.container
     if "centroids" in archive:  # Another machine may have found slightly other ones.
         found = search.voronoi(plan.axes, archive["centroids"])
         container = search.with_cells(container, found)
     if isinstance(container, search.Survival) and "container" in loop:
         container = container.with_arrays(loop["container"])
-    restored = replace(restored, container=container)
-    return prolonged(restored) if restored.generation < plan.generations else restored
+    return container
 
 
 def _attributes(plan: Plan, state: State) -> dict[str, str]:

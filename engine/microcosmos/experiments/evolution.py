@@ -20,7 +20,7 @@ from ..archive.variety import variety
 from ..genomes import Genotype
 from ..search.emitters.population import Population
 from ..search.emitters.tensorneat import TensorNeatState
-from . import archive_file, deciding, lineage, reevaluation, screening
+from . import archive_file, deciding, fronts, lineage, reevaluation, screening
 from .offspring import Offspring, Programs, next_offspring
 from .state import CURVES, ENDS, MAX_INFEASIBLE, Infeasible, Plan, State, start
 
@@ -78,6 +78,7 @@ class Evolution:
             after = replace(after, ended=after.ended or _ended(self.plan, after))
         row = np.array([*_figures(after), clipped, *corrected])
         after = replace(after, curves=np.concatenate([after.curves, row[None]]))
+        after = fronts.measured(after)
         seconds = after.device_seconds - state.device_seconds
         summary = _summary(self.plan, after, seconds, np.asarray(decided.mean.status))
         summary |= offspring.results.summary()
@@ -242,7 +243,7 @@ def _summary(plan: Plan, state: State, seconds: float, status: np.ndarray) -> di
     counts = np.bincount(status, minlength=len(search.STATUSES)).tolist()
     named = list(zip(search.STATUSES, counts, strict=True))[1:]
     found |= {f"infeasible: {reason}": count for reason, count in named if count}
-    found |= _species(state)
+    found |= _species(state) | fronts.summary(state)
     if state.screened is not None:
         found |= screening.summary(state.screened)
     if state.ended or state.generation >= plan.generations:

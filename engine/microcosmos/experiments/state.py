@@ -233,6 +233,8 @@ class State(eqx.Module):
     """None without screening."""
     first: FirstEvaluations | None = None
     """None unless means decide."""
+    fronts: Float[np.ndarray, "generation figure"] | None = None
+    """Columns of `search.FrontFigures`; None without Pareto fronts."""
 
 
 def prolonged(state: State) -> State:
@@ -256,6 +258,7 @@ def start(plan: Plan) -> State:
     """Return the state before the first generation."""
     none, names = np.zeros(0, np.int32), np.zeros((0, 32), np.uint8)
     descriptors = np.zeros((0, len(plan.axes)), np.float32)
+    no_figures = np.zeros((0, len(search.FrontFigures._fields)))
     no_genotypes = jax.tree.map(lambda x: np.zeros((0, *x.shape), x.dtype), plan.genotype)
     return State(
         generation=0,
@@ -289,4 +292,5 @@ def start(plan: Plan) -> State:
         initial=plan.initial,
         screened=plan.screening and start_screening(plan.screening),
         first=no_first(plan.cell_count, len(plan.measures)) if plan.decides else None,
+        fronts=no_figures if isinstance(plan.container, search.Fronts) else None,
     )

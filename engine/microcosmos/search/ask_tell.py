@@ -20,7 +20,7 @@ from jaxtyping import Array, Int, PyTree
 from ..archive import file
 from ..neat import Counters
 from .cells import Voronoi
-from .containers import Container, Survival, best_of_cells, cells_of, insert
+from .containers import Container, Survival, best_of_cells, cells_of, insert, measured_axes
 from .emitters import Children, Emitter, Learner, begin, credit, emit, outcome, tell
 from .emitters.tensorneat import TensorNeat
 from .insertion import Elites, Inserted, candidates, no_elites, sound
@@ -76,7 +76,7 @@ class Search:
         measures: int | None = None,
     ) -> None:
         self.space, self.container, self.emitters = space, container, tuple(emitters)
-        needed = 1 + max(axis.measure for axis in container.axes)
+        needed = 1 + max(axis.measure for axis in measured_axes(container))
         self.seed, self.measures = seed, needed if measures is None else measures
         if self.measures < needed:
             raise ValueError(f"`measures` must be at least {needed}, got {self.measures}")
@@ -222,7 +222,7 @@ class Search:
             "seed": self.seed,
             "measures": self.measures,
             "container": _described(self.container),
-            "axes": [vars(axis) for axis in cells.axes],
+            "axes": [vars(axis) for axis in measured_axes(self.container)],
             "cells": [cells.count, sha256(around).hexdigest()],
             "space": [type(self.space).__name__, *_numbers(self.space)],
             "genes": [list(x.shape[1:]) for x in jax.tree.leaves(elites.genotypes)],

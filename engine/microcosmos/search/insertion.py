@@ -118,7 +118,7 @@ def ranked(rows: Elites) -> tuple[Int[Array, "row"], Bool[Array, "row"]]:
     Rows that are not `occupied` come last.
     """
     first, second, generation, slot = _rank(rows)
-    unfit = jnp.where(rows.occupied, -_height(rows.fitness), MAX_INT)
+    unfit = jnp.where(rows.occupied, -height(rows.fitness), MAX_INT)
     order = jnp.lexsort((slot, generation, second, first, unfit))
     index = jnp.arange(len(order), dtype=jnp.int32)
     position = jnp.zeros_like(index).at[order].set(index)
@@ -126,6 +126,12 @@ def ranked(rows: Elites) -> tuple[Int[Array, "row"], Bool[Array, "row"]]:
     equal = (first[alike[1:]] == first[alike[:-1]]) & (second[alike[1:]] == second[alike[:-1]])
     repeated = jnp.concatenate([jnp.zeros(1, bool), equal])
     return position, ~jnp.zeros(len(order), bool).at[alike].set(repeated)
+
+
+def height(fitness: Float[Array, "row"]) -> Int[Array, "row"]:
+    """Map finite float32 numbers to integers in the same order, −0 as 0, denormals too."""
+    bits = jax.lax.bitcast_convert_type(fitness.astype(jnp.float32), jnp.int32)
+    return jnp.where(bits < 0, -(bits & MAX_INT), bits)
 
 
 def digest(genotypes: Genotype) -> UInt32[Array, "row 2"]:
@@ -156,15 +162,15 @@ def _winners(
     Genes decide only at equal fitness.
     """
     count = archive.occupied.shape[0]
-    elite = jnp.where(archive.occupied, _height(archive.fitness), -MAX_INT)
-    height = _height(candidates.fitness)
-    best = elite.at[cell].max(height, mode="drop")
-    leads = able & (height == best[there])
+    elite = jnp.where(archive.occupied, height(archive.fitness), -MAX_INT)
+    own = height(candidates.fitness)
+    best = elite.at[cell].max(own, mode="drop")
+    leads = able & (own == best[there])
     leaders = jnp.zeros(count, jnp.int32).at[cell].add(leads.astype(jnp.int32), mode="drop")
-    ties = leads & ((leaders[there] > 1) | (height == elite[there]))
+    ties = leads & ((leaders[there] > 1) | (own == elite[there]))
     return jax.lax.cond(
         jnp.any(ties),
-        lambda: _untied(archive, candidates, cell, there, leads, height == elite[there]),
+        lambda: _untied(archive, candidates, cell, there, leads, own == elite[there]),
         lambda: leads,
     )
 
@@ -200,9 +206,3 @@ def _rank(elites: Elites) -> tuple[Int[Array, "row"], ...]:
     """Return the keys of the order at equal fitness, first keys first; smaller is better."""
     ordered = jax.lax.bitcast_convert_type(digest(elites.genotypes) ^ SIGN_BIT, jnp.int32)
     return ordered[:, 0], ordered[:, 1], elites.generation, elites.slot
-
-
-def _height(fitness: Float[Array, "row"]) -> Int[Array, "row"]:
-    """Map finite float32 numbers to integers in the same order, −0 as 0, denormals too."""
-    bits = jax.lax.bitcast_convert_type(fitness.astype(jnp.float32), jnp.int32)
-    return jnp.where(bits < 0, -(bits & MAX_INT), bits)

@@ -88,6 +88,7 @@ TAGS: dict[str, tuple[str, ...]] = {
     "control": ENCODINGS,
     "targets": ("digit", "picture"),
     "obstacles": ("post", "wall", "pattern"),
+    "container": ("fronts", "dominated-novelty", "learned"),
     "emitters": ("random", *NETWORK_OPERATORS, *VECTOR_OPERATORS),
 }
 """The tags of union fields, which pydantic adds to the paths of errors."""

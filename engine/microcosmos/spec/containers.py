@@ -10,16 +10,18 @@ from .sources import AURORA, DOMINATED_NOVELTY, MOME
 
 
 class Fronts(Part):
-    """Pareto fronts: in each cell the elites that no other exceeds in fitness and in a measure.
+    """Pareto fronts: in each cell the elites that no other equals or exceeds in both fitness
+    and a measure.
 
-    Of a front that is too long those remain that are farthest from their neighbours on it.
+    Of a front that is too long the ends remain, and those farthest from their neighbours on it.
     """
 
     model_config = sourced(MOME)
 
     kind: Literal["fronts"] = "fronts"
     measure: MeasureName = "cost_of_transport"
-    """Second objective."""
+    """Second objective, another than the fitness's; its default axis has the scale of
+    distances and of the hypervolume."""
     goal: Literal["least", "most"] = "least"
     """Whether the least or the most of the measure is best."""
     size: int = field(8, ge=2, le=64, unit="elites")

@@ -7,13 +7,14 @@ from pydantic import model_validator
 
 from .base import Part, field
 from .body import Body, Chain, is_unavailable, resolved
+from .containers import Fronts
 from .control import Control, Genome
 from .coupling import Coupling, refuse_without_feasible
 from .emitters import Emitter, PopulationEmitter, gradients, refuse_unfit_emitters
 from .encodings import Controller, refuse_cramped
 from .placement import refuse_blocked, refuse_crowded
 from .scene import Scene, refuse_misfit, refuse_senseless, refuse_swept
-from .search import STATELESS, Archive, Generations, Task
+from .search import MEASURED, STATELESS, Archive, Generations, Task
 from .world import Steric, World
 
 Name = TypeVar("Name", bound=str)
@@ -119,6 +120,13 @@ class Evolution(Part, Generic[Name, SearchSpec]):
                 raise ValueError(
                     f"`search.emitters` must be among {', '.join(allowed)} with "
                     f"`archive.container`, got {emitter.operator!r}, which learns from cells"
+                )
+        if isinstance(container, Fronts):
+            fitness = self.task.fitness
+            if container.measure == MEASURED.get(fitness, (fitness,))[0]:
+                raise ValueError(
+                    "`archive.container.measure` must be another measure than that of the "
+                    f"fitness {fitness!r}, got {container.measure!r}"
                 )
         return self
 

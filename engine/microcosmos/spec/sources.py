@@ -34,7 +34,10 @@ BANDIT = (
     "Cully, GECCO 2021; UCB1: Auer, Cesa-Bianchi and Fischer, Mach. Learn. 47, 235 (2002); "
     "window: Garivier and Moulines, arXiv:0805.3415"
 )
-MOME = "Pierrot, Richard, Beguir and Cully, GECCO 2022, arXiv:2202.03057"
+MOME = (
+    "Pierrot, Richard, Beguir and Cully, GECCO 2022, arXiv:2202.03057; crowding: Janmohamed, "
+    "Pierrot and Cully, GECCO 2023, arXiv:2302.12668"
+)
 DOMINATED_NOVELTY = "Bahlous-Boldi et al., GECCO 2025, arXiv:2502.00593"
 AURORA = "Grillotti and Cully, IEEE Trans. Evol. Comput. 26, 1539 (2022), arXiv:2106.05648"
 SCREENING = "Gaier, Asteroth and Mouret, Evol. Comput. 26, 381 (2018)"

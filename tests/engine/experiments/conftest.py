@@ -74,6 +74,12 @@ SPECS["bandit"] = SMALL | {
 SPECS["dominated-novelty"] = SMALL | {
     "archive": {"container": {"kind": "dominated-novelty", "size": 24}}
 }
+SPECS["fronts"] = SMALL | {
+    "archive": {
+        "descriptors": [{"name": "symmetry", "bins": 3}, {"name": "curvature_mean", "bins": 2}],
+        "container": {"kind": "fronts", "size": 3},
+    }
+}
 SCREENED = {"batch": 64, "screening": {"rounds": 2, "candidates": 4}}
 SPECS["screened-bandit"] = SPECS["bandit"] | {"search": SPECS["bandit"]["search"] | SCREENED}
 SPECS["zoo"] = SMALL | {

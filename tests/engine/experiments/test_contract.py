@@ -20,6 +20,7 @@ COMPUTED = (
     *("zoo", "screened"),
 )
 DIVIDED = ("bandit", "screened-bandit")
+CONTAINERS = ("dominated-novelty", "fronts")
 OTHER = {
     "quality-diversity": {"task": {"steps": 61}},
     "neuroevolution": {"seed": 6},
@@ -35,7 +36,7 @@ def marked(*names, long=LONG):
     return [pytest.param(name, marks=[pytest.mark.long] * (name in long)) for name in names]
 
 
-@pytest.fixture(scope="module", params=marked(*COMPUTED, *LEARNERS, *DIVIDED))
+@pytest.fixture(scope="module", params=marked(*COMPUTED, *LEARNERS, *DIVIDED, *CONTAINERS))
 def computed(request, course_of):
     """A run whose numbers repeat, those of searches that learn among them."""
     with jax.numpy_rank_promotion("allow" if request.param in LEARNERS else "raise"):

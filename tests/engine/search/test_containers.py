@@ -11,7 +11,10 @@ from elite_rows import AXES, awkward, candidates, same
 from microcosmos import genomes, search
 
 GRID = search.Grid(AXES)
-CONTAINERS = {"dominated-novelty": search.DominatedNovelty(GRID, 20, 3)}
+CONTAINERS = {
+    "dominated-novelty": search.DominatedNovelty(GRID, 20, 3),
+    "fronts": search.Fronts(GRID, search.Axis(1, 0.0, 1.0, 1), 3),
+}
 
 insert = jax.jit(search.insert)
 

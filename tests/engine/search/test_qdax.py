@@ -200,3 +200,37 @@ def test_our_map_elites_reaches_the_score_of_theirs(name, monkeypatch):
     theirs = [functions.theirs(name, seed, 60, 64) for seed in range(3)]
     spread = max(np.ptp(ours), np.ptp(theirs), 0.01 * np.mean(theirs))
     assert abs(np.median(ours) - np.median(theirs)) <= 2 * spread
+
+
+@pytest.mark.parametrize("kind", ["continuous", "levels"])
+def test_fronts_that_are_not_full_hold_what_theirs_do(kind):
+    """Theirs also keep copies of a pair of objectives, ours the first of them."""
+    repertoires = importlib.import_module("qdax.core.containers.mome_repertoire")
+    axes = tuple(search.Axis(i, 0.0, 1.0, 3) for i in range(2))
+    fronts = search.Fronts(search.Grid(axes), search.Axis(2, 0.0, 1.0, 1), 64, least=False)
+    random = np.random.default_rng(6)
+    for generation in range(1, 4):
+        drawn = random.random((60, 4))
+        if kind == "levels":
+            drawn[:, :2] = np.round(4 * drawn[:, :2]) / 4
+        both, descriptors = jnp.split(jnp.asarray(drawn, jnp.float32), 2, axis=1)
+        measures = jnp.concatenate([descriptors, both[:, 1:]], 1)
+        genotypes = genomes.Vector(jnp.asarray(random.random((60, 4)), jnp.float32))
+        able = jnp.ones(60, bool)
+        rows = search.candidates(generation, genotypes, both[:, 0], measures, able)
+        given = genotypes.values, measures[:, :2], both
+        if generation == 1:
+            archive = search.no_elites(fronts.count, 3, genomes.Vector(jnp.zeros(4)))
+            centroids = jnp.asarray(fronts.cells.centres)
+            theirs = repertoires.MOMERepertoire.init(given[0], both, given[1], centroids, 64)
+        else:
+            theirs = theirs.add(*given)
+        archive, _ = search.insert(archive, rows, fronts)
+        there = np.asarray(archive.occupied)
+        cell = np.asarray(fronts.cells.of(archive.measures))[there]
+        ours = np.stack([archive.fitness, archive.measures[:, 2]], 1)[there]
+        for number, front in enumerate(np.asarray(theirs.fitnesses)):
+            front = front[np.isfinite(front).all(1)]
+            assert len(front) < 64
+            found = sorted(map(tuple, ours[cell == number].tolist()))
+            assert found == sorted(set(map(tuple, front.tolist())))

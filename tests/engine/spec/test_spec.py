@@ -200,3 +200,20 @@ def test_a_bandit_divides_among_several_emitters_that_learn_nothing():
     )
     assert re.search("must be among random, neat, .* with `bandit`, got 'cma-mae'", learning)
     assert "search.bandit.window" in refusal(search=search | {"bandit": {"window": 0}})
+
+
+def test_fronts_need_a_second_objective_that_is_not_the_fitness():
+    def fronts(fitness="speed", **container):
+        chosen = {"container": {"kind": "fronts"} | container}
+        return {"archive": chosen, "task": {"fitness": fitness}}
+
+    found = parse({"experiment": "quality-diversity"} | fronts(size=4))
+    container = found.archive.container
+    assert (container.measure, container.goal) == ("cost_of_transport", "least")
+    assert found.archive.places == 4 * found.archive.cells
+    same = [("speed", "speed"), ("cost_of_transport", "cost_of_transport")]
+    for fitness, measure in [*same, ("displacement", "displacement")]:
+        told = refusal(**fronts(fitness, measure=measure, goal="most"))
+        assert "`archive.container.measure` must be another measure" in told
+        assert f"got {measure!r}" in told
+    assert "archive.container.size: " in refusal(**fronts(size=1))

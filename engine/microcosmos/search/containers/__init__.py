@@ -8,9 +8,11 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
-from ..cells import Cells, Grid, Voronoi
+from ..cells import Axis, Cells, Grid, Voronoi
 from ..insertion import Elites, Inserted, insert_into_cells
+from .fronts import Fronts, crowding_distance, front
 from .novelty import DominatedNovelty, dominated_novelty
+from .quality import FrontFigures, front_figures, hypervolume
 from .survival import Survival, insert_survivors
 
 Container = Cells | Survival
@@ -45,6 +47,13 @@ def insert_program(
 def cells_of(container: Container) -> Cells:
     """Return the cells in which the figures of a container are taken."""
     return container.cells if isinstance(container, Survival) else container
+
+
+def measured_axes(container: Container) -> tuple[Axis, ...]:
+    """Return the axes of all measures that a container needs."""
+    if isinstance(container, Fronts):
+        return *container.axes, container.second
+    return container.axes
 
 
 def best_of_cells(elites: Elites, container: Container) -> Float[np.ndarray, "cell"]:

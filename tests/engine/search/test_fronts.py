@@ -1,0 +1,241 @@
+"""Pareto fronts beside the written rule, and their figures beside closed forms."""
+
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from elite_rows import AWKWARD, AXES, awkward, candidates
+
+from microcosmos import genomes, search
+from microcosmos.search import insertion
+from microcosmos.search.cvt import centroids
+
+COST = search.Axis(measure=2, low=1.0, high=1e3, bins=1, logarithmic=True)
+GRID = search.Grid(AXES)
+AROUND = search.voronoi(AXES, centroids(9, 2, seed=0))
+
+insert = jax.jit(search.insert)
+survivors = jax.jit(lambda fronts, rows, position: fronts.survivors(rows, position))
+
+
+def vectors(random, count):
+    return genomes.Vector(jnp.asarray(random.normal(size=(count, 3)), jnp.float32))
+
+
+def pool(seed, count=120, kind=candidates, levels=5):
+    """Rows with a third measure, in which equal objectives, NaN and infinities are common."""
+    rows, random = kind(vectors, count, seed, levels=levels), np.random.default_rng(seed)
+    cost = 10.0 ** random.integers(0, 6, count)
+    odd = random.random(count) < 0.2
+    cost[odd] = random.choice(AWKWARD, odd.sum())
+    column = jnp.asarray(cost, jnp.float32)[:, None]
+    return replace(rows, measures=jnp.concatenate([rows.measures, column], 1))
+
+
+def all_of(fitness, measures):
+    """Rows of distinct genomes that are all feasible."""
+    count = len(fitness)
+    given = (jnp.asarray(x, jnp.float32) for x in (fitness, measures))
+    genotypes = vectors(np.random.default_rng(0), count)
+    return search.candidates(1, genotypes, *given, jnp.ones(count, bool))
+
+
+def odd_pool(seed, count=120):
+    return pool(seed, count, lambda *given, levels: awkward(*given))
+
+
+def objectives(rows, fronts):
+    first, second = np.asarray(rows.fitness), np.asarray(rows.measures)[:, 2]
+    return first, -second if fronts.least else second
+
+
+def on_fronts(rows, position, fronts):
+    """The rows that no other of their cell beats, one after another."""
+    first, second = objectives(rows, fronts)
+    cell = np.asarray(fronts.cells.of(rows.measures))
+    able = np.flatnonzero(np.asarray(rows.occupied) & np.isfinite(second))
+
+    def beats(j, i):
+        as_good = first[j] >= first[i] and second[j] >= second[i]
+        better = first[j] > first[i] or second[j] > second[i] or position[j] < position[i]
+        return cell[j] == cell[i] and as_good and better
+
+    kept = np.zeros(len(first), bool)
+    kept[[i for i in able if not any(beats(j, i) for j in able if j != i)]] = True
+    return kept, cell
+
+
+def crowding(first, place):
+    """The crowding distance of a front that is sorted by its first objective."""
+    distance = np.full(len(first), np.inf)
+    for i in range(1, len(first) - 1):
+        parts = (abs(x[i + 1] - x[i - 1]) / abs(x[0] - x[-1]) for x in (first, place))
+        distance[i] = sum(parts)
+    return distance
+
+
+def ranked(rows, fronts):
+    """Occupied rows that are sound, and each one's position in the total order."""
+    rows = replace(rows, occupied=insertion.sound(rows, fronts.axes))
+    return rows, insertion.ranked(rows)[0]
+
+
+@pytest.mark.parametrize("cells", [GRID, AROUND], ids=["grid", "cvt"])
+@pytest.mark.parametrize("least", [True, False])
+@pytest.mark.parametrize("kind", [pool, odd_pool])
+def test_no_other_row_of_the_cell_beats_a_survivor(cells, least, kind):
+    fronts = search.Fronts(cells, COST, 200, least)
+    for seed in range(8):
+        rows, position = ranked(kind(seed), fronts)
+        expected, _ = on_fronts(rows, np.asarray(position), fronts)
+        np.testing.assert_array_equal(survivors(fronts, rows, position), expected)
+        assert expected.any()
+
+
+@pytest.mark.parametrize("size", [2, 3, 5])
+def test_of_a_long_front_the_ends_and_the_least_crowded_survive(size):
+    fronts = search.Fronts(search.Grid((search.Axis(0, 0.0, 1.0, 2),)), COST, size)
+    cut = 0
+    for seed in range(10):
+        random = np.random.default_rng(seed)
+        angle = random.uniform(0, np.pi / 2, 60) * random.uniform(0.8, 1.0, 60)
+        fitness, cost = np.cos(angle), 10 ** (3 - 3 * np.sin(angle))
+        measures = np.stack([random.random(60), np.zeros(60), cost], 1)
+        rows, position = ranked(all_of(fitness, measures), fronts)
+        front, cell = on_fronts(rows, np.asarray(position), fronts)
+        found = np.asarray(survivors(fronts, rows, position))
+        place = np.asarray(COST.place(rows.measures[:, 2]))
+        for one in range(2):
+            own = np.flatnonzero(front & (cell == one))
+            own = own[np.argsort(-fitness[own])]
+            distance = crowding(fitness[own], place[own])
+            order = np.lexsort((np.asarray(position)[own], -distance))
+            assert set(own[order[:size]]) == set(np.flatnonzero(found & (cell == one)))
+            assert found[own[[0, -1]]].all()
+            cut += len(own) > size
+    assert cut > 10
+
+
+def test_equally_crowded_rows_are_kept_by_the_total_order():
+    fronts = search.Fronts(search.Grid((search.Axis(0, 0.0, 1.0, 1),)), COST, 4, least=False)
+    steps = np.arange(7.0)
+    measures = np.stack([steps * 0, steps, 10 ** (steps / 2)], 1)
+    rows = all_of(7 - steps, measures)
+    distance = search.crowding_distance(
+        jnp.zeros(7, jnp.int32), rows.fitness, jnp.asarray(steps), jnp.arange(7)
+    )
+    np.testing.assert_allclose(distance, [np.inf, *[2 / 3] * 5, np.inf], rtol=1e-6)
+    found = survivors(fronts, *ranked(rows, fronts))
+    assert np.asarray(found).sum() == 4
+    assert np.asarray(found)[[0, 6]].all()
+
+
+def test_a_flat_or_very_long_front_has_finite_distances():
+    cell, position = jnp.zeros(3, jnp.int32), jnp.arange(3)
+    for first in ([3e38, 0.0, -3e38], [3e-45, 2e-45, 1e-45]):
+        distance = search.crowding_distance(cell, jnp.asarray(first), jnp.ones(3), position)
+        assert np.isfinite(distance[1])
+
+
+@pytest.mark.parametrize("least", [True, False])
+def test_a_front_does_not_depend_on_when_its_elites_came(least):
+    fronts = search.Fronts(GRID, COST, 60, least)
+    rows = pool(5, 240)
+    one = search.no_elites(fronts.count, 3, genomes.Vector(jnp.zeros(3)))
+    whole, _ = insert(one, rows, fronts)
+    parts = one
+    for start in range(0, 240, 40):
+        batch = jax.tree.map(lambda x, start=start: x[start : start + 40], rows)
+        parts, _ = insert(parts, batch, fronts)
+    slots = (np.sort(np.asarray(x.slot)[np.asarray(x.occupied)]) for x in (whole, parts))
+    np.testing.assert_array_equal(*slots)
+
+
+def test_a_front_of_one_is_refused():
+    with pytest.raises(ValueError, match="`size` must be at least 2"):
+        search.Fronts(GRID, COST, 1)
+
+
+def test_the_area_under_a_quarter_circle():
+    angle = np.linspace(0, np.pi / 2, 20_001)
+    cell = np.zeros(len(angle), int)
+    found = search.hypervolume(cell, np.cos(angle), np.sin(angle))
+    np.testing.assert_allclose(found, np.pi / 4, rtol=2e-4)
+
+
+def test_areas_of_cells_add_up_whatever_is_dominated_or_below_the_reference():
+    cell = np.array([0, 0, 0, 0, 7, 7, 7])
+    first = np.array([1.0, 2.0, 1.0, 0.5, 3.0, -1.0, 4.0])
+    second = np.array([1.0, 0.5, 0.75, 0.2, 0.5, 0.9, -0.1])
+    # Two rectangles that overlap by 1 × 0.5, and one of 3 × 0.5.
+    for order in (np.arange(7), np.arange(7)[::-1]):
+        given = cell[order], first[order], second[order]
+        assert search.hypervolume(*given) == 1.0 + 1.0 - 0.5 + 1.5
+
+
+def test_figures_of_an_archive():
+    fronts = search.Fronts(GRID, COST, 3)
+    measures = [[1e-3, 0.1, 10.0], [1e-3, 0.1, 100.0], [10.0, 0.9, 1.0], [10.0, 0.9, 1e6]]
+    rows = all_of([0.25, 0.5, 0.25, 1.0], measures)
+    empty = search.no_elites(fronts.count, 3, genomes.Vector(jnp.zeros(3)))
+    assert search.front_figures(np.zeros(0), np.zeros((0, 3)), fronts) == (0, 0, 0, 0)
+    archive, _ = insert(empty, rows, fronts)
+    there = np.asarray(archive.occupied)
+    found = search.front_figures(archive.fitness[there], archive.measures[there], fronts)
+    # On the axis from 1,000 to 1 costs of 10 and 100 are at 2/3 and 1/3.
+    first_cell = 0.25 * 2 / 3 + 0.25 / 3
+    np.testing.assert_allclose(found.moqd_score, first_cell + 0.25)
+    np.testing.assert_allclose(found.hypervolume, 0.25 + 0.25 / 3)
+    np.testing.assert_allclose(found.largest_sum, 1.25)
+    assert found.mean_length == 2
+
+
+SPACE = search.Vectors(4)
+
+
+def two_optima(vectors):
+    """Nearness to two points, and the first two arguments as descriptors."""
+    near = [1 - np.mean((vectors - top) ** 2, 1) / 4 for top in (-0.5, 0.5)]
+    return near[0], np.stack([vectors[:, 0], vectors[:, 1], near[1]], 1)
+
+
+def search_for(second=2, least=False):
+    axes = tuple(search.Axis(i, -1.0, 1.0, 3) for i in range(2))
+    objective = search.Axis(second, 0.0, 1.0, 1)
+    fronts = search.Fronts(search.Grid(axes), objective, 4, least)
+    emitter = search.emitters.IsoLine(32, SPACE, iso=0.1, line=0.2)
+    return search.Search(SPACE, fronts, [emitter], seed=1)
+
+
+def test_a_search_of_ones_own_fills_fronts_and_continues_from_its_file():
+    loop, scores, file = search_for(), [], b""
+    for number in range(12):
+        if number == 6:
+            file = loop.save()
+        loop.tell(*two_optima(loop.ask()))
+        found = loop.elites
+        figures = search.front_figures(found.fitness, found.measures, loop.container)
+        scores.append(figures.moqd_score)
+    assert scores[-1] > 1.05 * scores[0]
+    assert 1 < figures.mean_length <= 4
+    again = search_for()
+    again.restore(file)
+    for _ in range(6):
+        again.tell(*two_optima(again.ask()))
+    assert again.save() == loop.save()
+    first, measures = two_optima(found.genotypes)
+    np.testing.assert_array_equal(found.fitness, np.float32(first))
+    np.testing.assert_array_equal(found.measures, np.float32(measures))
+
+
+@pytest.mark.parametrize("other", [{"second": 1}, {"least": True}])
+def test_a_search_for_another_second_objective_refuses_the_file(other):
+    with pytest.raises(ValueError, match="must be the file's"):
+        search_for(**other).restore(search_for().save())
+
+
+def test_a_search_needs_the_measure_of_the_second_objective():
+    with pytest.raises(ValueError, match="`measures` must be at least 3, got 2"):
+        search.Search(SPACE, search_for().container, search_for().emitters, measures=2)
