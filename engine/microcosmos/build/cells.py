@@ -1,6 +1,7 @@
 """Build the cells of an archive, or another container."""
 
 from .. import search, spec
+from ..archive.components import floors
 from ..spec import containers
 
 
@@ -14,8 +15,11 @@ def build_container(
             return search.DominatedNovelty(cells, size, neighbours)
         case containers.Fronts():
             raise NotImplementedError
-        case containers.LearnedAxes():
-            raise NotImplementedError
+        case containers.LearnedAxes(axes=axes, bins=bins, first=first, measures=chosen):
+            names = chosen or measures
+            columns = tuple(measures.index(name) for name in names)
+            given = {"axes": axes, "bins": bins, "first": first}
+            return search.learned_axes(cells, columns, floors=floors(names), **given)
     return cells
 
 

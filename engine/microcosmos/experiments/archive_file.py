@@ -18,6 +18,7 @@ from ..archive import file, poses
 from ..genomes import columns, from_columns
 from ..search.leaves import filled, leaves
 from ..version import VERSION
+from .epochs import Epochs
 from .resume_check import devices_of
 from .state import (
     CURVES,
@@ -80,6 +81,8 @@ def save(plan: Plan, state: State) -> bytes:
         pairs = zip(PREDICTIONS, state.screened.predictions.T, strict=True)
         tree["screening"] = dict(pairs)
         loop["model"] = vars(state.screened.model)
+    if state.epochs is not None:
+        tree["learned"] = vars(state.epochs)
     if state.first is not None:
         tree["archive"]["first"] = state.first.of(cells)
     around = search.cells_of(state.container)
@@ -140,6 +143,8 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
         restored = replace(restored, screened=Screened(model, predictions))
     if restored.first is not None:
         restored = replace(restored, first=restored.first.replaced(cells, archive["first"]))
+    if "learned" in tree:
+        restored = replace(restored, epochs=Epochs(**tree["learned"]))
     container = restored.container
     if "centroids" in archive:  # Another machine may have found slightly other ones.
         found = search.voronoi(plan.axes, archive["centroids"])

@@ -13,6 +13,7 @@ from jaxtyping import Array, Float, Int, PRNGKeyArray, PyTree, UInt8
 from .. import neat, search
 from ..archive.poses import PoseStream
 from ..genomes import Encoding, Genotype
+from .epochs import Epochs, no_epochs
 from .first import FirstEvaluations, no_first
 
 CURVES = (
@@ -233,6 +234,8 @@ class State(eqx.Module):
     """None without screening."""
     first: FirstEvaluations | None = None
     """None unless means decide."""
+    epochs: Epochs | None = None
+    """None unless axes are learned."""
 
 
 def prolonged(state: State) -> State:
@@ -289,4 +292,5 @@ def start(plan: Plan) -> State:
         initial=plan.initial,
         screened=plan.screening and start_screening(plan.screening),
         first=no_first(plan.cell_count, len(plan.measures)) if plan.decides else None,
+        epochs=no_epochs(plan.container),
     )

@@ -7,12 +7,14 @@ from .cells import Axis, Cells, Grid, Voronoi, places, voronoi
 from .containers import (
     Container,
     DominatedNovelty,
+    LearnedAxes,
     Survival,
     best_of_cells,
     cells_of,
     dominated_novelty,
     insert,
     insert_program,
+    learned_axes,
     refreshed,
     with_cells,
 )

@@ -74,6 +74,9 @@ SPECS["bandit"] = SMALL | {
 SPECS["dominated-novelty"] = SMALL | {
     "archive": {"container": {"kind": "dominated-novelty", "size": 24}}
 }
+SPECS["learned"] = SMALL | {
+    "archive": {"container": {"kind": "learned", "bins": 5, "first": 2}}
+}
 SCREENED = {"batch": 64, "screening": {"rounds": 2, "candidates": 4}}
 SPECS["screened-bandit"] = SPECS["bandit"] | {"search": SPECS["bandit"]["search"] | SCREENED}
 SPECS["zoo"] = SMALL | {

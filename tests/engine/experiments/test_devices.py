@@ -36,6 +36,7 @@ def files(specs, cache):
     [
         "bandit",
         "dominated-novelty",
+        "learned",
         *(pytest.param(f"screened{x}", marks=pytest.mark.long) for x in ("", "-bandit")),
     ],
 )

@@ -10,6 +10,7 @@ from jaxtyping import Float
 
 from ..cells import Cells, Grid, Voronoi
 from ..insertion import Elites, Inserted, insert_into_cells
+from .learned import LearnedAxes, learned_axes
 from .novelty import DominatedNovelty, dominated_novelty
 from .survival import Survival, insert_survivors
 
