@@ -176,4 +176,4 @@ def _stacked(found: dict[str, Any], prefix: str) -> np.ndarray:
 
 def source_bytes(archive: Source) -> bytes:
     """Return the file's bytes."""
-    return archive if isinstance(archive, bytes) else Path(archive).readsource_bytes()
+    return archive if isinstance(archive, bytes) else Path(archive).read_bytes()
