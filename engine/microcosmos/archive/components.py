@@ -4,10 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
 from .. import exact
-from ..spec.measures import MEASURES
 
 CLIP = 3.0
 """Standard deviations beyond which a measure counts as this far from its mean."""
@@ -18,9 +16,6 @@ CONSTANT = 1e-6
 NARROWEST = 1e-3
 """Least length of an axis; a shorter one becomes 1 long."""
 
-Values = Float[np.ndarray, "row measure"]
-Floats = Float[np.ndarray, "_"]
-
 
 @dataclass(frozen=True)
 class Components:
@@ -30,32 +25,27 @@ class Components:
     deviations end at ±`CLIP`.
     """
 
-    mean: Float[np.ndarray, "measure"]
-    scale: Float[np.ndarray, "measure"]
+    mean: np.ndarray
+    """A number for each measure, as in `scale`; `weights` are (axis, measure)."""
+    scale: np.ndarray
     """Standard deviations; 0 where a measure does not count."""
-    weights: Float[np.ndarray, "axis measure"]
+    weights: np.ndarray
     """A unit vector for each axis, its weight of the largest size positive."""
-    explained: Float[np.ndarray, "axis"]
+    explained: np.ndarray
     """Share of the variance of all measures along each axis."""
-    low: Float[np.ndarray, "axis"]
+    low: np.ndarray
     """Lower end of each axis; all but a hundredth of the rows are above it."""
-    high: Float[np.ndarray, "axis"]
+    high: np.ndarray
 
-    def coordinates(self, values: Values) -> Float[np.ndarray, "row axis"]:
-        """Return the coordinates of rows of values; what is not a number counts as the mean."""
+    def coordinates(self, values: np.ndarray) -> np.ndarray:
+        """Return coordinates (row, axis) of values (row, measure).
+
+        What is not a number counts as the mean.
+        """
         return projected(standardised(values, self.mean, self.scale), self.weights)
 
 
-def floors(names: Sequence[str]) -> tuple[float, ...]:
-    """Return the least value of each measure that enters as a logarithm, 0 for the others.
-
-    It is a hundredth of the lower end of the measure's own axis.
-    """
-    known = (MEASURES.get(name) for name in names)
-    return tuple(one.low / 100 if one and one.scale == "log10" else 0.0 for one in known)
-
-
-def scaled(measures: Values, least: Sequence[float]) -> Values:
+def scaled(measures: np.ndarray, least: Sequence[float]) -> np.ndarray:
     """Return measures on their own scales: natural logarithms where `least` is above 0."""
     values = np.array(measures, float)
     for column, floor in enumerate(least):
@@ -66,7 +56,7 @@ def scaled(measures: Values, least: Sequence[float]) -> Values:
     return values
 
 
-def learn(values: Values, axes: int) -> Components:
+def learn(values: np.ndarray, axes: int) -> Components:
     """Return the principal components of rows, which must be in an order of their own.
 
     Measures that are constant, or not finite in any row, do not count.
@@ -91,7 +81,7 @@ def learn(values: Values, axes: int) -> Components:
     return Components(mean, scale, weights, explained, *ends(projected(rows, weights)))
 
 
-def standardised(values: Values, mean: Floats, scale: Floats) -> Values:
+def standardised(values: np.ndarray, mean: np.ndarray, scale: np.ndarray) -> np.ndarray:
     """Return deviations from the mean in standard deviations, within ±`CLIP`; 0 for what is not
     a number or does not count."""
     counts = (scale > 0)[None] & ~np.isnan(values)
@@ -99,7 +89,7 @@ def standardised(values: Values, mean: Floats, scale: Floats) -> Values:
     return np.where(counts, np.clip(found, -CLIP, CLIP), 0.0)
 
 
-def projected(rows: Values, weights: Float[np.ndarray, "axis measure"]) -> np.ndarray:
+def projected(rows: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """Return the products of rows and weights, summed in the order of measures."""
     total = np.zeros((len(rows), len(weights)))
     for column in range(rows.shape[1]):
@@ -107,7 +97,7 @@ def projected(rows: Values, weights: Float[np.ndarray, "axis measure"]) -> np.nd
     return total
 
 
-def ends(coordinates: Float[np.ndarray, "row axis"]) -> tuple[Floats, Floats]:
+def ends(coordinates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the ends of axes, beyond each of which a hundredth of the rows lies."""
     ascending, beyond = np.sort(coordinates, axis=0), int(TAIL * (len(coordinates) - 1))
     low, high = ascending[beyond], ascending[len(ascending) - 1 - beyond]
@@ -115,6 +105,6 @@ def ends(coordinates: Float[np.ndarray, "row axis"]) -> tuple[Floats, Floats]:
     return np.where(narrow, middle - 0.5, low), np.where(narrow, middle + 0.5, high)
 
 
-def _mean(values: Values) -> Float[np.ndarray, "measure"]:
+def _mean(values: np.ndarray) -> np.ndarray:
     """Return means over rows, added in their order."""
     return np.add.reduce(values, axis=0) / len(values)

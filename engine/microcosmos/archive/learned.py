@@ -1,13 +1,14 @@
 """Learned axes of an archive file: the measures they are made of, and the elites on them."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float, Int, UInt8
 
-from .components import Components, floors, scaled
+from ..spec.measures import MEASURES
+from .components import Components, scaled
 from .export import Source, source_bytes
 from .file import Tree, load
 
@@ -21,26 +22,26 @@ class LearnedAxes:
     measures: tuple[str, ...]
     """Measures of which axes are made."""
     components: Components
-    coordinates: Float[np.ndarray, "elite axis"]
-    """Elites in the order of their places, as in `archive/*` of the file."""
-    creature: UInt8[np.ndarray, "elite 32"]
+    coordinates: np.ndarray
+    """Elites (elite, axis) in the order of their places, as in `archive/*` of the file."""
+    creature: np.ndarray
     """The SHA-256 of each elite."""
-    generation: Int[np.ndarray, "epoch"]
+    generation: np.ndarray
     """Generations in which axes were learned."""
 
     @property
-    def loadings(self) -> Float[np.ndarray, "axis measure"]:
-        """Return the weight of each measure on each axis; squares add up to 1 on an axis."""
+    def loadings(self) -> np.ndarray:
+        """Return the weights (axis, measure); squares add up to 1 on an axis."""
         return self.components.weights
 
     @property
-    def explained(self) -> Float[np.ndarray, "axis"]:
+    def explained(self) -> np.ndarray:
         """Return the share of the variance of all measures along each axis."""
         return self.components.explained
 
     @property
-    def ends(self) -> Float[np.ndarray, "axis 2"]:
-        """Return the lower and upper end of each axis."""
+    def ends(self) -> np.ndarray:
+        """Return the ends (axis, 2), the lower one first."""
         return np.stack([self.components.low, self.components.high], 1)
 
     def strongest(self, axis: int, count: int = 8) -> list[tuple[str, float]]:
@@ -74,6 +75,15 @@ def learned_axes(archive: Source) -> LearnedAxes:
         creature=tree["archive"]["creature"],
         generation=tree["learned"]["generation"],
     )
+
+
+def floors(names: Sequence[str]) -> tuple[float, ...]:
+    """Return the least value of each measure that enters as a logarithm, 0 for the others.
+
+    It is a hundredth of the lower end of the measure's own axis.
+    """
+    known = (MEASURES.get(name) for name in names)
+    return tuple(one.low / 100 if one and one.scale == "log10" else 0.0 for one in known)
 
 
 def _values(tree: Tree, columns: list[int], names: list[str]) -> Any:

@@ -81,15 +81,9 @@ def save(plan: Plan, state: State) -> bytes:
         pairs = zip(PREDICTIONS, state.screened.predictions.T, strict=True)
         tree["screening"] = dict(pairs)
         loop["model"] = vars(state.screened.model)
-    if state.epochs is not None:
-        tree["learned"] = vars(state.epochs)
     if state.first is not None:
         tree["archive"]["first"] = state.first.of(cells)
-    around = search.cells_of(state.container)
-    if isinstance(around, search.Voronoi):
-        tree["archive"]["centroids"] = around.centroids
-    if isinstance(state.container, search.Survival) and (learned := state.container.arrays()):
-        loop["container"] = learned
+    _hold_container(tree, state)
     if state.initial is not None:
         genes = columns(state.initial.genotypes)
         tree["initial"] = {"creature": state.initial.creature, "genomes": genes}
@@ -143,16 +137,31 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
         restored = replace(restored, screened=Screened(model, predictions))
     if restored.first is not None:
         restored = replace(restored, first=restored.first.replaced(cells, archive["first"]))
-    if "learned" in tree:
-        restored = replace(restored, epochs=Epochs(**tree["learned"]))
-    container = restored.container
+    restored = _with_container(restored, tree)
+    return prolonged(restored) if restored.generation < plan.generations else restored
+
+
+def _hold_container(tree: dict[str, Any], state: State) -> None:
+    """Add the container's centroids, and what it has learned."""
+    container, around = state.container, search.cells_of(state.container)
+    if isinstance(around, search.Voronoi):
+        tree["archive"]["centroids"] = around.centroids
+    if isinstance(container, search.Survival) and (learned := container.arrays()):
+        tree["loop"]["container"] = learned
+    if state.epochs is not None:
+        tree["learned"] = vars(state.epochs)
+
+
+def _with_container(state: State, tree: file.Tree) -> State:
+    """Return the state with the file's centroids, and what its container has learned."""
+    container, archive, loop = state.container, tree["archive"], tree["loop"]
     if "centroids" in archive:  # Another machine may have found slightly other ones.
-        found = search.voronoi(plan.axes, archive["centroids"])
+        found = search.voronoi(container.axes, archive["centroids"])
         container = search.with_cells(container, found)
     if isinstance(container, search.Survival) and "container" in loop:
         container = container.with_arrays(loop["container"])
-    restored = replace(restored, container=container)
-    return prolonged(restored) if restored.generation < plan.generations else restored
+    epochs = Epochs(**tree["learned"]) if "learned" in tree else state.epochs
+    return replace(state, container=container, epochs=epochs)
 
 
 def _attributes(plan: Plan, state: State) -> dict[str, str]:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from microcosmos.archive import components
+from microcosmos.archive.learned import floors
 
 WIDE = np.random.default_rng(0).normal(size=(300, 5)) @ np.random.default_rng(1).normal(
     size=(5, 12)
@@ -61,7 +62,7 @@ def test_axes_without_variance_are_not_empty(rows):
 
 
 def test_logarithms_end_at_a_least_value():
-    least = components.floors(("power", "speed", "some:plugin"))
+    least = floors(("power", "speed", "some:plugin"))
     assert least == pytest.approx((1e-9, 0.0, 0.0))
     measures = np.array([[0.0, 1, 2], [1e-3, 3, 4], [np.nan, 5, 6]], np.float32)
     found = components.scaled(measures, least)
