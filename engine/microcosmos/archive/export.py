@@ -131,7 +131,7 @@ def pose_streams(archive: Source) -> list[PoseStream]:
 
     Raises `ValueError` for a file of a run without an archive.
     """
-    return streams(*load(_bytes(archive)))
+    return streams(*load(source_bytes(archive)))
 
 
 def to_pandas(archive: Source) -> Any:
@@ -139,7 +139,7 @@ def to_pandas(archive: Source) -> Any:
 
     `ribs.archives.ArchiveDataFrame` takes it as it is. Raises `ImportError` without pandas.
     """
-    return require("pandas", "pandas").DataFrame(columns(_bytes(archive)))
+    return require("pandas", "pandas").DataFrame(columns(source_bytes(archive)))
 
 
 def to_ribs(archive: Source) -> Any:
@@ -150,7 +150,7 @@ def to_ribs(archive: Source) -> Any:
     middle of its cell. An archive with a container becomes the grid over its axes, with the
     best elite of each bin. Raises `ImportError` without pyribs.
     """
-    data = _bytes(archive)
+    data = source_bytes(archive)
     found, peer = columns(data), require("ribs.archives", "ribs[visualize]")
     solution, measures = _stacked(found, "solution_"), _stacked(found, "measures_")
     fields = list(found)[list(found).index("threshold") + 1 : -1]
@@ -196,5 +196,6 @@ def _stacked(found: dict[str, Any], prefix: str) -> np.ndarray:
     return np.stack([x for name, x in found.items() if name.startswith(prefix)], 1)
 
 
-def _bytes(archive: Source) -> bytes:
+def source_bytes(archive: Source) -> bytes:
+    """Return the file's bytes."""
     return archive if isinstance(archive, bytes) else Path(archive).read_bytes()
