@@ -1,12 +1,13 @@
 """Axes of archives: the bins of a measure."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from .. import exact
 from ..spec.measures import Measure, Scale
-from ..spec.search import Descriptor
 
 BINS = 24
 """Bins of an axis that is not an archive's own, as on the page."""
@@ -28,15 +29,27 @@ class Axis:
         return np.searchsorted(edges, np.asarray(values, np.float32), side="right")
 
 
+def own(spec: Mapping[str, Any]) -> dict[str, Axis]:
+    """Return the axes of a run's archive by name, from its spec as JSON."""
+    archive = spec["archive"]
+    names = ("name", "low", "high", "scale")
+    grid = archive.get("centroids") is None
+    found = [
+        Axis(**{name: one[name] for name in names}, bins=one["bins"] if grid else BINS)
+        for one in archive["descriptors"]
+    ]
+    return {one.name: one for one in found}
+
+
 def axis(
-    name: str, usual: Descriptor | Measure | None, values: np.ndarray, bins: int | None = None
+    name: str, usual: Axis | Measure | None, values: np.ndarray, bins: int | None = None
 ) -> Axis:
     """Return the axis of a measure, with the ends and the scale of `usual`.
 
-    An archive's own descriptor gives its bins too. Without `usual`, the axis ends at the lowest
-    and the highest of the values.
+    An archive's own axis gives its bins too. Without `usual`, the axis ends at the lowest and
+    the highest of the values.
     """
-    bins = bins or (usual.bins if isinstance(usual, Descriptor) else BINS)
+    bins = bins or (usual.bins if isinstance(usual, Axis) else BINS)
     if usual is not None:
         return Axis(name, usual.low, usual.high, bins, usual.scale)
     finite = values[np.isfinite(values)]

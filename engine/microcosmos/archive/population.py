@@ -27,6 +27,13 @@ class Creatures:
     def __len__(self) -> int:
         return len(self.names)
 
+    def among(self, names: Sequence[str]) -> "Creatures":
+        """Return the creatures that are among these names."""
+        kept = np.isin(self.names, np.array(names, "S64"))
+        columns = {name: column[kept] for name, column in self.measures.items()}
+        rest = (self.fitness[kept], self.generation[kept], columns, self.given[kept])
+        return Creatures(self.names[kept], *rest)
+
 
 def creatures(
     names: Sequence[str],

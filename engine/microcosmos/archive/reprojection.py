@@ -12,8 +12,8 @@ from math import prod
 
 import numpy as np
 
-from ..spec.measures import MEASURES, Measure
-from ..spec.search import MAX_CELLS, Descriptor
+from ..spec.measures import MEASURES
+from ..spec.search import MAX_CELLS
 from . import components
 from .axes import Axis, axis
 from .components import NAME, Component
@@ -75,15 +75,16 @@ class Reprojection:
 def over(
     found: Creatures,
     names: Sequence[str],
-    descriptors: Sequence[Descriptor] = (),
+    own: Mapping[str, Axis] | None = None,
     bins: Sequence[int] = (),
     components_of: Sequence[str] | None = None,
 ) -> tuple[Reprojection, list[Component]]:
     """Re-project creatures onto measures, `fitness` or components (`pc1`) by name.
 
-    Axes have the ends, scale and bins of the archive's own descriptors, or the ends and scale
-    of the measure; `bins` gives others, one number for all or one for each. `components_of`
-    names the measures that components are made of. Raises `ValueError` for wrong names.
+    An axis of the archive's `own` keeps its ends, scale and bins; any other has the ends and
+    the scale of the measure. `bins` gives other bins, one number for all or one for each.
+    `components_of` names the measures that components are made of. Raises `ValueError` for
+    wrong names.
     """
     _refuse(found, names, bins, components_of or ())
     numbers = [int(one[1]) for one in map(NAME.fullmatch, names) if one]
@@ -91,10 +92,7 @@ def over(
     if numbers:
         learned, found = components.principal(found, numbers, components_of)
     found = replace(found, measures={**found.measures, FITNESS: found.fitness})
-    usual: Mapping[str, Descriptor | Measure] = {
-        **MEASURES,
-        **{one.name: one for one in descriptors},
-    }
+    usual = {**MEASURES, **(own or {})}
     sizes = [*bins] * len(names) if len(bins) == 1 else bins or [None] * len(names)
     axes = [
         components.axis(name, found, size)

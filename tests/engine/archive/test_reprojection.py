@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 
 from microcosmos import search
-from microcosmos.archive.axes import Axis, axis
+from microcosmos.archive.axes import BINS, Axis, axis, own
 from microcosmos.archive.population import Creatures, creatures
 from microcosmos.archive.reprojection import over, reproject
-from microcosmos.spec import Descriptor
+from microcosmos.spec import Archive, Descriptor, QualityDiversity
 from microcosmos.spec.measures import MEASURES
 
 AXES = (Axis("mach", 1e-3, 1.0, 5, "log10"), Axis("symmetry", -1.0, 1.0, 4))
+MACH = Descriptor(name="mach", low=0.01, bins=7)
 COUNT = 400
 
 
@@ -111,15 +112,16 @@ def test_bins_are_those_of_an_archive(measure):
 
 def test_an_axis_has_the_ends_of_the_archive_or_of_the_measure():
     found = made(given())
-    own = Descriptor(name="mach", low=0.01, bins=7)
-    projected, learned = over(found, ["mach", "symmetry"], [own])
+    spec = QualityDiversity(archive=Archive(descriptors=(MACH,))).model_dump(mode="json")
+    projected, learned = over(found, ["mach", "symmetry"], own(spec))
     assert learned == []
     assert [asdict(one) for one in projected.axes] == [
         {"name": "mach", "low": 0.01, "high": 1.0, "bins": 7, "scale": "log10"},
         {"name": "symmetry", "low": -1.0, "high": 1.0, "bins": 24, "scale": "linear"},
     ]
-    assert [a.bins for a in over(found, ["mach", "symmetry"], [own], [9])[0].axes] == [9, 9]
-    assert [a.bins for a in over(found, ["mach", "symmetry"], [], [9, 3])[0].axes] == [9, 3]
+    assert [a.bins for a in over(found, ["mach", "symmetry"], own(spec), [9])[0].axes] == [9, 9]
+    assert [a.bins for a in over(found, ["mach", "symmetry"], {}, [9, 3])[0].axes] == [9, 3]
+    assert own(spec | {"archive": spec["archive"] | {"centroids": 9}})["mach"].bins == BINS
     fitness = over(found, ["fitness"])[0].axes[0]
     assert (fitness.low, fitness.high) == (-3.0, 4.0)
 
@@ -140,3 +142,14 @@ def test_an_axis_has_the_ends_of_the_archive_or_of_the_measure():
 def test_wrong_names_and_bins_are_refused(asked, message):
     with pytest.raises(ValueError, match=message):
         over(made(given()), **asked)
+
+
+def test_some_creatures_keep_the_axes_that_all_have_learned():
+    found = made(given())
+    projected, _ = over(found, ["pc1"], components_of=["mach", "symmetry"])
+    all_of_them = projected.creatures
+    some = all_of_them.among(given()["names"][:50])
+    assert len(some) == 50
+    assert set(some.names) < set(all_of_them.names)
+    again = reproject(some, projected.axes)
+    assert 0 < again.coverage <= projected.coverage
