@@ -6,7 +6,7 @@ import type { Archive, Run } from "../api/types";
 import { type Elite, type Elites, fittest } from "../store/elites";
 import { navigate, setQuery } from "../store/router";
 import { ArchiveMap } from "./ArchiveMap";
-import { MapOptions, Slices } from "./MapOptions";
+import { MapOptions, ReprojectionFigures, Slices } from "./MapOptions";
 import { TimeSlider } from "./TimeSlider";
 import { count } from "../ui/format";
 import { Segments } from "../ui/Select";
@@ -41,17 +41,19 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
   const gallery = query.get("view") === "gallery";
   const selection = useSelection(query, view.elites);
   const props = useViewProps(run, view, gallery ? view.grid : view.map, selection, query);
-  const names = `${view.axes[0].name} ${view.axes[1].name}`;
+  // Other creatures or axes are another map, in which no cell has changed.
+  const key = [view.axes[0].name, view.axes[1].name, view.of, view.reprojection !== null].join(" ");
   return (
     <div data-tour={tourPart}>
       <Head count={view.elites.size} gallery={gallery} onTour={tour.begin} />
       <MapOptions archive={archive} view={view} />
+      {view.reprojection && <ReprojectionFigures archive={view.archive} reprojection={view.reprojection} />}
       <Slices slices={view.slices} />
       {gallery ? (
-        <Gallery key={names} {...props} {...{ at, query }} run={run.id} />
+        <Gallery key={key} {...props} {...{ at, query }} run={view.of === "elites" ? run.id : null} />
       ) : (
         <ArchiveMap
-          key={names}
+          key={key}
           {...props}
           elites={view.elites}
           onFocus={setFocused}
@@ -60,10 +62,10 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
       )}
       {view.error && <p class="banner wrong">{view.error}</p>}
       <TimeSlider last={run.generation} at={at} ready={view.ready} onMove={setAt} />
-      <SelectionBar {...{ run, at }} elites={view.elites} {...selection} />
+      <SelectionBar {...{ run, at }} of={view.of} elites={view.elites} {...selection} />
       {tour.open && (
         <Tour
-          steps={stepsOf(run, archive, view)}
+          steps={stepsOf(run, view)}
           requested={tour.requested}
           onStep={({ part }) => {
             setTourPart(part);
@@ -103,7 +105,7 @@ function useViewProps(
           trusted={trusted}
           href={sharedSlug ? undefined : `/creatures/${creature}?run=${run.id}#audit`}
         />
-        <ForkLink run={run.id} creature={creature} title={text.forkCreature} inline />
+        <ForkLink run={run.id} creatures={[creature]} title={text.forkCreature} inline />
         <SelectToggle {...{ cell, projection }} {...selection} />
       </>
     ),
