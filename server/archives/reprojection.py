@@ -7,7 +7,7 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
-from microcosmos.archive.axes import own
+from microcosmos.archive.axes import of_spec
 from microcosmos.archive.components import NAME
 from microcosmos.archive.population import creatures
 from microcosmos.archive.reprojection import FITNESS, Reprojection, over, reproject
@@ -41,7 +41,7 @@ def read(
     listed = [row.creature for row in rows]
     given = [row.fitness for row in rows], [row.generation for row in rows], columns
     try:
-        made, learned = over(creatures(listed, *given), axes, own(run.spec))
+        made, learned = over(creatures(listed, *given), axes, of_spec(run.spec))
     except ValueError as error:
         raise invalid_field("axes", str(error), ",".join(axes)) from error
     present = session.execute(elites.as_of(run, run.generation)).all()

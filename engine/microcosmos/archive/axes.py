@@ -29,7 +29,7 @@ class Axis:
         return np.searchsorted(edges, np.asarray(values, np.float32), side="right")
 
 
-def own(spec: Mapping[str, Any]) -> dict[str, Axis]:
+def of_spec(spec: Mapping[str, Any]) -> dict[str, Axis]:
     """Return the axes of a run's archive by name, from its spec as JSON."""
     archive = spec["archive"]
     names = ("name", "low", "high", "scale")

@@ -13,12 +13,13 @@ import numpy as np
 from typer import Argument, Option
 
 from ..archive.atomic import write_whole
-from ..archive.axes import Axis, own
+from ..archive.axes import Axis, of_spec
 from ..archive.components import NAME, Component
 from ..archive.file import load
 from ..archive.population import Creatures, creatures, of_file
 from ..archive.reprojection import COMPONENTS, FITNESS, Reprojection, over, reproject
 from ..client import Client, Run
+from ..viz.figures import reprojected
 from .app import fail
 from .remote import RUNS, Json, say, server_command, show, show_table
 
@@ -41,10 +42,7 @@ def project(
     client: Client,
     source: Annotated[
         str,
-        Argument(
-            metavar="RUN_OR_FILE",
-            help="Id of a run; its first characters are enough. Or an archive file.",
-        ),
+        Argument(metavar="RUN_OR_FILE", help="Id of a run on a server, or an archive file."),
     ],
     axes: Annotated[
         str,
@@ -76,13 +74,7 @@ def project(
     names = list(COMPONENTS) if axes == PCA else _names(axes)
     sizes = [_whole(text) for text in _names(bins)]
     of_these = _names(components_of)
-    learns = any(map(NAME.fullmatch, names))
-    wanted = None if learns and not of_these else [*names, *of_these]
-    file = Path(source)
-    if file.is_file():
-        found, present, known, title = _of_file(file, of)
-    else:
-        found, present, known, title = _of_run(client.run(source), of, wanted)
+    found, present, known, title = _read(client, source, of, names, of_these)
     main, learned = over(found, names, known, sizes, of_these or None)
     shown = {HISTORY if present else ELITES: main}
     if present:
@@ -92,14 +84,24 @@ def project(
         write_whole(out, table(main).encode())
         say(f"{out}: {len(main.last):,} elites")
     if figure:
-        from ..viz.figures import reprojected
-
         for path in reprojected.draw(figure, shown, learned, title):
             say(str(path))
 
 
 Source = tuple[Creatures, list[str], dict[str, Axis], str]
 """Creatures, the present elites among them if they are fewer, the archive's axes, a title."""
+
+
+def _read(
+    client: Client, source: str, of: Of, names: Sequence[str], components_of: Sequence[str]
+) -> Source:
+    """Read a file if there is one, else a run on the server."""
+    file = Path(source)
+    if file.is_file():
+        return _of_file(file, of)
+    learns = any(map(NAME.fullmatch, names))
+    wanted = None if learns and not components_of else [*names, *components_of]
+    return _of_run(client.run(source), of, wanted)
 
 
 def _of_file(file: Path, of: Of) -> Source:
@@ -110,12 +112,12 @@ def _of_file(file: Path, of: Of) -> Source:
             f"{file} has the measures of its {len(found):,} elites only, so replaced creatures "
             "are not projected. A run on a server has those of all that ever entered."
         )
-    return found, [], own(json_module.loads(load(data)[1]["spec"])), file.name
+    return found, [], of_spec(json_module.loads(load(data)[1]["spec"])), file.name
 
 
 def _of_run(run: Run, of: Of, wanted: Sequence[str] | None) -> Source:
     archive = run.archive()
-    known, title = own(run.spec), f"run {run.id[:8]}"
+    known, title = of_spec(run.spec), f"run {run.id[:8]}"
     if of is Of.elites:
         columns = (archive.fitness, archive.elite_generation, archive.measures)
         return creatures(archive.creature, *columns), [], known, title

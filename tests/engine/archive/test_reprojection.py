@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from microcosmos import search
-from microcosmos.archive.axes import BINS, Axis, axis, own
+from microcosmos.archive.axes import BINS, Axis, axis, of_spec
 from microcosmos.archive.population import Creatures, creatures
 from microcosmos.archive.reprojection import over, reproject
 from microcosmos.spec import Archive, Descriptor, QualityDiversity
@@ -113,15 +113,18 @@ def test_bins_are_those_of_an_archive(measure):
 def test_an_axis_has_the_ends_of_the_archive_or_of_the_measure():
     found = made(given())
     spec = QualityDiversity(archive=Archive(descriptors=(MACH,))).model_dump(mode="json")
-    projected, learned = over(found, ["mach", "symmetry"], own(spec))
+    projected, learned = over(found, ["mach", "symmetry"], of_spec(spec))
     assert learned == []
     assert [asdict(one) for one in projected.axes] == [
         {"name": "mach", "low": 0.01, "high": 1.0, "bins": 7, "scale": "log10"},
         {"name": "symmetry", "low": -1.0, "high": 1.0, "bins": 24, "scale": "linear"},
     ]
-    assert [a.bins for a in over(found, ["mach", "symmetry"], own(spec), [9])[0].axes] == [9, 9]
+    assert [a.bins for a in over(found, ["mach", "symmetry"], of_spec(spec), [9])[0].axes] == [
+        9,
+        9,
+    ]
     assert [a.bins for a in over(found, ["mach", "symmetry"], {}, [9, 3])[0].axes] == [9, 3]
-    assert own(spec | {"archive": spec["archive"] | {"centroids": 9}})["mach"].bins == BINS
+    assert of_spec(spec | {"archive": spec["archive"] | {"centroids": 9}})["mach"].bins == BINS
     fitness = over(found, ["fitness"])[0].axes[0]
     assert (fitness.low, fitness.high) == (-3.0, 4.0)
 

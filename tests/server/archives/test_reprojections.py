@@ -6,7 +6,7 @@ import pytest
 from answers import detail, errors
 from typer.testing import CliRunner
 
-from microcosmos.archive.axes import own
+from microcosmos.archive.axes import of_spec
 from microcosmos.archive.population import creatures
 from microcosmos.archive.reprojection import over
 from microcosmos.cli import app
@@ -50,7 +50,7 @@ def test_the_route_gives_the_numbers_of_the_library(api, evolved, spec):
     history = api.get(f"{evolved}/history", params={"measures": ",".join(measures)}).json()
     given = (history["fitness"], history["elite_generation"], history["measures"])
     for names in (["pc1", "speed"], ["pc1", "pc2"], ["fitness", "turning"]):
-        made, learned = over(creatures(history["creature"], *given), names, own(spec))
+        made, learned = over(creatures(history["creature"], *given), names, of_spec(spec))
         asked = {"axes": ",".join(names), "measures": "turning"}
         found = api.get(f"{evolved}/reprojection", params=asked).json()
         assert found["cell"] == made.cells.tolist()

@@ -20,6 +20,8 @@ const MAX_CHOICES = 100;
 /** Intervals of updates without events, and of data that grows with the generations. */
 const REFRESH_MS = 3000;
 export const SLOW_MS = 4000;
+/** Interval of re-projections, which read every creature that ever entered. */
+const REPROJECTION_MS = 15_000;
 
 export interface Loaded<T> {
   value: T | null;
@@ -159,7 +161,7 @@ export function useReprojection(
   axes: string[] | null,
   names: string[],
 ): Loaded<Reprojected | null> {
-  const slow = useThrottled(axes ? generation : null, SLOW_MS);
+  const slow = useThrottled(axes ? generation : null, REPROJECTION_MS);
   const read = async () => {
     if (!axes) return null;
     const reprojection = await api.readReprojection(id, axes, names);
