@@ -5,6 +5,7 @@ NumPy's own differ with the processor's vectors and the C library, and its matri
 decompositions with the library that carries them out.
 """
 
+from decimal import Context, Decimal, localcontext
 from math import factorial, sqrt
 
 import numpy as np
@@ -63,6 +64,21 @@ def logarithm(x: np.ndarray | float) -> np.ndarray:
     t = (part - 1) / (part + 1)
     series = [2 / (2 * n + 1) for n in range(13)]
     return power * LN_2[0] + (power * LN_2[1] + t * _polynomial(series, t * t))
+
+
+def edges(low: float, high: float, bins: int, *, logarithmic: bool) -> np.ndarray:
+    """Return the inner edges of equal bins, to the last bit in single precision.
+
+    They are found in decimals, since a logarithm rounds differently on each device.
+    """
+    with localcontext(Context(prec=40)):
+        first, last = (Decimal(repr(float(end))) for end in (low, high))
+        shares = [Decimal(edge) / bins for edge in range(1, bins)]
+        if logarithmic:
+            found = [first * (last / first) ** share for share in shares]
+        else:
+            found = [first + (last - first) * share for share in shares]
+    return np.array([float(edge) for edge in found], np.float32)
 
 
 def inverse(matrix: np.ndarray) -> np.ndarray:

@@ -22,9 +22,16 @@ from ..runs.deps import RunDep
 from ..services.services import ServicesDep, SessionDep
 from ..storage import ranges
 from ..tables import Artifact, Elite, Result, Run
-from . import elites
+from . import elites, reprojection
 from . import measures as recorded_measures
-from .schemas import ArchiveRead, CentroidsRead, HistoryRead, Measure, ResultsRead
+from .schemas import (
+    ArchiveRead,
+    CentroidsRead,
+    HistoryRead,
+    Measure,
+    ReprojectionRead,
+    ResultsRead,
+)
 
 router = APIRouter(prefix="/runs/{run_id}", tags=["archives"])
 BINARY = sends("application/octet-stream", {404: {}})
@@ -76,19 +83,28 @@ def read_history(run: RunDep, session: SessionDep, measures: str = "") -> Histor
     """
     _refuse_table(run)
     names = _requested(measures, recorded_measures.recorded(session, run))
-    counted = select(func.count()).select_from(Elite).where(elites.recorded_in(run))
-    entries = session.execute(counted).scalar_one()
-    if entries > HISTORY_ENTRIES:
-        detail = (
-            f"The history of this archive has {entries:,} entries, more than the "
-            f"{HISTORY_ENTRIES:,} that one answer holds. Read single generations at "
-            f"/api/v1/runs/{run.id}/archive?generation=."
-        )
-        raise ProblemError(422, "History too long", detail)
+    _refuse_long(session, run)
     ordered = elites.all_time(run, names).order_by(Elite.generation, Elite.cell)
     columns = _columns(session.execute(ordered).all(), names)
     columns |= _emptied(session, elites.losses(run))
     return HistoryRead(generation=run.generation, **columns)
+
+
+@router.get("/archive/reprojection", dependencies=[MAY_READ_SHARED])
+def read_reprojection(
+    run: RunDep, session: SessionDep, axes: str, measures: str = ""
+) -> ReprojectionRead:
+    """Return the archive of all creatures that ever entered, over any other axes.
+
+    `axes` are measures, `fitness`, or principal components of all measures (`pc1` to `pc9`),
+    separated by commas. An axis of the archive keeps its ends and bins; any other has the
+    default ends of its measure and 24 bins. `measures` names further columns to return.
+    """
+    _refuse_table(run)
+    recorded = recorded_measures.recorded(session, run)
+    names, more = list(filter(None, axes.split(","))), _requested(measures, recorded)
+    _refuse_long(session, run)
+    return reprojection.read(session, run, names, more, [one.name for one in recorded])
 
 
 @router.get("/archive/poses", **BINARY, dependencies=[MAY_READ_SHARED])
@@ -133,6 +149,18 @@ def _requested(measures: str, recorded: Sequence[Measure]) -> list[str]:
     if wrong := [name for name in names if name not in existing]:
         raise invalid_field("measures", f"names among {', '.join(existing)}", ", ".join(wrong))
     return names
+
+
+def _refuse_long(session: Session, run: Run) -> None:
+    counted = select(func.count()).select_from(Elite).where(elites.recorded_in(run))
+    entries = session.execute(counted).scalar_one()
+    if entries > HISTORY_ENTRIES:
+        detail = (
+            f"The history of this archive has {entries:,} entries, more than the "
+            f"{HISTORY_ENTRIES:,} that one answer holds. Read single generations at "
+            f"/api/v1/runs/{run.id}/archive?generation=."
+        )
+        raise ProblemError(422, "History too long", detail)
 
 
 def _columns(found: Sequence[Any], names: Sequence[str]) -> dict[str, Any]:

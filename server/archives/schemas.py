@@ -75,3 +75,40 @@ class ResultsRead(Wire):
     generation: int
     summary: dict[str, Any] | None
     rows: list[dict[str, Any]]
+
+
+class Component(Wire):
+    """A principal component of all measures that are finite for every creature."""
+
+    name: str
+    explained: float
+    """Share of the variance of these measures."""
+    loadings: dict[str, float]
+    """Correlation of each measure with the component, the strongest first."""
+
+
+class Figures(Wire):
+    """What creatures fill of the cells over some axes."""
+
+    creatures: int
+    elites: int
+    coverage: float
+    qd_score: float
+    best: float | None
+
+
+class ReprojectionRead(HistoryRead):
+    """Columns, one entry for each creature that took a cell over the new axes.
+
+    They are in the order of generations, so that each generation's archive follows. The cells
+    are numbered in C order over the bins of the axes.
+    """
+
+    cells: int
+    axes: list[Axis]
+    components: list[Component]
+    """The principal components among the axes."""
+    all_time: Figures
+    """All creatures that ever entered the archive."""
+    present: Figures
+    """The archive's present elites alone."""

@@ -1,13 +1,12 @@
 """Learned axes of an archive file: the measures they are made of, and the elites on them."""
 
 import json
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ..spec.measures import MEASURES
+from .axes import floors
 from .components import Components, scaled
 from .export import Source, source_bytes
 from .file import Tree, load
@@ -75,15 +74,6 @@ def learned_axes(archive: Source) -> LearnedAxes:
         creature=tree["archive"]["creature"],
         generation=tree["learned"]["generation"],
     )
-
-
-def floors(names: Sequence[str]) -> tuple[float, ...]:
-    """Return the least value of each measure that enters as a logarithm, 0 for the others.
-
-    It is a hundredth of the lower end of the measure's own axis.
-    """
-    known = (MEASURES.get(name) for name in names)
-    return tuple(one.low / 100 if one and one.scale == "log10" else 0.0 for one in known)
 
 
 def _values(tree: Tree, columns: list[int], names: list[str]) -> Any:

@@ -1,7 +1,7 @@
 """Build the cells of an archive, or another container."""
 
 from .. import search, spec
-from ..archive.learned import floors
+from ..archive.axes import floors
 from ..spec import containers
 from ..spec.measures import MEASURES
 

@@ -1,4 +1,16 @@
 """The command line: each module registers its commands. JAX is loaded only to compute."""
 
-from . import archive, creature, doctor, draw, manage, modules, monitor, pictures, run, sharing
+from . import (
+    archive,
+    creature,
+    doctor,
+    draw,
+    manage,
+    modules,
+    monitor,
+    pictures,
+    reproject,
+    run,
+    sharing,
+)
 from .app import app

@@ -134,6 +134,19 @@ class Run(Record):
             found = self._connection.read(path, generation=at, measures=names)
         return Archive(self._connection, self.id, found)
 
+    def history(self, measures: Sequence[str] | None = None) -> Columns:
+        """Return every elite that ever entered the archive, also those that were replaced:
+        `creature`, `cell`, `generation`, `fitness`, and all measures or those that are named.
+        """
+        path = f"{self._path}/archive"
+        if measures is None:
+            recorded = self._connection.read(path)["recorded"]
+            measures = [one["name"] for one in recorded]
+        names = ",".join(measures) or None
+        found = self._connection.read(f"{path}/history", measures=names)
+        columns = {name: found[name] for name in ("creature", "cell", "fitness")}
+        return Columns(columns | {"generation": found["elite_generation"]} | found["measures"])
+
     def results(self) -> Table:
         """Return the table of a run without an archive."""
         return Table(self._connection.read(f"{self._path}/results"))

@@ -1,7 +1,6 @@
 """Cells of an archive: a grid of bins, or nearest centroids."""
 
 from collections.abc import Callable
-from decimal import Context, Decimal, localcontext
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -57,18 +56,8 @@ class Axis(eqx.Module):
 
     @property
     def edges(self) -> Float[np.ndarray, "edge"]:
-        """The inner edges of the bins, to the last bit in single precision.
-
-        They are found in decimals, since a logarithm rounds differently on each device.
-        """
-        with localcontext(Context(prec=40)):
-            low, high = (Decimal(repr(float(end))) for end in (self.low, self.high))
-            shares = [Decimal(edge) / self.bins for edge in range(1, self.bins)]
-            if self.logarithmic:
-                found = [low * (high / low) ** share for share in shares]
-            else:
-                found = [low + (high - low) * share for share in shares]
-        return np.array([float(edge) for edge in found], np.float32)
+        """The inner edges of the bins."""
+        return exact.edges(self.low, self.high, self.bins, logarithmic=self.logarithmic)
 
 
 class Grid(eqx.Module):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from microcosmos.archive import components
-from microcosmos.archive.learned import floors
+from microcosmos.archive.axes import floors
 
 WIDE = np.random.default_rng(0).normal(size=(300, 5)) @ np.random.default_rng(1).normal(
     size=(5, 12)

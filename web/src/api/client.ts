@@ -75,6 +75,11 @@ export const readArchivePoses = (id: string, cells: number[], when: { generation
 /** Every elite that ever entered the archive, with columns of named measures. */
 export const readHistory = (id: string, measures: string[]) =>
   success(client.GET("/runs/{run_id}/archive/history", run(id, joined(measures))));
+/** The archive of all creatures that ever entered, over other axes. */
+export const readReprojection = (id: string, axes: string[], measures: string[]) =>
+  success(
+    client.GET("/runs/{run_id}/archive/reprojection", run(id, { axes: axes.join(","), ...joined(measures) })),
+  );
 /** Centroids of the cells of a CVT archive; null before its first checkpoint. */
 export const readCentroids = async (id: string): Promise<number[][] | null> =>
   (await success(client.GET("/runs/{run_id}/archive/centroids", run(id)))).centroids;

@@ -767,6 +767,30 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/runs/{run_id}/archive/reprojection": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Reprojection
+         * @description Return the archive of all creatures that ever entered, over any other axes.
+         *
+         *     `axes` are measures, `fitness`, or principal components of all measures (`pc1` to `pc9`),
+         *     separated by commas. An axis of the archive keeps its ends and bins; any other has the
+         *     default ends of its measure and 24 bins. `measures` names further columns to return.
+         */
+        get: operations["read_reprojection_api_v1_runs__run_id__archive_reprojection_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/runs/{run_id}/cancel": {
         parameters: {
             query?: never;
@@ -1581,6 +1605,20 @@ export interface components {
             /** Recorded */
             recorded: number;
         };
+        /**
+         * Component
+         * @description A principal component of all measures that are finite for every creature.
+         */
+        Component: {
+            /** Explained */
+            explained: number;
+            /** Loadings */
+            loadings: {
+                [key: string]: number;
+            };
+            /** Name */
+            name: string;
+        };
         /** CreatureName */
         CreatureName: {
             /** Creature */
@@ -1717,6 +1755,22 @@ export interface components {
             message: string;
             /** Needed */
             needed?: string | null;
+        };
+        /**
+         * Figures
+         * @description What creatures fill of the cells over some axes.
+         */
+        Figures: {
+            /** Best */
+            best: number | null;
+            /** Coverage */
+            coverage: number;
+            /** Creatures */
+            creatures: number;
+            /** Elites */
+            elites: number;
+            /** Qd Score */
+            qd_score: number;
         };
         /** Final */
         Final: {
@@ -2213,6 +2267,45 @@ export interface components {
              * @constant
              */
             status: "rendering";
+        };
+        /**
+         * ReprojectionRead
+         * @description Columns, one entry for each creature that took a cell over the new axes.
+         *
+         *     They are in the order of generations, so that each generation's archive follows. The cells
+         *     are numbered in C order over the bins of the axes.
+         */
+        ReprojectionRead: {
+            all_time: components["schemas"]["Figures"];
+            /** Axes */
+            axes: components["schemas"]["Axis"][];
+            /** Cell */
+            cell: number[];
+            /** Cells */
+            cells: number;
+            /** Components */
+            components: components["schemas"]["Component"][];
+            /** Creature */
+            creature: string[];
+            /** Descriptors */
+            descriptors: number[][];
+            /** Elite Generation */
+            elite_generation: number[];
+            /** Emptied */
+            emptied: number[];
+            /** Emptied Generation */
+            emptied_generation: number[];
+            /** Fitness */
+            fitness: number[];
+            /** Generation */
+            generation: number;
+            /** Measures */
+            measures: {
+                [key: string]: (number | null)[];
+            };
+            present: components["schemas"]["Figures"];
+            /** Trusted */
+            trusted: (boolean | null)[];
         };
         /**
          * ResultsRead
@@ -4301,6 +4394,40 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content?: never;
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_reprojection_api_v1_runs__run_id__archive_reprojection_get: {
+        parameters: {
+            query: {
+                axes: string;
+                measures?: string;
+            };
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReprojectionRead"];
+                };
             };
             /** @description A problem (RFC 9457) */
             default: {

@@ -58,6 +58,7 @@ export type DrawnPicture = Wire["PictureRead"];
 export type Axis = Wire["Axis"];
 export type Archive = Wire["ArchiveRead"];
 export type History = Wire["HistoryRead"];
+export type Reprojection = Wire["ReprojectionRead"];
 export type ArchiveColumns = Pick<
   Archive,
   "cell" | "fitness" | "descriptors" | "elite_generation" | "creature"

@@ -8,7 +8,7 @@ import { navigate, setQuery } from "../store/router";
 import { containerOf, measureOf, objectiveOf } from "./axes";
 import { ArchiveMap } from "./ArchiveMap";
 import { BinElites } from "./BinElites";
-import { MapOptions, Slices } from "./MapOptions";
+import { MapOptions, ReprojectionFigures, Slices } from "./MapOptions";
 import { TimeSlider } from "./TimeSlider";
 import { count } from "../ui/format";
 import { Segments } from "../ui/Select";
@@ -43,17 +43,19 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
   const gallery = query.get("view") === "gallery";
   const selection = useSelection(query, view.elites);
   const props = useViewProps(run, view, gallery ? view.grid : view.map, selection, query);
-  const names = `${view.axes[0].name} ${view.axes[1].name}`;
+  // Other creatures or axes are another map, in which no cell has changed.
+  const key = [view.axes[0].name, view.axes[1].name, view.of, view.reprojection !== null].join(" ");
   return (
     <div data-tour={tourPart}>
       <Head count={view.elites.size} gallery={gallery} onTour={tour.begin} />
       <MapOptions run={run} archive={archive} view={view} />
+      {view.reprojection && <ReprojectionFigures archive={view.archive} reprojection={view.reprojection} />}
       <Slices slices={view.slices} />
       {gallery ? (
-        <Gallery key={names} {...props} {...{ at, query }} run={run.id} />
+        <Gallery key={key} {...props} {...{ at, query }} run={view.of === "elites" ? run.id : null} />
       ) : (
         <ArchiveMap
-          key={names}
+          key={key}
           {...props}
           elites={view.elites}
           onFocus={setFocused}
@@ -63,10 +65,10 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
       <BinElites {...props} objective={measureOf(objectiveOf(run, archive), archive, view.measures)} />
       {view.error && <p class="banner wrong">{view.error}</p>}
       <TimeSlider last={run.generation} at={at} ready={view.ready} onMove={setAt} />
-      <SelectionBar {...{ run, at }} elites={view.elites} {...selection} />
+      <SelectionBar {...{ run, at }} of={view.of} elites={view.elites} {...selection} />
       {tour.open && (
         <Tour
-          steps={stepsOf(run, archive, view)}
+          steps={stepsOf(run, view)}
           requested={tour.requested}
           onStep={({ part }) => {
             setTourPart(part);
@@ -107,7 +109,7 @@ function useViewProps(
           trusted={trusted}
           href={sharedSlug ? undefined : `/creatures/${creature}?run=${run.id}#audit`}
         />
-        <ForkLink run={run.id} creature={creature} title={text.forkCreature} inline />
+        <ForkLink run={run.id} creatures={[creature]} title={text.forkCreature} inline />
         <SelectToggle {...{ cell, projection }} {...selection} />
       </>
     ),

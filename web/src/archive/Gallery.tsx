@@ -20,7 +20,8 @@ const [SMALLEST, LARGEST] = [36, 180];
 const MIN_READABLE = 52;
 
 interface GalleryProps extends ArchiveViewProps {
-  run: string;
+  /** The run whose cells these are; null if they are others. */
+  run: string | null;
   /** The generation shown; null for the newest. */
   at: number | null;
   query: URLSearchParams;

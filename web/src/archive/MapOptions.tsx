@@ -1,15 +1,16 @@
 /** Choices of the map: its axes, coloured measure and palette, and ranges of the other descriptors. */
 
-import type { Archive, Run } from "../api/types";
+import type { Archive, Reprojection, Run } from "../api/types";
 import { valueAt } from "../charts/plot/scale";
 import { setQuery } from "../store/router";
 import { PALETTES } from "../ui/colours";
-import { count, number, words } from "../ui/format";
-import { Select } from "../ui/Select";
+import { count, number, percent, words } from "../ui/format";
+import { Segments, Select } from "../ui/Select";
 import { type ArchiveView, setSlice } from "./archiveView";
-import { type MapAxis, choicesOf, containerOf, scaleOf } from "./axes";
+import { type MapAxis, containerOf, scaleOf } from "./axes";
 import { coloursOf } from "./colouring";
 import type { Slice } from "./projection";
+import { setOf, setReprojectedAxes } from "./reprojection";
 import { containerText, text } from "./text";
 
 const PALETTE_CHOICES = PALETTES.map((name) => [name, words(name)] as const);
@@ -20,20 +21,28 @@ interface Props {
   view: ArchiveView;
 }
 
-export function MapOptions({ run, archive, view: { axes, colour, palette } }: Props) {
-  const choices = choicesOf(archive);
+const CREATURES = [
+  ["elites", text.presentElites],
+  ["history", text.allEntered],
+] as const;
+
+export function MapOptions({ run, archive, view }: Props) {
+  const { axes, choices, colour, of, palette } = view;
   const [x, y] = [axes[0].name, axes[1].name];
   const choose = (axis: "x" | "y") => (name: string) => {
     const [other, old] = axis === "x" ? [y, x] : [x, y];
     // The axes are swapped if the other one is selected.
-    setQuery({ x, y, [axis]: name, ...(name === other && { [axis === "x" ? "y" : "x"]: old }) });
+    const changed = { x, y, [axis]: name, ...(name === other && { [axis === "x" ? "y" : "x"]: old }) };
+    if (of === "history") setReprojectedAxes(changed);
+    else setQuery(changed);
   };
   return (
     <div class="row archive-choices">
+      <Segments label={text.creaturesShown} choices={CREATURES} value={of} onSelect={setOf} />
       <p class="row">
         <Select title={text.across} {...{ choices, value: x }} onChange={choose("x")} />
         <Select title={text.up} {...{ choices, value: y }} onChange={choose("y")} />
-        <span class="quiet small">{kindOf(run, archive)}</span>
+        {of === "elites" && <span class="quiet small">{kindOf(run, archive)}</span>}
       </p>
       <p class="row">
         <Select
@@ -52,6 +61,39 @@ export function MapOptions({ run, archive, view: { axes, colour, palette } }: Pr
     </div>
   );
 }
+
+/** Loadings of a component that are shown. */
+const STRONGEST = 5;
+
+/** What the creatures fill over the axes of the map, beside the present elites alone. */
+export function ReprojectionFigures({
+  archive,
+  reprojection,
+}: {
+  archive: Archive;
+  reprojection: Reprojection;
+}) {
+  const { cells, all_time: all, present, components } = reprojection;
+  const titles = new Map(archive.recorded.map(({ name, title }) => [name, title]));
+  const figures = ({ elites, coverage, qd_score }: Reprojection["present"]) =>
+    text.filled(count(elites), count(cells), percent(coverage), number(qd_score, 4));
+  return (
+    <div class="reprojection small" role="status">
+      <p>{text.reprojected(count(all.creatures), figures(all), figures(present))}</p>
+      {components.map(({ name, loadings }) => (
+        <p key={name} class="quiet">
+          {titles.get(name)}:{" "}
+          {Object.entries(loadings)
+            .slice(0, STRONGEST)
+            .map(([measure, loading]) => `${titles.get(measure) ?? measure} ${signed(loading)}`)
+            .join(", ")}
+        </p>
+      ))}
+    </div>
+  );
+}
+
+const signed = (value: number) => `${value < 0 ? "−" : "+"}${Math.abs(value).toFixed(2)}`;
 
 /** A description of the cells, unless the map shows them. */
 function kindOf(run: Run, { kind, cells, axes }: Archive): string {

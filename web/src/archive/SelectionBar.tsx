@@ -9,6 +9,7 @@ import type { Elites } from "../store/elites";
 import { setQuery } from "../store/router";
 import { type Selection, type CellSet, cellsIn, toggle } from "./selection";
 import type { Projection } from "./projection";
+import type { Of } from "./reprojection";
 import { count } from "../ui/format";
 import { ForkLink } from "../ui/links";
 import { text } from "./text";
@@ -47,24 +48,35 @@ export function SelectToggle({ cell, projection, selected, onSelect }: OneProps)
   );
 }
 
+/** The names of this number of creatures fit into an address. */
+const MAX_NAMED = 100;
+
+/** The cells of a re-projection are not the run's, so its creatures are named. */
+function ForkByName({ run, names }: { run: string; names: string[] }) {
+  if (names.length > MAX_NAMED) return <span class="quiet">{text.tooManyNamed(count(MAX_NAMED))}</span>;
+  return <ForkLink run={run} creatures={names} title={text.fork(names.length)} />;
+}
+
 interface Props extends Selection {
   run: Run;
+  of: Of;
   elites: Elites;
   /** The generation shown; null for the newest. */
   at: number | null;
 }
 
-export function SelectionBar({ run, elites, at, selected, onSelect }: Props) {
+export function SelectionBar({ run, of, elites, at, selected, onSelect }: Props) {
   if (!onSelect) return null;
   const cells = selected.size > 0 ? [...selected] : at === null ? [] : [...elites.keys()];
-  const creatures = new Set(cells.map((cell) => elites.get(cell)!.creature)).size;
+  const names = new Set(cells.map((cell) => elites.get(cell)!.creature));
+  const creatures = names.size;
   const which = text.creatures(count(creatures), at === null ? null : count(at));
   return (
     <div class="row selection-bar">
       <span role="status">{selected.size > 0 && text.selected(which)}</span>
       {/* Outside the live region: it would be read at every step of the slider. */}
       {selected.size === 0 && creatures > 0 && <span>{which}</span>}
-      {creatures > 0 && (
+      {creatures > 0 && of === "elites" && (
         <ForkLink
           run={run.id}
           cells={selected.size > 0 ? formatCells(selected) : null}
@@ -72,6 +84,7 @@ export function SelectionBar({ run, elites, at, selected, onSelect }: Props) {
           title={text.fork(creatures)}
         />
       )}
+      {creatures > 0 && of === "history" && <ForkByName run={run.id} names={[...names]} />}
       {selected.size > 0 && <button onClick={() => setSelection(new Set())}>{text.clearSelection}</button>}
     </div>
   );

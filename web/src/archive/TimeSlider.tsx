@@ -60,9 +60,7 @@ export function TimeSlider({ last, at, ready, onMove }: Props) {
         disabled={last === 0}
         onScrub={scrub}
       />
-      <output class="moment quiet small">
-        {at !== null && !ready ? text.loading : text.moment(count(shown))}
-      </output>
+      <output class="moment quiet small">{!ready ? text.loading : text.moment(count(shown))}</output>
       <button class="small-button" disabled={at === null} onClick={() => scrub(last)}>
         {text.newest}
       </button>

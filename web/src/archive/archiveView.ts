@@ -5,10 +5,11 @@ import type { Archive, Run } from "../api/types";
 import { type Elites, elitesByGeneration } from "../store/elites";
 import { useCentroids, useMeasures, useHistory } from "../store/fetch";
 import { setQuery } from "../store/router";
-import { type MapAxis, FITNESS, axisOf, missingOf, namesOf, objectiveOf } from "./axes";
+import { type MapAxis, FITNESS, axisOf, choicesOf, missingOf, namesOf, objectiveOf } from "./axes";
 import { AGE, colourMeasure, colouringOf, coloursOf } from "./colouring";
 import { type Layout, voronoiLayout } from "./layout";
 import { type Slice, project } from "./projection";
+import { ofQuery, useReprojected, withComponents } from "./reprojection";
 import { PALETTES } from "../ui/colours";
 
 export type ArchiveView = ReturnType<typeof useArchiveView>;
@@ -16,29 +17,31 @@ export type ArchiveView = ReturnType<typeof useArchiveView>;
 /** `at` is a generation of the past; null for the newest. */
 export function useArchiveView(
   run: Run,
-  archive: Archive,
+  own: Archive,
   live: Elites,
   query: URLSearchParams,
   at: number | null,
 ) {
-  const [x, y] = namesOf(archive, query.get("x"), query.get("y"));
-  const colour = coloursOf(archive).find(([name]) => name === query.get("colour"))?.[0] ?? FITNESS;
+  const of = ofQuery(query);
+  const named = of === "history" ? withComponents(own, null) : own;
+  const [x, y] = namesOf(named, query.get("x"), query.get("y"));
+  const colour = coloursOf(own).find(([name]) => name === query.get("colour"))?.[0] ?? FITNESS;
   const palette = PALETTES.find((name) => name === query.get("palette")) ?? PALETTES[0]!;
-  const shown = [x, y, colour, objectiveOf(run, archive)];
-  const names = missingOf(archive, shown).filter((name) => name !== AGE);
-  const liveMeasures = useMeasures(run.id, names, live);
-  const { value: past, error } = useHistory(run.id, names, at);
-  const measures = at !== null && past ? past.measures : liveMeasures;
-  const elitesAt = useMemo(() => past && elitesByGeneration(past.history), [past]);
-  const elites = useMemo(() => (at !== null && elitesAt ? elitesAt(at) : live), [at, elitesAt, live]);
+  const anew: [string, string] | null = of === "history" ? [x, y] : null;
+  const wanted = anew ? [] : [x, y, colour, objectiveOf(run, own)];
+  const elected = useElected(run, own, live, wanted, anew ? null : at);
+  const reprojected = useReprojected(run, own, anew, colour);
+  const { archive, newest, elitesAt, measures, error } = reprojected ?? elected;
+  const elites = useMemo(() => (at !== null && elitesAt ? elitesAt(at) : newest), [at, elitesAt, newest]);
   // Axes and colours follow the newest elites, so that they stay while the history is played.
-  const axis = (name: string) => axisOf(name, archive, live, measures);
-  const axes = useMemo(() => [axis(x), axis(y)] as const, [x, y, archive, live, measures]);
-  const hidden = archive.axes.map(({ name }) => name).filter((name) => name !== x && name !== y);
+  const axis = (name: string) => axisOf(name, archive, newest, measures);
+  const axes = useMemo(() => [axis(x), axis(y)] as const, [x, y, archive, newest, measures]);
+  const others = reprojected ? [] : archive.axes.map(({ name }) => name);
+  const hidden = others.filter((name) => name !== x && name !== y);
   const requested = hidden.map((name) => query.get(`only.${name}`)).join();
   const slices = useMemo(
     () => hidden.map((name) => sliceOf(axis(name), query)),
-    [x, y, archive, live, measures, requested],
+    [x, y, archive, newest, measures, requested],
   );
   const voronoi = useVoronoi(run.id, archive, [x, y]);
   const map = useMemo(() => project(elites, axes, slices, voronoi), [elites, axes, slices, voronoi]);
@@ -47,12 +50,23 @@ export function useArchiveView(
   const generation = at ?? run.generation;
   const colouring = useMemo(() => {
     const measure = colourMeasure(colour, archive, measures, generation);
-    const newest = at === null || colour === AGE ? map : project(live, axes, slices, voronoi);
-    return colouringOf(measure, palette, newest.tiles);
+    const last = at === null || colour === AGE ? map : project(newest, axes, slices, voronoi);
+    return colouringOf(measure, palette, last.tiles);
   }, [colour, palette, archive, measures, generation, map]);
-  const ready = at === null || past !== null;
-  const choices = { axes, slices, colour, palette };
-  return { ...choices, elites, measures, generation, ready, error, map, grid, colouring };
+  const ready = reprojected ? elitesAt !== null : at === null || elitesAt !== null;
+  const shown = { archive, of, reprojection: reprojected?.reprojection ?? null, choices: choicesOf(named) };
+  const drawn = { axes, slices, colour, palette, map, grid, colouring };
+  return { ...shown, ...drawn, elites, measures, generation, ready, error };
+}
+
+/** The elites of the archive itself. */
+function useElected(run: Run, archive: Archive, newest: Elites, shown: string[], at: number | null) {
+  const names = missingOf(archive, shown).filter((name) => name !== AGE);
+  const live = useMeasures(run.id, names, newest);
+  const { value: past, error } = useHistory(run.id, names, at);
+  const measures = at !== null && past ? past.measures : live;
+  const elitesAt = useMemo(() => past && elitesByGeneration(past.history), [past]);
+  return { archive, newest, elitesAt, measures, error };
 }
 
 /** The bins in the address, `3-7`; by default all. */

@@ -28,6 +28,16 @@ export const text = {
     `${cells} cells over ${axes} ${axes === 1 ? "descriptor" : "descriptors"}`,
   places: (places: string, container: string) => `${places} places, ${container}`,
   binElites: "Elites at this position",
+  creaturesShown: "Creatures",
+  presentElites: "Present elites",
+  allEntered: "All that ever entered",
+  component: (number: string, share: string | null) =>
+    `Principal component ${number}${share === null ? "" : ` (${share} of the variance)`}`,
+  filled: (elites: string, cells: string, coverage: string, score: string) =>
+    `${elites} of ${cells} cells (${coverage}), QD score ${score}`,
+  reprojected: (creatures: string, all: string, present: string) =>
+    `All ${creatures} creatures that ever entered fill ${all}. The present elites alone fill ${present}.`,
+  tooManyNamed: (most: string) => `Select at most ${most} creatures to start a new run from them.`,
   legend: (label: string, low: unknown, high: unknown) => `${label} from ${low} to ${high}`,
   colour: "Colour",
   palette: "Palette",

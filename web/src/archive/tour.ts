@@ -1,7 +1,7 @@
 /** The tour of an archive. */
 
 import { useState } from "preact/hooks";
-import type { Archive, Run } from "../api/types";
+import type { Run } from "../api/types";
 import { fittest } from "../store/elites";
 import { count, number } from "../ui/format";
 import type { Step } from "../ui/Tour";
@@ -42,7 +42,7 @@ export function useTour(run: Run) {
   return { open, requested, begin, end };
 }
 
-export function stepsOf(run: Run, archive: Archive, { axes, elites, colouring }: ArchiveView): Step[] {
+export function stepsOf(run: Run, { archive, axes, elites, colouring }: ArchiveView): Step[] {
   const best = fittest(elites)?.[1];
   const [x, y] = axes.map(({ title }) => title.toLowerCase());
   const running = run.status === "running" || run.status === "queued";

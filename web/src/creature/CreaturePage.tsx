@@ -54,7 +54,7 @@ export function CreaturePage({ id: sha, query }: Props) {
         )}
         <span class="spring" />
         {creature && <PublishButton of={{ creature: sha }} file={creature} title="" />}
-        {creature && isEvolved(creature) && <ForkLink run={run} creature={sha} title={text.fork} />}
+        {creature && isEvolved(creature) && <ForkLink run={run} creatures={[sha]} title={text.fork} />}
         {creature && isEvolved(creature) && <RefineButton creature={creature} run={run} />}
       </header>
       {error && <p class="banner wrong">{reasonOf(error, sha)}</p>}

@@ -55,11 +55,12 @@ export function BaseBar({ draft, current, experiments, file }: Props) {
   );
 }
 
-function ForkSourceText({ fork: { run, creature, cells, at, creatures } }: { fork: ForkSource }) {
+function ForkSourceText({ fork: { run, named, cells, at, creatures } }: { fork: ForkSource }) {
   const then = new URLSearchParams({
     ...(cells && { cells: formatCells(cells) }),
     ...(at !== null && { at: String(at) }),
   });
+  const creature = named?.length === 1 ? named[0]! : null;
   const place = creature ? `/creatures/${creature}${run ? `?run=${run}` : ""}` : `/runs/${run}?${then}`;
   const which = creature ? ` ${shortId(creature)}` : "";
   return (

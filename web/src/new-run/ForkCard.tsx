@@ -33,8 +33,8 @@ export function forkRequest({ base, spec }: Draft, name: string): Alternative | 
   return { fork: { run, from: fromOf(base.fork!), ...then, spec: patch, name: name.trim() || null } };
 }
 
-function fromOf({ creature, cells }: ForkSource): ForkRequest["from"] {
-  if (creature !== null) return { creatures: [creature] };
+function fromOf({ named, cells }: ForkSource): ForkRequest["from"] {
+  if (named !== null) return { creatures: named };
   return cells === null ? { archive: true } : { cells };
 }
 

@@ -20,8 +20,9 @@ const RUNS: Record<string, Spec> = {
   table: { experiment: "gaits" },
 };
 /** All current elites of a run. */
-const ALL = { run: RUN, creature: null, cells: null, at: null, creatures: 3 };
-const ONE = { ...ALL, creature: SHA, creatures: 1 };
+const OTHER = "cd".repeat(32);
+const ALL = { run: RUN, named: null, cells: null, at: null, creatures: 3 };
+const ONE = { ...ALL, named: [SHA], creatures: 1 };
 
 const CREATURE = {
   identity: {
@@ -121,6 +122,7 @@ describe("a fork", () => {
   it.each([
     [`fork=${RUN}`, ALL],
     [`fork=${RUN}&creature=${SHA}`, ONE],
+    [`fork=${RUN}&creature=${SHA},${OTHER}`, { ...ALL, named: [SHA, OTHER], creatures: 2 }],
     [`fork=${RUN}&cells=2-3,9`, { ...ALL, cells: [9, 2, 3] }],
     [`fork=${RUN}&at=0`, { ...ALL, at: 0 }],
     [`initial=${SHA}`, { ...ONE, run: null }],
@@ -144,6 +146,14 @@ describe("the address of a fork", () => {
     expect((base.spec.search as Spec).initial).toEqual([]);
   });
 
+  it("starts from the creatures that are named, several too", async () => {
+    const address = sourceAddress(new URLSearchParams(`fork=${RUN}&creature=${SHA},${OTHER}`))!;
+    const base = await load(address, EXPERIMENTS);
+    expect(base.fork).toEqual({ ...ALL, named: [SHA, OTHER], creatures: 2 });
+    const from = { creatures: [SHA, OTHER] };
+    expect(forkRequest({ base, spec: base.spec }, "")).toMatchObject({ fork: { run: RUN, from } });
+  });
+
   it("selects the elites of its cells once each, at the newest generation at most", async () => {
     const some = async (...words: [string, string][]) =>
       (await load([["fork", RUN], ...words], EXPERIMENTS)).fork;
@@ -164,7 +174,7 @@ describe("the address of a fork", () => {
   it("gives the world of the creature if its run was no search", async () => {
     const address = [...new URLSearchParams(`fork=table&creature=${SHA}`)];
     const base = await load(address, EXPERIMENTS);
-    expect(base).toMatchObject({ kind: "creature", fork: { run: null, creature: SHA } });
+    expect(base).toMatchObject({ kind: "creature", fork: { run: null, named: [SHA] } });
     expect(base.spec).toMatchObject({ world: { width: 96 }, search: { initial: [SHA] } });
     await expect(load([["fork", "table"]], EXPERIMENTS)).rejects.toThrow("has no archive");
   });

@@ -8,6 +8,7 @@ import {
   type Base,
   type ForkSource,
   parseCells,
+  parseCreatures,
   FORK_PARAMETERS,
   forkAddress,
 } from "../store/draft";
@@ -54,7 +55,7 @@ export async function load(address: Address, experiments: Experiment[]): Promise
 async function creatureBase(sha: string, experiments: Experiment[]): Promise<Base> {
   const spec = completeSpec(specOf(await api.readCreature(sha)), experiments);
   if (!isSearch(spec)) throw new Error(text.notEvolvable);
-  const fork = { run: null, creature: sha, cells: null, at: null, creatures: 1 };
+  const fork = { run: null, named: [sha], cells: null, at: null, creatures: 1 };
   return { kind: "creature", name: sha, spec: withInitial(spec, [sha]), fork };
 }
 
@@ -65,13 +66,14 @@ async function forkBase(
   experiments: Experiment[],
 ): Promise<Base> {
   const run = await api.readRun(id);
+  const named = creature ? parseCreatures(creature) : null;
   if (!isSearch(run.spec)) {
-    if (creature) return creatureBase(creature, experiments);
+    if (named) return creatureBase(named[0]!, experiments);
     throw new Error(text.noArchive);
   }
   const spec = withInitial(completeSpec(run.spec, experiments), []);
-  const one = { run: id, creature: creature ?? null, cells: null, at: null, creatures: 1 };
-  const fork = creature ? one : await forkSource(id, cells ?? null, generationOf(at));
+  const chosen = named && { run: id, named, cells: null, at: null, creatures: named.length };
+  const fork = chosen ?? (await forkSource(id, cells ?? null, generationOf(at)));
   return { kind: "run", name: id, spec, fork };
 }
 
@@ -84,8 +86,8 @@ async function forkSource(run: string, cells: string | null, at: number | null):
   if (creatures > MAX_CREATURES) {
     throw new Error(text.tooMany(count(MAX_CREATURES), count(creatures)));
   }
-  const named = cells === null ? null : indices.map((i) => cell[i]!);
-  return { run, creature: null, cells: named, at: at === null ? null : generation, creatures };
+  const filled = cells === null ? null : indices.map((i) => cell[i]!);
+  return { run, named: null, cells: filled, at: at === null ? null : generation, creatures };
 }
 
 function generationOf(at: string | undefined): number | null {

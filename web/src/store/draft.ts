@@ -16,8 +16,8 @@ export interface Base {
 export interface ForkSource {
   /** The run of the creatures; null if unknown. */
   run: string | null;
-  /** A single creature; null for elites of the run. */
-  creature: string | null;
+  /** Creatures by name; null for elites of the run. */
+  named: string[] | null;
   /** The cells of the elites; null for all cells. */
   cells: number[] | null;
   /** The generation of the elites; null for the newest. */
@@ -42,10 +42,10 @@ export function addressOf({ kind, name, fromDocument, fork }: Omit<Base, "spec">
   return parameter && !fromDocument ? [[parameter, name]] : null;
 }
 
-function addressOfFork({ run, creature, cells, at }: ForkSource): Address {
-  if (run === null) return [["initial", creature!]];
+function addressOfFork({ run, named, cells, at }: ForkSource): Address {
+  if (run === null) return [["initial", named![0]!]];
   return forkAddress(run, {
-    creature,
+    creature: named && formatCreatures(named),
     cells: cells && formatCells(cells),
     at: at === null ? null : String(at),
   });
@@ -90,6 +90,10 @@ function storedDraft(): Draft | null {
     return null;
   }
 }
+
+export const formatCreatures = (names: readonly string[]) => names.join(",");
+
+export const parseCreatures = (text: string) => text.split(",").filter(Boolean);
 
 export function formatCells(cells: Iterable<number>): string {
   const ranges: [first: number, last: number][] = [];

@@ -3,7 +3,7 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
-import type { Archive, Experiment, History, Results, Run, SpeciesHistory } from "../api/types";
+import type { Experiment, History, Reprojection, Results, Run, SpeciesHistory } from "../api/types";
 import type { Curves } from "./curves";
 import type { Elites } from "./elites";
 import { usePolled, useThrottled, useTick } from "./polling";
@@ -20,6 +20,8 @@ const MAX_CHOICES = 100;
 /** Intervals of updates without events, and of data that grows with the generations. */
 const REFRESH_MS = 3000;
 export const SLOW_MS = 4000;
+/** Interval of re-projections, which read every creature that ever entered. */
+const REPROJECTION_MS = 15_000;
 
 export interface Loaded<T> {
   value: T | null;
@@ -115,7 +117,7 @@ function mergeMeasures(known: Measures, added: Measures): Measures {
   return new Map([...added].map(column));
 }
 
-function measuresOf({ creature, measures }: Pick<Archive, "creature" | "measures">): Measures {
+function measuresOf({ creature, measures }: Pick<History, "creature" | "measures">): Measures {
   const columns = Object.entries(measures).map(([name, values]) => {
     const known = values.flatMap((value, i): [string, number][] =>
       value === null ? [] : [[creature[i]!, value]],
@@ -146,6 +148,26 @@ export function useHistory(id: string, names: string[], at: number | null): Load
     if (outdated) setRetries((count) => count + 1);
   }, [outdated]);
   return loaded;
+}
+
+interface Reprojected {
+  reprojection: Reprojection;
+  measures: Measures;
+}
+
+/** The archive of all creatures that ever entered, over other axes; null without axes. */
+export function useReprojection(
+  { id, generation }: Run,
+  axes: string[] | null,
+  names: string[],
+): Loaded<Reprojected | null> {
+  const slow = useThrottled(axes ? generation : null, REPROJECTION_MS);
+  const read = async () => {
+    if (!axes) return null;
+    const reprojection = await api.readReprojection(id, axes, names);
+    return { reprojection, measures: measuresOf(reprojection) };
+  };
+  return useFetched(read, [id, useEpoch(id), axes?.join(), names.join(), slow]);
 }
 
 /** Centroids of the cells of a CVT; null before the first checkpoint, when the map shows even bins. */

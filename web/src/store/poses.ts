@@ -29,9 +29,12 @@ const requests = new Map<string, () => void>();
 let pending: string[] = [];
 const listeners = new Set<() => void>();
 
-/** The loaded streams; missing ones of these elites are requested. `at` is null for the newest. */
+/**
+ * The loaded streams; missing ones of these elites are requested: in batches if they are the elites of
+ * a run's cells. `at` is null for the newest.
+ */
 export function usePoses(
-  run: string,
+  run: string | null,
   at: number | null,
   visible: readonly Visible[],
 ): ReadonlyMap<string, PoseStream> {
@@ -51,7 +54,7 @@ export function usePoses(
   return cache;
 }
 
-function request(run: string, at: number | null, visible: readonly Visible[]): void {
+function request(run: string | null, at: number | null, visible: readonly Visible[]): void {
   for (const { creature } of visible) {
     const stream = cache.get(creature);
     if (!stream) continue;
@@ -59,10 +62,12 @@ function request(run: string, at: number | null, visible: readonly Visible[]): v
     cache.set(creature, stream); // Now the newest.
   }
   const missing = visible.filter(({ creature }) => !cache.has(creature));
-  pending = missing.map(({ creature }) => creature).filter((sha) => lacking.has(sha) && !requests.has(sha));
-  const unknown = missing.filter(({ creature }) => !lacking.has(creature) && !batched.has(creature));
+  const alone = (sha: string) => (run === null || lacking.has(sha)) && !requests.has(sha);
+  pending = missing.map(({ creature }) => creature).filter(alone);
+  const unknown =
+    run === null ? [] : missing.filter(({ creature }) => !lacking.has(creature) && !batched.has(creature));
   for (let first = 0; first < unknown.length; first += BATCH) {
-    void requestBatch(run, at, unknown.slice(first, first + BATCH));
+    void requestBatch(run!, at, unknown.slice(first, first + BATCH));
   }
   startRequests();
 }

@@ -4,7 +4,7 @@ import { checkFile, downloadFile } from "../api/files";
 import { showFailure } from "../store/toasts";
 import { sharedSlug } from "../api/address";
 import { useRefusal } from "../store/principal";
-import { forkAddress } from "../store/draft";
+import { forkAddress, formatCreatures } from "../store/draft";
 import { text } from "./text";
 
 export function FileLink({ url, name, title }: { url: string; name: string; title?: string }) {
@@ -24,18 +24,22 @@ export function FileLink({ url, name, title }: { url: string; name: string; titl
 interface Props {
   /** The run with the elites; null if unknown. */
   run: string | null;
-  /** One creature, or cells and a generation; by default all current elites. */
-  creature?: string;
+  /** Creatures, or cells and a generation; by default all current elites. */
+  creatures?: string[];
   cells?: string | null;
   at?: number | null;
   title: string;
   inline?: boolean;
 }
 
-export function ForkLink({ run, creature, cells, at = null, title, inline = false }: Props) {
+export function ForkLink({ run, creatures, cells, at = null, title, inline = false }: Props) {
   if (useRefusal() || sharedSlug) return null;
-  const which = { creature, cells, at: at === null ? null : String(at) };
-  const address = run ? forkAddress(run, which) : [["initial", creature!]];
+  const which = {
+    creature: creatures && formatCreatures(creatures),
+    cells,
+    at: at === null ? null : String(at),
+  };
+  const address = run ? forkAddress(run, which) : [["initial", creatures![0]!]];
   return (
     <a
       class={inline ? "" : "button"}
