@@ -1,54 +1,104 @@
 """Time of a generation besides its rollouts.
 
-Children, insertion, learning, names and lineage against the evaluation of a batch, in the
-standard search and in NEAT alone, as `make acceptance` runs them.
+Children, selection, screening, insertion, learning, names and lineage against the evaluation of
+a batch: in the standard search and in NEAT alone, as `make acceptance` runs them, and where the
+archive is large and full.
 """
 
 import statistics
 import time
+from dataclasses import replace
+from typing import Any
+from unittest.mock import patch
 
 import jax
+import jax.numpy as jnp
+import numpy as np
 import timing
 
+from microcosmos import search
 from microcosmos.build import build
 from microcosmos.device import prepare
+from microcosmos.experiments.evolution import Evolution
+from microcosmos.experiments.state import State
 from microcosmos.spec import parse
 
 WARM, TIMED = 3, 8
 """Generations that compile and warm up, and those that are timed."""
 
-SEARCHES = {
-    "MAP-Elites, NEAT": {"experiment": "quality-diversity"},
+QD = {"experiment": "quality-diversity"}
+SEARCHES: dict[str, dict[str, Any]] = {
+    "MAP-Elites, NEAT": QD,
     "NEAT": {"experiment": "neuroevolution", "search": {"batch": 64}},
-    "MAP-Elites, iso+line, direct": {
-        "experiment": "quality-diversity",
-        "control": {"encoding": "direct"},
-        "search": {"emitters": [{"operator": "iso+line"}]},
-    },
+    "MAP-Elites, iso+line, direct": QD
+    | {"control": {"encoding": "direct"}, "search": {"emitters": [{"operator": "iso+line"}]}},
+    "MAP-Elites, NEAT, screened": QD | {"search": {"screening": {}}},
 }
+SIDE = 320
+"""Bins along each axis of the large archive."""
+LARGE = {
+    "descriptors": [{"name": name, "bins": SIDE} for name in ("symmetry", "curvature_mean")]
+}
+FULL = ("MAP-Elites, NEAT", "MAP-Elites, NEAT, screened")
+"""Searches that are also timed with a large archive whose cells are all occupied."""
 
 
-def generations(document: dict) -> list[tuple[float, float]]:
+def filled(run: Evolution, state: State) -> State:
+    """Return the state with an elite in every cell: varied newcomers, which are no swimmers."""
+    plan, random = run.plan, np.random.default_rng(0)
+    count = plan.cell_count
+    keys = jax.random.split(jax.random.key(1), count)
+    newcomer = jax.jit(jax.vmap(lambda key: plan.encoding.newcomer(key=key)))
+    parts = [jax.device_get(newcomer(keys[i : i + 4096])) for i in range(0, count, 4096)]
+    measures = random.random((count, len(plan.measures))).astype(np.float32)
+    for axis, place in zip(plan.axes, search.cells_of(plan.container).centres.T, strict=True):
+        measures[:, axis.measure] = np.asarray(axis.value(jnp.asarray(place)))
+    elites = replace(
+        state.elites,
+        occupied=jnp.ones(count, bool),
+        fitness=jnp.asarray(random.random(count) * 0.6, jnp.float32),
+        measures=jnp.asarray(measures),
+        curiosity=jnp.ones(count, jnp.float32),
+        genotypes=jax.tree.map(lambda *rows: jnp.asarray(np.concatenate(rows)), *parts),
+    )
+    creatures = random.integers(1, 256, (count, 32)).astype(np.uint8)
+    return replace(state, elites=elites, creatures=creatures)
+
+
+def generations(document: dict[str, Any], full: bool) -> list[tuple[float, float]]:
     """Seconds of each timed generation, and of its rollouts."""
-    run = build(parse(document))
-    state, seconds = run.init(), []
-    for _ in range(WARM + TIMED):
+    run = build(parse(document | ({"archive": LARGE} if full else {})))
+    assert isinstance(run, Evolution)
+    rollouts, evaluate = [0.0], search.evaluate_blocks
+
+    def timed(program: Any, *given: Any, **options: Any) -> Any:
         start = time.monotonic()
-        state, report = run.advance(state)
-        whole = time.monotonic() - start
-        rollouts = float((report.summary or {})["device_seconds"] or 0.0)
-        seconds.append((whole, rollouts / jax.local_device_count()))
+        found = evaluate(program, *given, **options)
+        if program is run.programs.evaluate_block:
+            rollouts[0] += time.monotonic() - start
+        return found
+
+    state, seconds = run.init(), []
+    if full:
+        state = filled(run, state)
+    with patch.object(search, "evaluate_blocks", timed):
+        for _ in range(WARM + TIMED):
+            rollouts[0], start = 0.0, time.monotonic()
+            state, _ = run.advance(state)
+            seconds.append((time.monotonic() - start, rollouts[0]))
     return seconds[WARM:]
 
 
 def main() -> None:
     prepare()
     rows = []
-    for name, document in SEARCHES.items():
-        seconds = generations(document)
+    cases = [(name, False) for name in SEARCHES] + [(name, True) for name in FULL]
+    for name, full in cases:
+        seconds = generations(SEARCHES[name], full)
         whole, rollouts = (statistics.median(column) for column in zip(*seconds, strict=True))
         rest = statistics.median(a - b for a, b in seconds)
         share = statistics.median((a - b) / a for a, b in seconds)
+        name = f"{name}, {SIDE * SIDE:,} elites" if full else name
         rows.append((name, f"{whole:.3f}", f"{rollouts:.3f}", f"{rest:.4f}", f"{share:.1%}"))
     columns = ("", "whole", "rollouts", "the rest", "share (bar 8 %)")
     timing.print_table("Median seconds of a generation of 64 creatures", columns, rows)

@@ -33,13 +33,21 @@ def screened(rounds: int, candidates: int) -> dict[str, Any]:
     return {"rounds": rounds, "candidates": candidates}
 
 
+def container(kind: str, **settings: int) -> dict[str, Any]:
+    return emitters(NEAT) | {"container": {"kind": kind, **settings}}
+
+
 METHODS: dict[str, dict[str, Any]] = {
     "random": emitters({"operator": "random"}),
-    "NEAT alone": {"experiment": "neuroevolution"},
+    "NEAT alone": {"experiment": "neuroevolution", "search": {"screening": None}},
     "MAP-Elites": emitters(NEAT),
     "curiosity": emitters(NEAT | {"select": "curiosity"}),
     "crossover": emitters(NEAT | {"crossover": 0.3}),
     "NEAT + MAP-Elites": emitters(NEAT, {"operator": "population"}),
+    "bandit": emitters(
+        NEAT, {"operator": "random"}, NEAT | {"crossover": 0.5}, bandit={"window": 50}
+    ),
+    "dominated novelty": container("dominated-novelty", size=400),
     "screened 1 x 10": emitters(NEAT, screening=screened(1, 10)),
     "screened 1 x 40": emitters(NEAT, screening=screened(1, 40)),
     "screened 4 x 10": emitters(NEAT, screening=screened(4, 10)),
@@ -90,11 +98,15 @@ def carried_out(chosen: argparse.Namespace, method: str, seed: int) -> Path:
     document = PRESETS[chosen.preset][1].model_dump(mode="json", exclude_unset=True)
     changes = METHODS[method]
     search = document.get("search", {}) | changes.get("search", {})
+    search = {name: value for name, value in search.items() if value is not None}
     search |= {"generations": chosen.generations}
-    document |= changes | {"seed": seed, "search": search}
-    document.setdefault("experiment", "quality-diversity")
+    archive = document.get("archive", {})
     if axes := AXES[chosen.axes]:
-        document["archive"] = {"descriptors": axes}
+        archive["descriptors"] = axes
+    changes = dict(changes)
+    archive["container"] = changes.pop("container", None)
+    document |= changes | {"seed": seed, "search": search, "archive": archive}
+    document.setdefault("experiment", "quality-diversity")
     name = f"{chosen.preset} {chosen.axes} {method} {chosen.generations} {seed}.h5"
     path = chosen.results / name
     path.parent.mkdir(parents=True, exist_ok=True)

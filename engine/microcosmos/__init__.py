@@ -28,6 +28,7 @@ _HOME = {
     "check": "audit",
     "gradient": "audit",
     "report_gradient": "audit",
+    "learned_axes": "archive.learned",
     "pose_streams": "archive.export",
     "to_pandas": "archive.export",
     "to_ribs": "archive.export",

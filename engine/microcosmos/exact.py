@@ -5,7 +5,7 @@ NumPy's own differ with the processor's vectors and the C library, and its matri
 decompositions with the library that carries them out.
 """
 
-from math import factorial
+from math import factorial, sqrt
 
 import numpy as np
 
@@ -14,6 +14,8 @@ QUARTER = 1.57079632673412561417, 6.07710050630396597660e-11, 2.0222662487111664
 LN_2 = 6.93147180369123816490e-01, 1.90821492927058770002e-10
 """The logarithm of 2 in two parts."""
 LN_10 = 2.302585092994046
+SWEEPS = 60
+"""Most sweeps of rotations; about eight are enough."""
 
 
 def sine(x: np.ndarray | float) -> np.ndarray:
@@ -74,6 +76,44 @@ def inverse(matrix: np.ndarray) -> np.ndarray:
         found[:, used] -= factor[:, None] * pivot[None]
         found[row, used] = pivot
     return found[:, count:]
+
+
+def eigenvectors(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the eigenvalues of a symmetric matrix, the largest first, and a unit vector of
+    each as a row.
+
+    By cyclic rotations (Jacobi; Golub and Van Loan, Matrix Computations, section 8.5).
+    """
+    left, count = np.array(matrix, float), len(matrix)
+    vectors, pairs = np.eye(count), [(p, q) for p in range(count) for q in range(p + 1, count)]
+    negligible = np.ldexp(np.max(np.abs(left), initial=0.0), -60)
+    for _ in range(SWEEPS):
+        turned = [_diagonalise(left, vectors, *pair, negligible) for pair in pairs]
+        if not any(turned):
+            break
+    values = np.diagonal(left)
+    order = np.argsort(-values, kind="stable")
+    return values[order], vectors[order]
+
+
+def _diagonalise(
+    left: np.ndarray, vectors: np.ndarray, p: int, q: int, negligible: float
+) -> bool:
+    """Rotate an element off the diagonal to 0, in place; return whether it was larger than
+    what is negligible."""
+    beside = float(left[p, q])
+    if abs(beside) <= negligible:
+        return False
+    ratio = (float(left[q, q]) - float(left[p, p])) / (2 * beside)
+    tangent = 1 / (abs(ratio) + sqrt(ratio * ratio + 1))
+    tangent = tangent if ratio >= 0 else -tangent
+    c = 1 / sqrt(tangent * tangent + 1)
+    s = tangent * c
+    for rows in (left, left.T, vectors):
+        one, other = rows[p].copy(), rows[q].copy()
+        rows[p], rows[q] = c * one - s * other, s * one + c * other
+    left[p, q] = left[q, p] = 0.0
+    return True
 
 
 def _polynomial(coefficients: list[float], x: np.ndarray) -> np.ndarray:

@@ -15,10 +15,25 @@ COLUMNS = (
 
 
 def all_time(run: Run, names: Sequence[str] = ()) -> Select[*tuple[Any, ...]]:
-    """Select a run's elites, also those that were replaced, with measures by name."""
+    """Select a run's elites, also those that it lost, with measures by name."""
     columns = [measures.column(name) for name in names]
     joined = select(*COLUMNS, *columns).join(Creature, Creature.sha256 == Elite.creature)
     return joined.where(recorded_in(run))
+
+
+def emptied(run: Run, generation: int, after: int = -1) -> Select[int, int]:
+    """Select cells, with the generation, that lost their elite after generation `after` and
+    have no new one as of a generation."""
+    entered = Elite.generation.between(after + 1, generation)
+    columns = select(Elite.cell, Elite.generation)
+    mine = columns.join(*_last(run, entered)).where(Elite.run_id == run.id)
+    return mine.where(Elite.creature.is_(None)).order_by(Elite.cell)
+
+
+def losses(run: Run) -> Select[int, int]:
+    """Select all cells that lost their elite without a new one, with the generation."""
+    mine = select(Elite.cell, Elite.generation).where(recorded_in(run))
+    return mine.where(Elite.creature.is_(None)).order_by(Elite.generation, Elite.cell)
 
 
 def recorded_in(run: Run) -> ColumnElement[bool]:
@@ -29,7 +44,10 @@ def recorded_in(run: Run) -> ColumnElement[bool]:
 def as_of(
     run: Run, generation: int, names: Sequence[str] = (), after: int = -1
 ) -> Select[*tuple[Any, ...]]:
-    """Select each cell's elite as of a generation, if it entered after generation `after`."""
+    """Select each cell's elite as of a generation, if it entered after generation `after`.
+
+    A cell whose last row has no creature is empty: the join with creatures leaves it out.
+    """
     entered = Elite.generation.between(after + 1, generation)
     return all_time(run, names).join(*_last(run, entered)).order_by(Elite.cell)
 
@@ -43,7 +61,7 @@ def poses(run: Run, generation: int, cells: Sequence[int]) -> Select[bytes | Non
 
 
 def _last(run: Run, entered: ColumnElement[bool]) -> tuple[FromClause, ColumnElement[bool]]:
-    """Return cell and generation of the last elite of each cell, and the join's condition."""
+    """Return cell and generation of the last row of each cell, and the join's condition."""
     last = (
         select(Elite.cell, func.max(Elite.generation).label("generation"))
         .where(Elite.run_id == run.id, entered)

@@ -7,7 +7,7 @@ from typing import Literal
 from sqlalchemy import ColumnElement, select
 from sqlalchemy.orm import Session
 
-from microcosmos.spec import PluginVersion, plugins_in
+from microcosmos.spec import Archive, PluginVersion, plugins_in
 from microcosmos.spec.measures import MEASURES
 
 from ..tables import Creature, Elite, Run
@@ -24,9 +24,12 @@ def axes(run: Run) -> list[Axis]:
     return [Axis(**{name: axis[name] for name in Axis.model_fields}) for axis in described]
 
 
-def kind(run: Run) -> tuple[Literal["grid", "cvt"], int]:
+def kind(run: Run) -> tuple[Literal["grid", "cvt", "pool"], int]:
     """Return the kind of the archive's cells, and their number."""
-    centroids = run.spec["archive"].get("centroids")
+    described = run.spec["archive"]
+    if described.get("container") is not None:
+        return "pool", Archive.model_validate(described).places
+    centroids = described.get("centroids")
     if centroids is not None:
         return "cvt", centroids
     return "grid", prod(axis.bins for axis in axes(run))

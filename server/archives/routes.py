@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response
-from sqlalchemy import func, select
+from sqlalchemy import Select, func, select
 from sqlalchemy.orm import Session
 
 from microcosmos.archive import export
@@ -17,6 +17,7 @@ from ..attempts.checkpoints import last_checkpoint
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, ShareAccessDep
 from ..core.api import sends
 from ..core.errors import ProblemError, invalid_field
+from ..runs.curves import coverage_at
 from ..runs.deps import RunDep
 from ..services.services import ServicesDep, SessionDep
 from ..storage import ranges
@@ -46,7 +47,8 @@ def read_archive(
     """Return the elite of each cell, now or as of a generation.
 
     `measures` names recorded measures, separated by commas, to return with the elites. With
-    `after`, a generation, only the elites that entered later are returned.
+    `after`, a generation, only the elites that entered later are returned, and only the cells
+    that were emptied later.
     """
     _refuse_table(run)
     as_of = run.generation if generation is None else min(generation, run.generation)
@@ -60,13 +62,18 @@ def read_archive(
         cells=cells,
         axes=recorded_measures.axes(run),
         recorded=recorded,
+        coverage=coverage_at(session, run.id, as_of),
         **_columns(session.execute(elites.as_of(run, as_of, names, known)).all(), names),
+        **_emptied(session, elites.emptied(run, as_of, known)),
     )
 
 
 @router.get("/archive/history", dependencies=[MAY_READ_SHARED])
 def read_history(run: RunDep, session: SessionDep, measures: str = "") -> HistoryRead:
-    """Return every elite that ever entered, from which each generation's archive follows."""
+    """Return every elite that ever entered, and every cell that lost one without a new one.
+
+    Each generation's archive follows from them.
+    """
     _refuse_table(run)
     names = _requested(measures, recorded_measures.recorded(session, run))
     counted = select(func.count()).select_from(Elite).where(elites.recorded_in(run))
@@ -80,6 +87,7 @@ def read_history(run: RunDep, session: SessionDep, measures: str = "") -> Histor
         raise ProblemError(422, "History too long", detail)
     ordered = elites.all_time(run, names).order_by(Elite.generation, Elite.cell)
     columns = _columns(session.execute(ordered).all(), names)
+    columns |= _emptied(session, elites.losses(run))
     return HistoryRead(generation=run.generation, **columns)
 
 
@@ -110,7 +118,7 @@ def read_centroids(run: RunDep, session: SessionDep, services: ServicesDep) -> C
     """Return the centroids of a CVT archive; null before its first checkpoint."""
     _refuse_table(run)
     if recorded_measures.kind(run)[0] != "cvt":
-        detail = "The archive is a grid and has no centroids; its axes define its cells."
+        detail = "The archive has no Voronoi cells, and so no centroids."
         raise ProblemError(404, "No centroids", detail)
     first = last_checkpoint(session, run.id)
     if first is None:
@@ -140,6 +148,12 @@ def _columns(found: Sequence[Any], names: Sequence[str]) -> dict[str, Any]:
             name: [elite[first + i] for elite in found] for i, name in enumerate(names)
         },
     }
+
+
+def _emptied(session: Session, found: Select[int, int]) -> dict[str, Any]:
+    rows = session.execute(found).all()
+    cells, generations = [row.cell for row in rows], [row.generation for row in rows]
+    return {"emptied": cells, "emptied_generation": generations}
 
 
 def _refuse_table(run: Run) -> None:

@@ -33,6 +33,10 @@ class HistoryRead(Wire):
     descriptors: list[list[float]]
     elite_generation: list[int]
     creature: list[str]
+    emptied: list[int]
+    """Cells that lost their elite without a new one."""
+    emptied_generation: list[int]
+    """The generation in which each of these cells lost its elite."""
     trusted: list[bool | None]
     """Verdicts of the creatures' audits; null for a creature without an audit."""
     measures: dict[str, list[float | None]]
@@ -43,11 +47,15 @@ class ArchiveRead(HistoryRead):
     """Columns, one entry per filled cell.
 
     The cells of a grid are numbered in C order over the bins of its axes. Those of a CVT are in
-    the order of their centroids, and its axes have no bins.
+    the order of their centroids, and its axes have no bins. A pool, the archive of a run with a
+    container, has numbered places instead of cells: the number does not tell where an elite
+    lies. `emptied` are cells that are empty now.
     """
 
-    kind: Literal["grid", "cvt"]
+    kind: Literal["grid", "cvt", "pool"]
     cells: int
+    coverage: float
+    """Share of the cells over the axes that are filled, as recorded with the generation."""
     axes: list[Axis]
     recorded: list[Measure]
 

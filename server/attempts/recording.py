@@ -16,6 +16,9 @@ from microcosmos.naming import LICENCE
 from ..creatures.storage import creature_columns, insert_and_lock, link
 from ..tables import CORRECTED, Elite, Generation, Result
 
+COLUMNS = ("cell", "generation", "fitness", "descriptors", "creature")
+"""Columns of elites, but for the run."""
+
 
 @dataclass(frozen=True)
 class Rows:
@@ -25,6 +28,8 @@ class Rows:
     """Columns of the run itself."""
     curve: dict[str, Any]
     elites: list[dict[str, Any]]
+    emptied: list[int]
+    """Cells that lost their elite and have no new one."""
     results: list[dict[str, Any]]
     """Without their number, which depends on the rows that the table holds."""
     creatures: list[dict[str, Any]]
@@ -60,6 +65,7 @@ def rows_of(report: Report, seconds: float) -> Rows:
             }
             for elite in report.elites
         ],
+        emptied=sorted(int(cell) for cell in report.emptied),
         results=[
             {
                 "generation": run["generation"],
@@ -97,14 +103,20 @@ def write(session: Session, run_id: UUID, rows: Rows) -> None:
     found = sorted(rows.creatures, key=itemgetter("sha256"))
     insert_and_lock(session, found)
     link(session, [row["sha256"] for row in found])
-    if rows.elites:
-        session.execute(insert(Elite), [{"run_id": run_id, **row} for row in rows.elites])
+    if changed := [*rows.elites, *_losses(rows)]:
+        session.execute(insert(Elite), [{"run_id": run_id, **row} for row in changed])
     if rows.results:
         first = count_results(session, run_id)
         placed = [
             {"run_id": run_id, "number": first + i, **row} for i, row in enumerate(rows.results)
         ]
         session.execute(insert(Result), placed)
+
+
+def _losses(rows: Rows) -> list[dict[str, Any]]:
+    """Return a row without a creature for each cell that lost its elite."""
+    row = dict.fromkeys(COLUMNS) | {"generation": rows.curve["generation"]}
+    return [{**row, "cell": cell} for cell in rows.emptied]
 
 
 def count_results(session: Session, run_id: UUID) -> int:
@@ -116,9 +128,10 @@ def events(run_id: UUID, rows: Rows) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield kind and data of the events of a generation."""
     head = {"run": str(run_id), "generation": rows.curve["generation"]}
     yield "generation", head | rows.curve
-    if rows.elites:
-        columns = {name: [row[name] for row in rows.elites] for name in rows.elites[0]}
-        yield "elites", columns | head | {"elite_generation": columns["generation"]}
+    if rows.elites or rows.emptied:
+        columns = {name: [row[name] for row in rows.elites] for name in COLUMNS}
+        columns |= {"elite_generation": columns["generation"], "emptied": rows.emptied}
+        yield "elites", columns | head
     if rows.results:
         table = [{**row["values"], "creature": row["creature"]} for row in rows.results]
         yield "results", head | {"summary": rows.curve["summary"], "rows": table}

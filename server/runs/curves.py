@@ -51,6 +51,13 @@ def corrected_at(session: Session, run_id: UUID, generation: int) -> dict[str, f
     return {name: summary.get(name) for name in CORRECTED}
 
 
+def coverage_at(session: Session, run_id: UUID, generation: int) -> float:
+    """Return the coverage as of a generation, 0 before the first."""
+    before = (Generation.run_id == run_id) & (Generation.generation <= generation)
+    rows = select(Generation.coverage).where(before).order_by(Generation.generation.desc())
+    return session.scalars(rows.limit(1)).first() or 0.0
+
+
 def numbers(summary: Mapping[str, Any]) -> dict[str, float]:
     return {
         name: value

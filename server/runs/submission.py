@@ -49,7 +49,7 @@ TOO_LARGE = "Not enough memory"
 class OneCellArchive:
     """The smallest archive, with the fields that an estimate reads."""
 
-    cells: int = 1
+    places: int = 1
     plugins: dict[str, Any] = field(default_factory=dict)
 
 

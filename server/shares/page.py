@@ -7,10 +7,11 @@ from fastapi.responses import HTMLResponse, Response
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
+from ..archives import elites
 from ..core import static_files
 from ..core.errors import ProblemError
 from ..services.services import SessionDep
-from ..tables import Creature, Elite, Share
+from ..tables import Creature, Run, Share
 from .access import find_live
 
 WIDTH, HEIGHT = 1200, 630
@@ -45,8 +46,9 @@ def description(session: Session, share: Share) -> str:
     by = f" By {', '.join(share.credit)}." if share.credit else ""
     licence = f" {share.licence}." if len(share.licence) <= 40 else ""
     if share.run_id:
-        mine = (Elite.run_id == share.run_id) & (Elite.generation <= share.generation)
-        count = session.scalars(select(func.count(Elite.cell.distinct())).where(mine)).one()
+        run = session.get_one(Run, share.run_id)
+        there = elites.as_of(run, share.generation or 0).order_by(None).subquery()
+        count = session.scalars(select(func.count()).select_from(there)).one()
         text = f"An archive of {count:,} swimmers after {share.generation:,} generations."
     else:
         measured = session.get_one(Creature, share.cover).measured

@@ -3,10 +3,9 @@
 from secrets import token_urlsafe
 from typing import Any
 
-from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from ..archives import measures
+from ..archives import elites, measures
 from ..auth.authorize import refuse_non_owner
 from ..auth.principal import Principal
 from ..core.errors import ProblemError, invalid_field
@@ -52,12 +51,11 @@ def share_columns(session: Session, sent: ShareCreate, principal: Principal) -> 
 
 
 def _best(session: Session, run: Run, generation: int) -> str:
-    mine = (Elite.run_id == run.id) & (Elite.generation <= generation)
-    ordered = select(Elite.creature).where(mine).order_by(Elite.fitness.desc(), Elite.cell)
-    found = session.scalars(ordered.limit(1)).first()
+    there = elites.as_of(run, generation).order_by(None)
+    found = session.execute(there.order_by(Elite.fitness.desc(), Elite.cell).limit(1)).first()
     if found is None:
         raise ProblemError(409, "Nothing to publish", f"Run {run.id} has no elite yet.")
-    return found
+    return found.creature
 
 
 def publish(session: Session, sent: ShareCreate, principal: Principal) -> tuple[Share, bool]:

@@ -50,7 +50,7 @@ class Base(DeclarativeBase):
         dict[str, Any]: JSON(none_as_null=True),
         list[str]: JSON(),
         list[dict[str, Any]]: JSON(),
-        list[float]: JSON(),
+        list[float]: JSON(none_as_null=True),
         list[int]: JSON(),
     }
 

@@ -45,14 +45,21 @@ class Result(Base):
 
 
 class Elite(Base):
-    """A new elite of a cell; append-only. The last row of a cell is its present elite."""
+    """A new elite of a cell, or its loss; append-only. The last row of a cell is its present
+    state.
+
+    A cell that loses its elite without a new one has a row without a creature. An archive with
+    a container has numbered places instead of cells.
+    """
 
     __tablename__ = "elites"
 
     run_id: Mapped[RunKey]
     cell: Mapped[Place]
     generation: Mapped[Place]
-    fitness: Mapped[float]
-    descriptors: Mapped[list[float]]
+    fitness: Mapped[float | None]
+    descriptors: Mapped[list[float] | None]
     """In raw units, in the order of the archive's axes."""
-    creature: Mapped[str] = mapped_column(Sha256, ForeignKey("creatures.sha256"), index=True)
+    creature: Mapped[str | None] = mapped_column(
+        Sha256, ForeignKey("creatures.sha256"), index=True
+    )

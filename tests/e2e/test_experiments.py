@@ -31,7 +31,7 @@ def submit_a_small_population(page: Page, address: str) -> None:
 
 
 def watch_it_end(page: Page) -> None:
-    ended = page.get_by_text("Ended after generation 8: it used its budget of 128 evaluations")
+    ended = page.get_by_text("Ended after generation 4: it used its budget of 128 evaluations")
     expect(ended).to_be_visible(timeout=SLOW)
     expect(page.get_by_role("heading", name="Neuroevolution")).to_be_visible()
     expect(page.get_by_role("img", name=re.compile("Into empty cells over"))).to_be_visible()

@@ -46,6 +46,18 @@ def test_an_inverse_is_that_of_a_decomposition():
     np.testing.assert_allclose(exact.inverse(matrix), np.linalg.inv(matrix), rtol=1e-10)
 
 
+@pytest.mark.parametrize("count", [1, 2, 7, 40])
+def test_eigenvectors_are_those_of_the_library(count):
+    rows = np.random.default_rng(count).normal(size=(count // 2 + 2, count))
+    for matrix in (rows.T @ rows, np.eye(count), np.zeros((count, count))):  # Of low rank too.
+        values, vectors = exact.eigenvectors(matrix)
+        expected = np.linalg.eigvalsh(matrix)[::-1]
+        np.testing.assert_allclose(values, expected, atol=1e-13 * max(expected[0], 1))
+        np.testing.assert_allclose(vectors @ vectors.T, np.eye(count), atol=1e-13)
+        rebuilt = vectors.T @ np.diag(values) @ vectors
+        np.testing.assert_allclose(rebuilt, matrix, atol=1e-12 * max(expected[0], 1))
+
+
 @pytest.mark.parametrize("name", BODIES)
 def test_layouts_have_the_pseudoinverses_of_their_differences(name):
     body = BODIES[name]

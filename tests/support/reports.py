@@ -20,6 +20,7 @@ DEMO = QualityDiversity.model_validate(
     | {"task": _DEMO["task"] | {"fitness": "displacement"}}
 )
 """The demonstration with another fitness and other axes, in which these reports are made."""
+PROVENANCE = {"parents": ["ab" * 32], "operator": "neat", "seed": 0, "version": "0.1.0"}
 
 
 def archive_file(spec: dict[str, Any]) -> bytes:
@@ -132,6 +133,7 @@ def table(generation: int, *rows: dict[str, Any], summary: Any = None) -> Any:
         evaluations=generation,
         infeasible=0,
         elites=(),
+        emptied=(),
         rows=tuple(
             SimpleNamespace(
                 values=values,
@@ -151,6 +153,7 @@ def report(
     measures: dict[str, float] | None = None,
     summary: dict[str, Any] | None = None,
     poses: bool = False,
+    emptied: tuple[int, ...] = (),
 ) -> Any:
     """The report of a generation: new elites by cell, with their fitness, or also poses."""
     efforts = {"bending_effort": 0.25, "stretching_effort": 0.5}
@@ -172,13 +175,7 @@ def report(
                 "room": [24, 64],
                 "device": "a device",
             },
-            provenance={
-                "parents": ["ab" * 32],
-                "operator": "neat",
-                "generation": generation,
-                "seed": 0,
-                "version": "0.1.0",
-            },
+            provenance=PROVENANCE | {"generation": generation},
         )
 
     return SimpleNamespace(
@@ -190,6 +187,7 @@ def report(
         evaluations=16 * generation,
         infeasible=generation,
         elites=tuple(elite(*item) for item in (elites or {}).items()),
+        emptied=emptied,
         rows=(),
         summary=summary,
     )

@@ -34,16 +34,17 @@ def columns(data: bytes) -> Columns:
     `generation`, `creature`, results of reevaluation if there are any, and `index`. A solution
     is the genome's arrays side by side, in the order of their names. In a grid, `measures_i`
     are on the axis' own scale, so that bins of a log axis are equally wide. With centroids,
-    they are from 0 to 1 on that scale, on which distances are measured.
+    they are from 0 to 1 on that scale, on which distances are measured. The index of an archive
+    with a container is a place, whose number does not tell where an elite lies.
     """
     tree, attributes = load(data)
     archive = tree["archive"]
     genomes = archive["genomes"]
     arrays = [genomes[name].astype(np.float32) for name in sorted(genomes)]
     solution = np.concatenate([x.reshape(len(x), -1) for x in arrays], axis=1)
-    axes = json.loads(attributes["spec"])["archive"]["descriptors"]
-    names = json.loads(attributes["measures"])
-    place = unit if "centroids" in archive else scaled
+    spec = json.loads(attributes["spec"])["archive"]
+    axes, names = spec["descriptors"], json.loads(attributes["measures"])
+    place = scaled if tessellation(archive, spec) is None else unit
     places = [place(archive["measures"][:, names.index(a["name"])], a) for a in axes]
     fitness = archive["fitness"]
     found: Columns = {f"solution_{i}": solution[:, i] for i in range(solution.shape[1])}
@@ -67,6 +68,11 @@ def centroids(data: bytes) -> np.ndarray:
     """Return the centroids (cell, axis) of a CVT, from 0 to 1 on the axes' own scales."""
     tree, _ = load(data)
     return tree["archive"]["centroids"]
+
+
+def tessellation(archive: Tree, spec: dict[str, Any]) -> np.ndarray | None:
+    """Return the centroids around which cells lie, if they do; containers have no cells."""
+    return None if spec.get("container") else archive.get("centroids")
 
 
 def repeated(archive: Tree) -> Columns:
@@ -98,6 +104,16 @@ def unit(values: np.ndarray, axis: dict[str, Any]) -> np.ndarray:
     return ((scaled(values, axis) - low) / (high - low)).astype(values.dtype)
 
 
+def bins(values: Sequence[np.ndarray], axes: Sequence[dict[str, Any]]) -> np.ndarray:
+    """Return the bins of values, by axis, in the grid over the axes, in C order."""
+    shape = [axis["bins"] for axis in axes]
+    places = [
+        np.minimum((unit(x, axis) * axis["bins"]).astype(int), axis["bins"] - 1)
+        for x, axis in zip(values, axes, strict=True)
+    ]
+    return np.asarray(np.ravel_multi_index(places, shape))
+
+
 def ends(axis: dict[str, Any]) -> tuple[float, float]:
     """Return the ends of an axis on its own scale."""
     low, high = axis["low"], axis["high"]
@@ -115,7 +131,7 @@ def pose_streams(archive: Source) -> list[PoseStream]:
 
     Raises `ValueError` for a file of a run without an archive.
     """
-    return streams(*load(_bytes(archive)))
+    return streams(*load(source_bytes(archive)))
 
 
 def to_pandas(archive: Source) -> Any:
@@ -123,7 +139,7 @@ def to_pandas(archive: Source) -> Any:
 
     `ribs.archives.ArchiveDataFrame` takes it as it is. Raises `ImportError` without pandas.
     """
-    return require("pandas", "pandas").DataFrame(columns(_bytes(archive)))
+    return require("pandas", "pandas").DataFrame(columns(source_bytes(archive)))
 
 
 def to_ribs(archive: Source) -> Any:
@@ -131,23 +147,24 @@ def to_ribs(archive: Source) -> Any:
 
     A grid has ranges on the axes' own scales; with centroids they are 0 to 1 on those scales.
     pyribs rounds differently at the borders of bins, so an elite on a border moves to the
-    middle of its cell. Raises `ImportError` without pyribs.
+    middle of its cell. An archive with a container becomes the grid over its axes, with the
+    best elite of each bin. Raises `ImportError` without pyribs.
     """
-    data = _bytes(archive)
+    data = source_bytes(archive)
     found, peer = columns(data), require("ribs.archives", "ribs[visualize]")
     solution, measures = _stacked(found, "solution_"), _stacked(found, "measures_")
     fields = list(found)[list(found).index("threshold") + 1 : -1]
     fields = {name: np.asarray(found[name]) for name in fields}
     filled = _empty(peer, data, solution.shape[1], fields)
-    misplaced = filled.index_of(measures) != found["index"]
-    measures[misplaced] = _middles(filled, found["index"])[misplaced]
+    if not _spec(data).get("container"):
+        misplaced = filled.index_of(measures) != found["index"]
+        measures[misplaced] = _middles(filled, found["index"])[misplaced]
     filled.add(solution, found["objective"], measures, **fields)
     return filled
 
 
 def _empty(peer: Any, data: bytes, genes: int, fields: dict[str, np.ndarray]) -> Any:
-    tree, attributes = load(data)
-    spec = json.loads(attributes["spec"])["archive"]
+    spec = _spec(data)
     given = {
         "solution_dim": genes,
         "dtype": np.float32,
@@ -156,11 +173,16 @@ def _empty(peer: Any, data: bytes, genes: int, fields: dict[str, np.ndarray]) ->
             for name, values in fields.items()
         },
     }
-    axes, centroids = spec["descriptors"], tree["archive"].get("centroids")
+    axes, centroids = spec["descriptors"], tessellation(load(data)[0]["archive"], spec)
     if centroids is not None:
         return peer.CVTArchive(centroids=centroids, ranges=[(0.0, 1.0)] * len(axes), **given)
     bins, ranges = [axis["bins"] for axis in axes], [ends(axis) for axis in axes]
     return peer.GridArchive(dims=bins, ranges=ranges, **given)
+
+
+def _spec(data: bytes) -> dict[str, Any]:
+    _, attributes = load(data)
+    return json.loads(attributes["spec"])["archive"]
 
 
 def _middles(filled: Any, index: np.ndarray) -> np.ndarray:
@@ -174,5 +196,6 @@ def _stacked(found: dict[str, Any], prefix: str) -> np.ndarray:
     return np.stack([x for name, x in found.items() if name.startswith(prefix)], 1)
 
 
-def _bytes(archive: Source) -> bytes:
+def source_bytes(archive: Source) -> bytes:
+    """Return the file's bytes."""
     return archive if isinstance(archive, bytes) else Path(archive).read_bytes()

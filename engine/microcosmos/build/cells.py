@@ -1,6 +1,7 @@
 """Build the cells of an archive, or another container."""
 
 from .. import search, spec
+from ..archive.learned import floors
 from ..spec import containers
 from ..spec.measures import MEASURES
 
@@ -18,8 +19,11 @@ def build_container(
             ends = usual.low, usual.high
             second = search.Axis(measures.index(name), *ends, 1, usual.scale == "log10")
             return search.Fronts(cells, second, size, goal == "least")
-        case containers.LearnedAxes():
-            raise NotImplementedError
+        case containers.LearnedAxes(axes=axes, bins=bins, first=first, measures=chosen):
+            names = chosen or measures
+            columns = tuple(measures.index(name) for name in names)
+            given = {"axes": axes, "bins": bins, "first": first}
+            return search.learned_axes(cells, columns, floors=floors(names), **given)
     return cells
 
 

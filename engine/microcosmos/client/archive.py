@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..archive.export import scaled, unit
+from ..archive.export import bins, scaled, unit
 from . import columns, drawing
 from .connection import Connection
 from .creature import Creature
@@ -19,8 +19,12 @@ class Archive:
         self.run = run
         self.generation: int = document["generation"]
         self.kind: str = document["kind"]
-        """`grid`, whose cells are numbered in C order over the bins of the axes, or `cvt`."""
+        """`grid`, whose cells are numbered in C order over the bins of the axes, `cvt`, or
+        `pool`, whose places have numbers that do not tell where an elite lies."""
         self.cells: int = document["cells"]
+        """Number of cells, of a pool that of its places."""
+        self.coverage: float = document["coverage"]
+        """Share of the cells over the axes that are filled, as the run recorded it."""
         self.axes: list[dict[str, Any]] = document["axes"]
         self.recorded: list[dict[str, Any]] = document["recorded"]
         """The measures of the elites, with title, unit and the ends of an axis."""
@@ -44,18 +48,18 @@ class Archive:
 
     def __repr__(self) -> str:
         best = f", best {self.fitness.max():.4g}" if len(self) else ""
-        where = f"{len(self)} of {self.cells} cells filled at generation {self.generation}"
+        cells = "places" if self.kind == "pool" else "cells"
+        where = f"{len(self)} of {self.cells} {cells} filled at generation {self.generation}"
         return f"<Archive of run {self.run[:8]}: {where}{best}>"
 
     def _repr_html_(self) -> str | None:
-        """Draw a map of a grid of two axes; a notebook shows the `repr` of others."""
-        if self.kind != "grid" or len(self.axes) != 2:
+        """Draw a map of a grid or pool of two axes; a notebook shows the `repr` of others."""
+        if self.kind == "cvt" or len(self.axes) != 2:
             return None
-        return drawing.archive_map(self.axes, self.cell, self.fitness, repr(self)[1:-1])
-
-    @property
-    def coverage(self) -> float:
-        return len(self) / self.cells
+        cell, fitness = self.cell, self.fitness
+        if self.kind == "pool":
+            cell, fitness = _fittest(bins([*self.descriptors.T], self.axes), fitness)
+        return drawing.archive_map(self.axes, cell, fitness, repr(self)[1:-1])
 
     def best(self) -> Creature:
         """Return the fittest elite. Raise `ValueError` if the archive is empty."""
@@ -107,3 +111,10 @@ class Archive:
             shape = f", or a bin along each axis of {bins}" if self.kind == "grid" else ""
             raise ValueError(f"`cell` must be from 0 to {self.cells - 1}{shape}; got {cell}")
         return number
+
+
+def _fittest(bins: np.ndarray, fitness: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return each occupied bin and its best fitness."""
+    order = np.argsort(fitness)[::-1]
+    occupied, first = np.unique(bins[order], return_index=True)
+    return occupied, fitness[order][first]

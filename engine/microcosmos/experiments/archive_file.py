@@ -19,6 +19,7 @@ from ..genomes import columns, from_columns
 from ..search.leaves import filled, leaves
 from ..version import VERSION
 from . import fronts
+from .epochs import Epochs
 from .resume_check import devices_of
 from .state import (
     CURVES,
@@ -71,9 +72,7 @@ def save(plan: Plan, state: State) -> bytes:
         tree["screening"] = dict(pairs)
     if state.first is not None:
         tree["archive"]["first"] = state.first.of(cells)
-    around = search.cells_of(state.container)
-    if isinstance(around, search.Voronoi):
-        tree["archive"]["centroids"] = around.centroids
+    _hold_container(tree, state)
     if state.initial is not None:
         genes = columns(state.initial.genotypes)
         tree["initial"] = {"creature": state.initial.creature, "genomes": genes}
@@ -97,8 +96,6 @@ def _loop(plan: Plan, state: State, cells: np.ndarray) -> dict[str, Any]:
         loop["unrepeated"] = vars(jax.tree.map(lambda x: x[cells], state.unrepeated))
     if state.screened is not None:
         loop["model"] = vars(state.screened.model)
-    if isinstance(state.container, search.Survival) and (learned := state.container.arrays()):
-        loop["container"] = learned
     return loop
 
 
@@ -150,18 +147,31 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
         restored = replace(restored, screened=Screened(model, predictions))
     if restored.first is not None:
         restored = replace(restored, first=restored.first.replaced(cells, archive["first"]))
-    restored = replace(restored, container=_container(plan, archive, loop))
+    restored = _with_container(restored, tree)
     return prolonged(restored) if restored.generation < plan.generations else restored
 
 
-def _container(plan: Plan, archive: dict[str, Any], loop: dict[str, Any]) -> search.Container:
-    container = plan.container
+def _hold_container(tree: dict[str, Any], state: State) -> None:
+    """Add the container's centroids, and what it has learned."""
+    container, around = state.container, search.cells_of(state.container)
+    if isinstance(around, search.Voronoi):
+        tree["archive"]["centroids"] = around.centroids
+    if isinstance(container, search.Survival) and (learned := container.arrays()):
+        tree["loop"]["container"] = learned
+    if state.epochs is not None:
+        tree["learned"] = vars(state.epochs)
+
+
+def _with_container(state: State, tree: file.Tree) -> State:
+    """Return the state with the file's centroids, and what its container has learned."""
+    container, archive, loop = state.container, tree["archive"], tree["loop"]
     if "centroids" in archive:  # Another machine may have found slightly other ones.
-        found = search.voronoi(plan.axes, archive["centroids"])
+        found = search.voronoi(container.axes, archive["centroids"])
         container = search.with_cells(container, found)
     if isinstance(container, search.Survival) and "container" in loop:
         container = container.with_arrays(loop["container"])
-    return container
+    epochs = Epochs(**tree["learned"]) if "learned" in tree else state.epochs
+    return replace(state, container=container, epochs=epochs)
 
 
 def _attributes(plan: Plan, state: State) -> dict[str, str]:

@@ -20,7 +20,7 @@ from ..archive.variety import variety
 from ..genomes import Genotype
 from ..search.emitters.population import Population
 from ..search.emitters.tensorneat import TensorNeatState
-from . import archive_file, deciding, fronts, lineage, reevaluation, screening
+from . import archive_file, deciding, epochs, fronts, lineage, reevaluation, screening
 from .offspring import Offspring, Programs, next_offspring
 from .state import CURVES, ENDS, MAX_INFEASIBLE, Infeasible, Plan, State, start
 
@@ -74,6 +74,8 @@ class Evolution:
         if self.repeats and reevaluation.due(self.plan, after):
             after = reevaluation.evaluate(self.plan, self.repeats, after, stop)
             corrected = reevaluation.figures(self.repeats, after)
+            # Reevaluations count, so they may use up the budget.
+            after = replace(after, ended=after.ended or _ended(self.plan, after))
         row = np.array([*_figures(after), clipped, *corrected])
         after = replace(after, curves=np.concatenate([after.curves, row[None]]))
         after = fronts.measured(after)
@@ -116,6 +118,9 @@ class Evolution:
             evaluations=state.evaluations + simulated,
             infeasible=state.infeasible + int(np.count_nonzero(evaluation.status)),
             container=container,
+            epochs=epochs.recorded(
+                state.epochs, container, state.generation + 1, state.elites, elites
+            ),
             elites=elites,
             counters=offspring.counters,
             emitters=emitters,
@@ -241,6 +246,7 @@ def _summary(plan: Plan, state: State, seconds: float, status: np.ndarray) -> di
     counts = np.bincount(status, minlength=len(search.STATUSES)).tolist()
     named = list(zip(search.STATUSES, counts, strict=True))[1:]
     found |= {f"infeasible: {reason}": count for reason, count in named if count}
+    found |= epochs.summary(state.epochs, state.generation)
     found |= _species(state) | fronts.summary(state)
     if state.screened is not None:
         found |= screening.summary(state.screened)

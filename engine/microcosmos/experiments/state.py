@@ -13,6 +13,7 @@ from jaxtyping import Array, Float, Int, PRNGKeyArray, PyTree, UInt8
 from .. import neat, search
 from ..archive.poses import PoseStream
 from ..genomes import Encoding, Genotype
+from .epochs import Epochs, no_epochs
 from .first import FirstEvaluations, no_first
 
 CURVES = (
@@ -235,6 +236,8 @@ class State(eqx.Module):
     """None unless means decide."""
     fronts: Float[np.ndarray, "generation figure"] | None = None
     """Columns of `search.FrontFigures`; None without Pareto fronts."""
+    epochs: Epochs | None = None
+    """None unless axes are learned."""
 
 
 def prolonged(state: State) -> State:
@@ -293,4 +296,5 @@ def start(plan: Plan) -> State:
         screened=plan.screening and start_screening(plan.screening),
         first=no_first(plan.cell_count, len(plan.measures)) if plan.decides else None,
         fronts=no_figures if isinstance(plan.container, search.Fronts) else None,
+        epochs=no_epochs(plan.container),
     )

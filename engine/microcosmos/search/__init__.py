@@ -9,6 +9,7 @@ from .containers import (
     DominatedNovelty,
     FrontFigures,
     Fronts,
+    LearnedAxes,
     Survival,
     best_of_cells,
     cells_of,
@@ -19,6 +20,7 @@ from .containers import (
     hypervolume,
     insert,
     insert_program,
+    learned_axes,
     refreshed,
     with_cells,
 )

@@ -6,7 +6,7 @@ from the archive it is MAP-Elites (Mouret and Clune, arXiv:1504.04909, 2015).
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import partial
 from hashlib import sha256
 from typing import Any, NamedTuple
@@ -20,9 +20,17 @@ from jaxtyping import Array, Int, PyTree
 from ..archive import file
 from ..neat import Counters
 from .cells import Voronoi
-from .containers import Container, Survival, best_of_cells, cells_of, insert, measured_axes
-from .emitters import Children, Emitter, Learner, begin, credit, emit, outcome, tell
-from .emitters.tensorneat import TensorNeat
+from .checks import checked, described, refuse_unfit
+from .containers import (
+    Container,
+    Survival,
+    best_of_cells,
+    cells_of,
+    insert,
+    measured_axes,
+    refreshed,
+)
+from .emitters import Children, Emitter, begin, credit, emit, outcome, tell
 from .insertion import Elites, Inserted, candidates, no_elites, sound
 from .leaves import filled, leaves
 from .spaces import Numbers, Space
@@ -92,8 +100,8 @@ class Search:
         )
         self._children: Children | None = None
         self._emit = jax.jit(partial(_emitted, self.emitters, key=key))
-        self._tell = jax.jit(partial(_told, self.emitters, container), donate_argnums=0)
-        self._runs: dict[Function, Callable] = {}
+        self._tell = jax.jit(partial(_told, self.emitters), donate_argnums=1)
+        self._unlearned, self._runs = container, dict[Function, tuple[Callable, ...]]()
 
     def ask(self) -> Any:
         """Return the genotypes to evaluate, a row for each slot.
@@ -120,12 +128,13 @@ class Search:
         if self._children is None:
             raise ValueError("`tell` must follow `ask`, got no genotypes asked for")
         rows = self.batch
-        fitness = _checked("fitness", fitness, np.float32, (rows,))
-        measures = _checked("measures", measures, np.float32, (rows, self.measures))
+        fitness = checked("fitness", fitness, np.float32, (rows,))
+        measures = checked("measures", measures, np.float32, (rows, self.measures))
         feasible = np.ones(rows, bool) if feasible is None else feasible
-        feasible = _checked("feasible", feasible, bool, (rows,))
+        feasible = checked("feasible", feasible, bool, (rows,))
         given = self._children, fitness, measures, feasible
-        self._progress, inserted = self._tell(self._after, *given)
+        self._refresh(*given)
+        self._progress, inserted = self._tell(self.container, self._after, *given)
         self._children = None
         return jax.device_get(inserted)
 
@@ -134,24 +143,48 @@ class Search:
 
         The function takes one decoded genotype and returns its fitness and its measures.
         It is faster than `ask` and `tell`, but rounds differently. How many generations a call
-        takes does not matter. Each new function is compiled, so keep it between calls.
+        takes does not matter. Each new function is compiled, so keep it between calls. A
+        generation in which the container changes is by `ask` and `tell`.
         """
         if function not in self._runs:
-            self._runs[function] = jax.jit(partial(self._generations, function))
-        self._progress = self._runs[function](self._progress, generations)
-        self._children = None
+            loop = partial(self._generations, function)
+            self._runs[function] = jax.jit(loop), jax.jit(partial(self._evaluated, function))
+        advanced, evaluated = self._runs[function]
+        self._children, end = None, self.generation + generations
+        while (begun := self.generation) < end:
+            numbers = range(begun, end)
+            steady = next((n for n in numbers if self._changes(n + 1)), end) - begun
+            if steady:
+                self._progress = advanced(self.container, self._progress, steady)
+                continue
+            self.ask()
+            assert self._children is not None
+            self.tell(*evaluated(self._children))
 
-    def _generations(self, function: Function, progress: Progress, count: Any) -> Progress:
+    def _generations(
+        self, function: Function, container: Container, progress: Progress, count: Any
+    ) -> Progress:
         def generation(_: Any, before: Progress) -> Progress:
             children, after = self._emit(before)
-            decoded = self.space.decode(children.genotypes)
-            fitness, measures = jax.vmap(function)(decoded)
-            fitness, measures = fitness.astype(jnp.float32), measures.astype(jnp.float32)
-            feasible = jnp.ones(self.batch, bool)
-            given = children, fitness, measures, feasible
-            return _told(self.emitters, self.container, after, *given)[0]
+            given = *self._evaluated(function, children), jnp.ones(self.batch, bool)
+            return _told(self.emitters, container, after, children, *given)[0]
 
         return jax.lax.fori_loop(0, count, generation, progress)
+
+    def _evaluated(self, function: Function, children: Children) -> tuple[Array, Array]:
+        fitness, measures = jax.vmap(function)(self.space.decode(children.genotypes))
+        return fitness.astype(jnp.float32), measures.astype(jnp.float32)
+
+    def _changes(self, generation: int) -> bool:
+        """Return whether the container may change in a generation."""
+        return isinstance(self.container, Survival) and self.container.changes(generation)
+
+    def _refresh(self, children: Children, *given: np.ndarray) -> None:
+        """Let the container learn before the insertion of a generation, if it is time."""
+        number = self.generation + 1
+        if self._changes(number):
+            rows = candidates(number, children.genotypes, *map(jnp.asarray, given))
+            self.container = refreshed(self.container, self._after.elites, rows, number)
 
     @property
     def generation(self) -> int:
@@ -170,8 +203,7 @@ class Search:
     @property
     def coverage(self) -> float:
         """Share of the cells that have an elite."""
-        best = best_of_cells(self._progress.elites, self.container)
-        return float(np.mean(np.isfinite(best)))
+        return float(np.mean(np.isfinite(best_of_cells(self._progress.elites, self.container))))
 
     @property
     def qd_score(self) -> float:
@@ -201,7 +233,9 @@ class Search:
     def save(self) -> bytes:
         """Return a file from which `restore` continues, without an unanswered `ask`."""
         attributes = {"format": FORMAT, "search": json.dumps(self._description())}
-        return file.dump(leaves(self._progress), attributes)
+        learned = self.container.arrays() if isinstance(self.container, Survival) else {}
+        held = {"container": learned} if learned else {}
+        return file.dump(leaves(self._progress) | held, attributes)
 
     def restore(self, data: bytes) -> None:
         """Continue from the file of a search with the same arguments, bit for bit.
@@ -214,32 +248,23 @@ class Search:
             if there.get(name) != here:
                 raise ValueError(f"`{name}` must be the file's, {there.get(name)}, got {here}")
         self._progress, self._children = filled(self._progress, tree), None
+        if isinstance(self._unlearned, Survival) and "container" in tree:
+            self.container = self._unlearned.with_arrays(tree["container"])
 
     def _description(self) -> dict[str, Any]:
         elites, cells = self._progress.elites, cells_of(self.container)
+        survival = isinstance(self._unlearned, Survival)
         around = np.asarray(cells.centroids).tobytes() if isinstance(cells, Voronoi) else b""
         return {
             "seed": self.seed,
             "measures": self.measures,
-            "container": _described(self.container),
+            "container": described(self._unlearned) if survival else [type(cells).__name__],
             "axes": [vars(axis) for axis in measured_axes(self.container)],
             "cells": [cells.count, sha256(around).hexdigest()],
-            "space": [type(self.space).__name__, *_numbers(self.space)],
+            "space": described(self.space),
             "genes": [list(x.shape[1:]) for x in jax.tree.leaves(elites.genotypes)],
-            "emitters": [[type(one).__name__, *_numbers(one)] for one in self.emitters],
+            "emitters": [described(one) for one in self.emitters],
         }
-
-
-def refuse_unfit(emitters: tuple[Emitter, ...]) -> None:
-    """Raise `ValueError` without emitters, or for those that `Search` cannot run."""
-    if not emitters:
-        raise ValueError("`emitters` must hold at least one, got none")
-    for emitter in emitters:
-        if isinstance(emitter, Learner | TensorNeat):
-            raise ValueError(
-                "`emitters` must do without derivatives and loops of other libraries, got "
-                f"{type(emitter).__name__}"
-            )
 
 
 def _emitted(
@@ -273,23 +298,3 @@ def _told(
         emitters=tell(emitters, before.emitters, outcome(rows, inserted)),
     )
     return after, inserted
-
-
-def _checked(name: str, given: Numbers, kind: Any, shape: tuple[int, ...]) -> np.ndarray:
-    found = np.asarray(given)
-    if found.shape != shape:
-        raise ValueError(f"`{name}` must have shape {shape}, got {found.shape}")
-    with np.errstate(over="ignore"):  # Beyond single precision a number is not finite.
-        return found.astype(kind)
-
-
-def _described(container: Container) -> list[Any]:
-    numbers = _numbers(container) if isinstance(container, Survival) else []
-    return [type(container).__name__, *numbers]
-
-
-def _numbers(settings: Any) -> list[Any]:
-    """Return the fields of a dataclass that are words, numbers or arrays of numbers."""
-    found = [getattr(settings, field.name) for field in fields(settings)]
-    plain = (int, float, str, list, tuple, np.ndarray)
-    return [np.asarray(one).tolist() for one in found if isinstance(one, plain)]

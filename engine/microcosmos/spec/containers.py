@@ -6,6 +6,7 @@ from pydantic import Field, model_validator
 
 from ..naming import MeasureName
 from .base import Part, field, sourced
+from .plugins import OR_PLUGIN
 from .sources import AURORA, DOMINATED_NOVELTY, MOME
 
 
@@ -46,8 +47,8 @@ class DominatedNovelty(Part):
 class LearnedAxes(Part):
     """Cells along axes that are learned: principal components of the elites' measures.
 
-    The axes are learned after the first generation, after generation `first`, and whenever the
-    number of generations has doubled; all elites then compete for the new cells. The bins of
+    The axes are learned in the first generation, in generation `first`, and whenever the number
+    of generations has doubled; elites and offspring then compete for the new cells. The bins of
     the descriptors only serve the figures.
     """
 
@@ -59,8 +60,8 @@ class LearnedAxes(Part):
     bins: int = field(16, ge=2, le=256)
     """Bins along each axis."""
     first: int = field(10, ge=2, le=1_000_000, unit="generations")
-    """Generation after which the axes are learned for the second time."""
-    measures: tuple[MeasureName, ...] = ()
+    """Generation in which the axes are learned for the second time."""
+    measures: tuple[Annotated[MeasureName, *OR_PLUGIN], ...] = ()
     """Measures of which the axes are made; empty: all that are recorded."""
 
     @model_validator(mode="after")

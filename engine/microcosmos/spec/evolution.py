@@ -12,6 +12,7 @@ from .control import Control, Genome
 from .coupling import Coupling, refuse_without_feasible
 from .emitters import Emitter, PopulationEmitter, gradients, refuse_unfit_emitters
 from .encodings import Controller, refuse_cramped
+from .measures import MEASURES
 from .placement import refuse_blocked, refuse_crowded
 from .scene import Scene, refuse_misfit, refuse_senseless, refuse_swept
 from .search import MEASURED, STATELESS, Archive, Generations, Task
@@ -109,6 +110,14 @@ class Evolution(Part, Generic[Name, SearchSpec]):
         container = self.archive.container
         if container is None:
             return self
+        recorded = {*MEASURES, *self.archive.plugins}
+        recorded |= {self.task.fitness} if self.task.plugin else set()
+        for name in getattr(container, "measures", ()):
+            if name not in recorded:
+                raise ValueError(
+                    "`archive.container.measures` must be recorded, those of plug-ins as a "
+                    f"descriptor or the fitness, got {name!r}"
+                )
         for name in ("reevaluation", "screening"):
             if getattr(self.search, name, None):
                 raise ValueError(

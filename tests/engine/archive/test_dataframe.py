@@ -24,8 +24,12 @@ pytestmark = [
 
 @pytest.fixture(params=["grid", "cvt"])
 def archive(request):
+    return written(request.param)
+
+
+def written(kind, container=None):
     """A file with an elite in cells 1, 6 and 11, the second on the border of its bin."""
-    if request.param == "grid":
+    if kind == "grid":
         cells = np.stack([[0, 2, 3], [1, 0, 2]], 1)
         places = (cells + np.array([[0.5, 0.5], [0.0, 0.0], [0.3, 0.9]])) / [4, 3]
     else:
@@ -46,9 +50,10 @@ def archive(request):
             "squares": np.array([0.5, 0.0, 0.0], np.float32),
         },
     }
-    if request.param == "cvt":
+    if kind == "cvt":
         tree["centroids"] = AROUND
-    spec = json.dumps({"archive": {"descriptors": AXES, "centroids": None}})
+    described = {"descriptors": AXES, "centroids": None, "container": container}
+    spec = json.dumps({"archive": described})
     attributes = {"format": file.FORMAT, "spec": spec, "measures": '["a", "b"]'}
     return file.dump({"archive": tree}, attributes)
 
@@ -106,3 +111,18 @@ def test_their_heatmaps_draw_our_archive(archive, tmp_path):
     plt.close(figure)
     assert axes.get_xlim() == pytest.approx((0, 1) if around else (-4, 2))
     assert axes.get_ylim() == pytest.approx((0, 1))
+
+
+@pytest.mark.parametrize("kind", ["grid", "cvt"])
+def test_an_archive_with_a_container_becomes_a_grid_by_its_measures(kind):
+    """Places 1, 6 and 11 are no cells; pyribs finds the cells."""
+    data = written(kind, {"kind": "fronts"})
+    ours, filled = microcosmos.to_pandas(data), microcosmos.to_ribs(data)
+    assert type(filled).__name__ == "GridArchive"
+    assert ours["index"].tolist() == [1, 6, 11]
+    np.testing.assert_allclose(10 ** ours["measures_0"], ours["a"], rtol=1e-5)
+    theirs = filled.data(return_type="pandas").sort_values("creature").reset_index(drop=True)
+    bins = export.bins([ours["a"].to_numpy(), ours["b"].to_numpy()], AXES)
+    np.testing.assert_array_equal(theirs["index"], bins)
+    assert theirs["creature"].tolist() == ours["creature"].tolist()
+    assert theirs["objective"].tolist() == ours["objective"].tolist()

@@ -80,6 +80,9 @@ SPECS["fronts"] = SMALL | {
         "container": {"kind": "fronts", "size": 3},
     }
 }
+SPECS["learned"] = SMALL | {
+    "archive": {"container": {"kind": "learned", "bins": 5, "first": 2}}
+}
 SCREENED = {"batch": 64, "screening": {"rounds": 2, "candidates": 4}}
 SPECS["screened-bandit"] = SPECS["bandit"] | {"search": SPECS["bandit"]["search"] | SCREENED}
 SPECS["zoo"] = SMALL | {

@@ -17,7 +17,7 @@ LONG = ("lamarckian", "cma-me", "tensorneat", "screened-bandit")
 LEARNERS = ("cma-mae", "cma-mega", "lamarckian", "cma-me", "tensorneat")
 COMPUTED = (
     *("quality-diversity", "neuroevolution", "deciding", "folding", "refinement", "gaits"),
-    *("zoo", "screened"),
+    *("zoo", "screened", "learned"),
 )
 DIVIDED = ("bandit", "screened-bandit")
 CONTAINERS = ("dominated-novelty", "fronts")
@@ -79,6 +79,7 @@ def test_a_new_build_of_the_same_spec_gives_the_same_bytes(name, course_of, fini
         ("quality-diversity", 2),
         ("neuroevolution", 3),
         ("deciding", 2),
+        ("learned", 2),
         pytest.param("neuroevolution", 4, marks=pytest.mark.long),
     ],
 )

@@ -11,9 +11,19 @@ from elite_rows import AXES, awkward, candidates, same
 from microcosmos import genomes, search
 
 GRID = search.Grid(AXES)
+
+
+def vectors(random, count):
+    """Genotypes of which few are equal."""
+    return genomes.Vector(jnp.asarray(random.integers(-4, 5, (count, 3)) / 4, jnp.float32))
+
+
+LEARNED = search.learned_axes(GRID, (0, 1), bins=5, first=2, floors=(1e-6, 0.0))
 CONTAINERS = {
     "dominated-novelty": search.DominatedNovelty(GRID, 20, 3),
     "fronts": search.Fronts(GRID, search.Axis(1, 0.0, 1.0, 1), 3),
+    "unlearned": LEARNED,
+    "learned": LEARNED.refreshed(*[candidates(vectors, 40, seed) for seed in (50, 51)], 1),
 }
 
 insert = jax.jit(search.insert)
@@ -22,11 +32,6 @@ insert = jax.jit(search.insert)
 @pytest.fixture(params=CONTAINERS)
 def container(request):
     return CONTAINERS[request.param]
-
-
-def vectors(random, count):
-    """Genotypes of which few are equal."""
-    return genomes.Vector(jnp.asarray(random.integers(-4, 5, (count, 3)) / 4, jnp.float32))
 
 
 def batch(seed, kind=candidates, count=40):

@@ -21,6 +21,7 @@ import spec_cases
 import spec_draws
 from genotypes import any_genotype
 from kernel_scenes import OBSERVED
+from reference_runs import exact, samples
 
 from microcosmos import device, plugins, search, spec, world
 from microcosmos.build import build_stroke, build_task
@@ -60,10 +61,6 @@ that the kernel covers, and 1, 7 and 37 in 95 of 100.
 GROWTH = 8
 """The error of the kernel beside that of JAX where the difference is larger. It was up to 7
 times as large, in one of 16 specs: both are samples of what rounding does."""
-SAMPLES = 3
-"""Evaluations by JAX from which its error is taken: of one, the error of a quantity of few
-numbers may be near 0 by chance, as that of the packets' four numbers was on one processor."""
-
 END = ("flow", "energy", "collected")
 """Quantities after all steps; the others are of each step."""
 
@@ -196,28 +193,6 @@ def test_the_kernel_finds_what_jax_finds(seed, simulated):
     )
     # A force at the very limit may be held or not.
     assert np.abs(found["held"] - expected["held"]).mean() <= 0.03
-
-
-def exact(creature, simulated):
-    """Return what JAX finds with the same numbers in double precision."""
-    with jax.enable_x64(True):
-        double = jax.tree.map(
-            lambda x: jnp.asarray(x, jnp.float64) if eqx.is_inexact_array(x) else x, creature
-        )
-        return simulated(double, "jax")
-
-
-def samples(creature, simulated):
-    """Return what JAX finds with genes, or a gait's rest shapes, that differ by rounding."""
-    rng = np.random.default_rng(0)
-
-    def nudged(x):
-        off = rng.choice([-1, 0, 1], x.shape) * np.finfo(np.float32).eps
-        return jnp.asarray(np.asarray(x) * (1 + off), x.dtype)
-
-    inexact, rest = eqx.partition(creature.actuator, eqx.is_inexact_array)
-    genes = [eqx.combine(jax.tree.map(nudged, inexact), rest) for _ in range(SAMPLES - 1)]
-    return [simulated(creature._replace(actuator=one), "jax") for one in genes]
 
 
 COEFFICIENTS = {

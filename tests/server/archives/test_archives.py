@@ -227,6 +227,7 @@ THREE = [{"name": name} for name in ("nodes", "mach", "power")]
         ({"descriptors": [{"name": "turning", "bins": 7}]}, "grid", 7),
         ({"descriptors": THREE}, "grid", 8000),
         ({"centroids": 500}, "cvt", 500),
+        ({"container": {"kind": "fronts", "size": 4}}, "pool", 1600),
     ],
 )
 def test_an_archive_describes_its_cells_and_axes(

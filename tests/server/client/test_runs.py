@@ -2,6 +2,7 @@
 
 import json
 from contextlib import nullcontext
+from uuid import UUID
 
 import numpy as np
 import pytest
@@ -118,12 +119,30 @@ def test_an_archive_is_columns_and_creatures(run, record):
     assert archive.best().fitness == 3.0
     assert archive.elite(3) == archive.elite((0, 3))
     assert archive._repr_html_().count("<rect") == 2
-    assert archive.coverage == 2 / archive.cells
+    assert archive.coverage == 2 / 256  # As recorded.
     assert run.archive(generation=1).fitness.tolist() == [2.0, 1.0]
     with pytest.raises(KeyError, match="cell 4 is empty"):
         archive.elite(4)
     with pytest.raises(ValueError, match="bin along each axis"):
         archive.elite((0, 999))
+
+
+def test_an_archive_of_places_is_drawn_where_its_elites_lie(client, services, spec, report):
+    spec["archive"]["container"] = {"kind": "dominated-novelty", "size": 64}
+    run = client.submit(spec)
+    attempt = claim(services, UUID(run.id), "worker")
+    attempt.record(report(1, {5: 1.0, 3: 2.0, 8: 4.0}), 1.0)
+    attempt.record(report(2, {9: 3.0}, (0.9, 0.5), emptied=(8,)), 1.0)
+    archive = run.archive()
+    assert (archive.kind, archive.cells, archive.coverage) == ("pool", 64, 2 / 256)
+    assert archive.cell.tolist() == [3, 5, 9]
+    assert archive._repr_html_().count("<rect") == 2  # Two elites share a bin.
+    assert "3 of 64 places filled" in repr(archive)
+    assert archive.elite(9).fitness == 3.0
+    with pytest.raises(ValueError, match="must be from 0 to 63; got"):
+        archive.elite((0, 3))
+    with pytest.raises(KeyError, match="cell 8 is empty"):
+        archive.elite(8)
 
 
 def test_a_table_comes_as_rows(client, services, sweep_id, table):

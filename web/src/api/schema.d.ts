@@ -650,7 +650,8 @@ export interface paths {
          * @description Return the elite of each cell, now or as of a generation.
          *
          *     `measures` names recorded measures, separated by commas, to return with the elites. With
-         *     `after`, a generation, only the elites that entered later are returned.
+         *     `after`, a generation, only the elites that entered later are returned, and only the cells
+         *     that were emptied later.
          */
         get: operations["read_archive_api_v1_runs__run_id__archive_get"];
         put?: never;
@@ -730,7 +731,9 @@ export interface paths {
         };
         /**
          * Read History
-         * @description Return every elite that ever entered, from which each generation's archive follows.
+         * @description Return every elite that ever entered, and every cell that lost one without a new one.
+         *
+         *     Each generation's archive follows from them.
          */
         get: operations["read_history_api_v1_runs__run_id__archive_history_get"];
         put?: never;
@@ -1441,7 +1444,9 @@ export interface components {
          * @description Columns, one entry per filled cell.
          *
          *     The cells of a grid are numbered in C order over the bins of its axes. Those of a CVT are in
-         *     the order of their centroids, and its axes have no bins.
+         *     the order of their centroids, and its axes have no bins. A pool, the archive of a run with a
+         *     container, has numbered places instead of cells: the number does not tell where an elite
+         *     lies. `emptied` are cells that are empty now.
          */
         ArchiveRead: {
             /** Axes */
@@ -1450,12 +1455,18 @@ export interface components {
             cell: number[];
             /** Cells */
             cells: number;
+            /** Coverage */
+            coverage: number;
             /** Creature */
             creature: string[];
             /** Descriptors */
             descriptors: number[][];
             /** Elite Generation */
             elite_generation: number[];
+            /** Emptied */
+            emptied: number[];
+            /** Emptied Generation */
+            emptied_generation: number[];
             /** Fitness */
             fitness: number[];
             /** Generation */
@@ -1464,7 +1475,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            kind: "grid" | "cvt";
+            kind: "grid" | "cvt" | "pool";
             /** Measures */
             measures: {
                 [key: string]: (number | null)[];
@@ -1809,6 +1820,10 @@ export interface components {
             descriptors: number[][];
             /** Elite Generation */
             elite_generation: number[];
+            /** Emptied */
+            emptied: number[];
+            /** Emptied Generation */
+            emptied_generation: number[];
             /** Fitness */
             fitness: number[];
             /** Generation */

@@ -189,7 +189,12 @@ export type GenerationEvent = { run: string; summary: Values | null } & {
   [name in keyof GenerationColumns]: GenerationColumns[name][number];
 };
 
-export type ElitesEvent = ArchiveColumns & { run: string; generation: number };
+export type ElitesEvent = ArchiveColumns & {
+  run: string;
+  generation: number;
+  /** Cells that lost their elite and have no new one. */
+  emptied: number[];
+};
 
 export interface ResultsEvent {
   run: string;

@@ -5,7 +5,9 @@ import { pageUrl, sharedSlug } from "../api/address";
 import type { Archive, Run } from "../api/types";
 import { type Elite, type Elites, fittest } from "../store/elites";
 import { navigate, setQuery } from "../store/router";
+import { containerOf, measureOf, objectiveOf } from "./axes";
 import { ArchiveMap } from "./ArchiveMap";
+import { BinElites } from "./BinElites";
 import { MapOptions, Slices } from "./MapOptions";
 import { TimeSlider } from "./TimeSlider";
 import { count } from "../ui/format";
@@ -45,7 +47,7 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
   return (
     <div data-tour={tourPart}>
       <Head count={view.elites.size} gallery={gallery} onTour={tour.begin} />
-      <MapOptions archive={archive} view={view} />
+      <MapOptions run={run} archive={archive} view={view} />
       <Slices slices={view.slices} />
       {gallery ? (
         <Gallery key={names} {...props} {...{ at, query }} run={run.id} />
@@ -58,6 +60,7 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
           inset={focused && <ElitePreview sha={focused.creature} />}
         />
       )}
+      <BinElites {...props} objective={measureOf(objectiveOf(run, archive), archive, view.measures)} />
       {view.error && <p class="banner wrong">{view.error}</p>}
       <TimeSlider last={run.generation} at={at} ready={view.ready} onMove={setAt} />
       <SelectionBar {...{ run, at }} elites={view.elites} {...selection} />
@@ -93,6 +96,7 @@ function useViewProps(
   return {
     axes: view.axes,
     colouring: view.colouring,
+    lists: containerOf(run) !== null,
     marked: cell === null ? null : Number(cell),
     onMark,
     ...selection,

@@ -39,9 +39,9 @@ export function ArchiveMap(props: Props) {
 
 /** The canvas, with the outline, the selection box and the inset above it. */
 function MapPlot({ focus, ...props }: Props & { focus: ReturnType<typeof useBinFocus> }) {
-  const { projection, elites, colouring, onMark, onOpen, onSelect } = props;
+  const { projection, elites, colouring, onSelect } = props;
   const { layout, tiles } = projection;
-  const { hovered, setHovered, markedBin, focused } = focus;
+  const { hovered, setHovered, focused } = focus;
   const plot = useRef<HTMLDivElement>(null);
   const drag = useBoxSelect(onSelect !== null, (box, event) => {
     const inside = cellsIn(binsWithin(box, layout, tiles), projection);
@@ -56,10 +56,7 @@ function MapPlot({ focus, ...props }: Props & { focus: ReturnType<typeof useBinF
     const bin = tileUnder(event, plot.current!, projection);
     if (bin === null || drag.wasDrag()) return;
     if (onSelect && isAdditive(event)) return onSelect(toggle(props.selected, cellsIn([bin], projection)));
-    const { cell } = tiles.get(bin)!;
-    // Fingers cannot hover: the first tap marks, the second opens.
-    if ((event as PointerEvent).pointerType === "touch" && bin !== markedBin) onMark(cell);
-    else onOpen(cell);
+    focus.click(bin, (event as PointerEvent).pointerType === "touch");
   };
   return (
     <div

@@ -21,7 +21,9 @@ export function EliteMeasures({ tile, hint, ...props }: Props) {
   );
 }
 
-function Figures({ elite, cell, hidden, axes, colouring, onOpen, actions }: ArchiveViewProps & Tile) {
+function Figures({ elite, cell, hidden, ...props }: ArchiveViewProps & Tile) {
+  const { axes, colouring, projection, onOpen, actions } = props;
+  const isBest = projection.tiles.get(projection.bins.get(cell)!)?.cell === cell;
   const measures = new Map([...axes, colouring.measure].map((measure) => [measure.name, measure]));
   for (const name of [FITNESS, AGE]) measures.delete(name);
   const figures = [
@@ -38,7 +40,7 @@ function Figures({ elite, cell, hidden, axes, colouring, onOpen, actions }: Arch
       ))}
       {hidden > 0 && (
         <span>
-          {text.bestOf} <b>{count(hidden + 1)}</b> {text.here}
+          {isBest ? text.bestOf : text.oneOf} <b>{count(hidden + 1)}</b> {text.here}
         </span>
       )}
       <button class="link" onClick={() => onOpen(cell)}>

@@ -83,7 +83,7 @@ interface ViewportProps extends ArchiveViewProps {
 
 /** The scrolling window, with pointer and keys. */
 function Viewport({ port, focus, total, onScroll, children, ...props }: ViewportProps) {
-  const { projection, selected, onSelect, onOpen } = props;
+  const { projection, selected, onSelect } = props;
   const element = useRef<HTMLDivElement>(null);
   const binUnder = (event: MouseEvent) => tileUnder(event, element.current!, projection);
   return (
@@ -101,7 +101,7 @@ function Viewport({ port, focus, total, onScroll, children, ...props }: Viewport
         const bin = binUnder(event);
         if (bin === null) return;
         if (onSelect && isAdditive(event)) onSelect(toggle(selected, cellsIn([bin], projection)));
-        else onOpen(projection.tiles.get(bin)!.cell);
+        else focus.click(bin, false);
       }}
       onKeyDown={focus.press}
     >

@@ -1,25 +1,26 @@
 /** Choices of the map: its axes, coloured measure and palette, and ranges of the other descriptors. */
 
-import type { Archive } from "../api/types";
+import type { Archive, Run } from "../api/types";
 import { valueAt } from "../charts/plot/scale";
 import { setQuery } from "../store/router";
 import { PALETTES } from "../ui/colours";
 import { count, number, words } from "../ui/format";
 import { Select } from "../ui/Select";
 import { type ArchiveView, setSlice } from "./archiveView";
-import { type MapAxis, choicesOf, scaleOf } from "./axes";
+import { type MapAxis, choicesOf, containerOf, scaleOf } from "./axes";
 import { coloursOf } from "./colouring";
 import type { Slice } from "./projection";
-import { text } from "./text";
+import { containerText, text } from "./text";
 
 const PALETTE_CHOICES = PALETTES.map((name) => [name, words(name)] as const);
 
 interface Props {
+  run: Run;
   archive: Archive;
   view: ArchiveView;
 }
 
-export function MapOptions({ archive, view: { axes, colour, palette } }: Props) {
+export function MapOptions({ run, archive, view: { axes, colour, palette } }: Props) {
   const choices = choicesOf(archive);
   const [x, y] = [axes[0].name, axes[1].name];
   const choose = (axis: "x" | "y") => (name: string) => {
@@ -32,7 +33,7 @@ export function MapOptions({ archive, view: { axes, colour, palette } }: Props) 
       <p class="row">
         <Select title={text.across} {...{ choices, value: x }} onChange={choose("x")} />
         <Select title={text.up} {...{ choices, value: y }} onChange={choose("y")} />
-        <span class="quiet small">{kindOf(archive)}</span>
+        <span class="quiet small">{kindOf(run, archive)}</span>
       </p>
       <p class="row">
         <Select
@@ -53,7 +54,8 @@ export function MapOptions({ archive, view: { axes, colour, palette } }: Props) 
 }
 
 /** A description of the cells, unless the map shows them. */
-function kindOf({ kind, cells, axes }: Archive): string {
+function kindOf(run: Run, { kind, cells, axes }: Archive): string {
+  if (kind === "pool") return text.places(count(cells), containerText(containerOf(run)?.kind ?? ""));
   if (kind === "cvt") return text.voronoi(count(cells), axes.length);
   return axes.length === 2 ? "" : text.grid(count(cells), axes.length);
 }

@@ -1,6 +1,8 @@
 import { describe, expect, it } from "vitest";
-import { axisOf, choicesOf, missingOf, namesOf } from "./axes";
-import { binOfValue, project } from "./projection";
+import type { Run } from "../api/types";
+import { axisOf, choicesOf, containerOf, missingOf, namesOf, objectiveOf } from "./axes";
+import { binOfValue, elitesIn, project, tileWith } from "./projection";
+import { containerText } from "./text";
 import { type Position, voronoiLayout } from "./layout";
 import { Delaunay } from "d3-delaunay";
 import { AXES, archiveOf, elite, elitesOf, measuresOf, NONE, over } from "./archive.fixture";
@@ -105,5 +107,47 @@ describe("an archive on a map", () => {
     [1e9, 3],
   ])("puts %s into bin %s of a log axis from 1 to 100", (value, bin) => {
     expect(binOfValue(AXES[1], value)).toBe(bin);
+  });
+});
+
+describe("a pool", () => {
+  /** Places whose numbers say nothing: three elites in one bin, one in another. */
+  const elites = elitesOf({
+    7: elite(1, 0.2, 2),
+    0: elite(3, 0.3, 2),
+    900: elite(2, 0.1, 2),
+    5: elite(4, 0.9, 50),
+  });
+  const pool = over(archiveOf(2, "pool"), elites, ["a", "b"]);
+
+  it("shows elites where their descriptors are, in the bins of the spec", () => {
+    expect(pool.layout.count).toBe(8);
+    expect(Object.fromEntries(pool.bins)).toEqual({ 7: 0, 0: 0, 900: 0, 5: 7 });
+    expect(pool.tiles.get(0)).toMatchObject({ cell: 0, hidden: 2 });
+    expect(pool.tiles.get(7)).toMatchObject({ cell: 5, hidden: 0 });
+  });
+
+  it("lists the elites of a bin, the best first", () => {
+    expect(elitesIn(pool, 0).map(([cell, { fitness }]) => [cell, fitness])).toEqual([
+      [0, 3],
+      [900, 2],
+      [7, 1],
+    ]);
+  });
+
+  it("shows the marked elite of a bin instead of its best", () => {
+    expect(tileWith(pool, 0, 900)).toMatchObject({ cell: 900, elite: { fitness: 2 }, hidden: 2 });
+    expect(tileWith(pool, 0, 5)).toMatchObject({ cell: 0 });
+    expect(tileWith(pool, 0, null)).toMatchObject({ cell: 0 });
+    expect(tileWith(pool, 3, 900)).toBeUndefined();
+  });
+
+  it("is named by the container of the spec", () => {
+    const run = { spec: { archive: { container: { kind: "fronts", measure: "nodes" } } } } as unknown as Run;
+    expect(objectiveOf(run, archiveOf(2, "pool"))).toBe("nodes");
+    expect(containerText(containerOf(run)!.kind)).toBe("Pareto fronts");
+    expect(containerOf({ spec: { archive: {} } } as unknown as Run)).toBeNull();
+    const cells = { spec: {} } as unknown as Run;
+    expect([containerOf(cells), objectiveOf(cells, archiveOf(2))]).toEqual([null, "fitness"]);
   });
 });

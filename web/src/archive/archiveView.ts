@@ -5,7 +5,7 @@ import type { Archive, Run } from "../api/types";
 import { type Elites, elitesByGeneration } from "../store/elites";
 import { useCentroids, useMeasures, useHistory } from "../store/fetch";
 import { setQuery } from "../store/router";
-import { type MapAxis, FITNESS, axisOf, missingOf, namesOf } from "./axes";
+import { type MapAxis, FITNESS, axisOf, missingOf, namesOf, objectiveOf } from "./axes";
 import { AGE, colourMeasure, colouringOf, coloursOf } from "./colouring";
 import { type Layout, voronoiLayout } from "./layout";
 import { type Slice, project } from "./projection";
@@ -24,7 +24,8 @@ export function useArchiveView(
   const [x, y] = namesOf(archive, query.get("x"), query.get("y"));
   const colour = coloursOf(archive).find(([name]) => name === query.get("colour"))?.[0] ?? FITNESS;
   const palette = PALETTES.find((name) => name === query.get("palette")) ?? PALETTES[0]!;
-  const names = missingOf(archive, [x, y, colour]).filter((name) => name !== AGE);
+  const shown = [x, y, colour, objectiveOf(run, archive)];
+  const names = missingOf(archive, shown).filter((name) => name !== AGE);
   const liveMeasures = useMeasures(run.id, names, live);
   const { value: past, error } = useHistory(run.id, names, at);
   const measures = at !== null && past ? past.measures : liveMeasures;
@@ -50,7 +51,8 @@ export function useArchiveView(
     return colouringOf(measure, palette, newest.tiles);
   }, [colour, palette, archive, measures, generation, map]);
   const ready = at === null || past !== null;
-  return { axes, slices, colour, palette, elites, generation, ready, error, map, grid, colouring };
+  const choices = { axes, slices, colour, palette };
+  return { ...choices, elites, measures, generation, ready, error, map, grid, colouring };
 }
 
 /** The bins in the address, `3-7`; by default all. */

@@ -1,6 +1,6 @@
 /** Axes of a map: descriptors of the archive, recorded measures and fitness. */
 
-import type { Archive, Axis } from "../api/types";
+import type { Archive, Axis, Run } from "../api/types";
 import type { Elite, Elites } from "../store/elites";
 import { words } from "../ui/format";
 import { type Scale, roundStep } from "../charts/plot/scale";
@@ -25,6 +25,22 @@ export function namesOf(archive: Archive, x: string | null, y: string | null): [
   const defaults = [...archive.axes.map(({ name }) => name), FITNESS];
   const first = x && known.has(x) ? x : defaults[0]!;
   return [first, y && known.has(y) ? y : (defaults.slice(0, 2).find((name) => name !== first) ?? FITNESS)];
+}
+
+/** What an archive keeps instead of one elite in each cell; null for cells. */
+export const containerOf = ({ spec }: Run) =>
+  (spec.archive as { container?: Container | null } | undefined)?.container ?? null;
+
+interface Container {
+  kind: string;
+  /** The second objective of a front. */
+  measure?: string;
+}
+
+/** The name of the second objective of fronts; fitness if there is none. */
+export function objectiveOf(run: Run, { recorded }: Archive): string {
+  const measure = containerOf(run)?.measure;
+  return recorded.find(({ name }) => name === measure)?.name ?? FITNESS;
 }
 
 /** The names of measures that elites do not contain, which are fetched. */
@@ -64,9 +80,9 @@ export function axisOf(name: string, archive: Archive, elites: Elites, measures:
   const measure = measureOf(name, archive, measures);
   const index = archive.axes.findIndex((axis) => axis.name === name);
   if (index >= 0) {
-    const grid = archive.kind === "grid";
-    const bins = grid ? archive.axes[index]!.bins : BINS;
-    const binOfCell = grid ? binAlong(archive.axes, index) : null;
+    const bins = archive.kind === "cvt" ? BINS : archive.axes[index]!.bins;
+    // The number of a pool's place does not tell where its elite lies.
+    const binOfCell = archive.kind === "grid" ? binAlong(archive.axes, index) : null;
     return { ...archive.axes[index]!, ...measure, bins, binOfCell };
   }
   const recorded = archive.recorded.find((measure) => measure.name === name);

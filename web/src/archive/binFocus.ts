@@ -6,7 +6,7 @@ import { type Elite, fittest } from "../store/elites";
 import type { MapAxis } from "./axes";
 import type { Colouring } from "./colouring";
 import { type Direction, type Layout, isDirection, nextBin } from "./layout";
-import type { Projection, Tiles } from "./projection";
+import { type Projection, type Tiles, tileWith } from "./projection";
 import { type Selection, selectByKey } from "./selection";
 
 /** Props of both map and gallery. */
@@ -20,11 +20,13 @@ export interface ArchiveViewProps extends Selection {
   onOpen: (cell: number) => void;
   /** Further links and buttons for an elite. */
   actions: (elite: Elite, cell: number) => ComponentChildren;
+  /** True if a click on a bin with several elites marks it, which lists them. */
+  lists: boolean;
 }
 
 /** `onMove` gets the bin after an arrow key. */
 export function useBinFocus(
-  { projection, marked, selected, onSelect, onMark, onOpen }: ArchiveViewProps,
+  { projection, marked, selected, onSelect, onMark, onOpen, lists }: ArchiveViewProps,
   onMove?: (bin: number) => void,
 ) {
   const { layout, tiles, bins } = projection;
@@ -33,9 +35,9 @@ export function useBinFocus(
   const markedBin = marked === null ? null : (bins.get(marked) ?? null);
   /** The bin under the pointer, or the marked one. */
   const focused = hovered !== null && tiles.has(hovered) ? hovered : markedBin;
-  const tile = focused === null ? undefined : tiles.get(focused);
+  const tile = focused === null ? undefined : tileWith(projection, focused, marked);
   const press = (event: KeyboardEvent) => {
-    if (event.key === "Enter" && markedBin !== null) return onOpen(tiles.get(markedBin)!.cell);
+    if (event.key === "Enter" && markedBin !== null) return onOpen(marked!);
     const next = isDirection(event.key) ? binByKey(event.key, markedBin, tiles, layout) : null;
     const changed = onSelect && selectByKey(event, selected, projection, markedBin, next);
     if (changed) onSelect(changed);
@@ -46,7 +48,15 @@ export function useBinFocus(
     onMark(tiles.get(next)!.cell);
     onMove?.(next);
   };
-  return { hovered, setHovered, markedBin, focused, tile, press };
+  /** Open the elite of a bin, or only mark it. */
+  const click = (bin: number, byTouch: boolean) => {
+    const { cell, hidden } = tileWith(projection, bin, marked)!;
+    // Fingers cannot hover: the first tap marks, the second opens.
+    const marks = byTouch || (lists && hidden > 0);
+    if (marks && bin !== markedBin) onMark(cell);
+    else onOpen(cell);
+  };
+  return { hovered, setHovered, markedBin, focused, tile, press, click };
 }
 
 /** The bin after an arrow key; without a start, that of the best elite. */

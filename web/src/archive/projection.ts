@@ -20,6 +20,25 @@ export interface Projection {
   tiles: Tiles;
   /** The bin of each cell on the map. */
   bins: ReadonlyMap<number, number>;
+  elites: Elites;
+}
+
+/** The tile of a bin, with the elite of one of its cells instead of the best. */
+export function tileWith(
+  { tiles, bins, elites }: Projection,
+  bin: number,
+  cell: number | null,
+): Tile | undefined {
+  const tile = tiles.get(bin);
+  if (!tile || cell === null || bins.get(cell) !== bin) return tile;
+  return { ...tile, cell, elite: elites.get(cell)! };
+}
+
+/** The elites in a bin with their cells, the best first. */
+export function elitesIn({ bins, elites }: Projection, bin: number): (readonly [number, Elite])[] {
+  const cells = [...bins].filter(([, other]) => other === bin).map(([cell]) => cell);
+  const found = cells.map((cell) => [cell, elites.get(cell)!] as const);
+  return found.sort(([a, one], [b, other]) => other.fitness - one.fitness || a - b);
 }
 
 /** A range of bins of an axis that the map does not show. */
@@ -51,7 +70,7 @@ export function project(
       tiles.set(bin, { cell, elite, hidden: shown.hidden + 1 });
     } else shown.hidden += 1;
   }
-  return { layout: voronoi ?? gridLayout(shape), tiles, bins };
+  return { layout: voronoi ?? gridLayout(shape), tiles, bins, elites };
 }
 
 function passes({ axis, from, to }: Slice, cell: number, elite: Elite): boolean {

@@ -35,6 +35,7 @@ const projection: Projection = {
   layout,
   tiles: mapOf({ 0: tile(100), 5: tile(101, 1), 15: tile(103) }),
   bins: mapOf({ 100: 0, 101: 5, 102: 5, 103: 15 }),
+  elites: new Map(),
 };
 
 describe("a box on the map", () => {

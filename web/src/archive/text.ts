@@ -3,6 +3,15 @@
 const keyHelp = (select: boolean) =>
   `Enter opens one${select ? ", Space selects it, Shift with arrows selects several, Escape clears the selection." : "."}`;
 
+const CONTAINERS: Record<string, string> = {
+  fronts: "Pareto fronts",
+  "dominated-novelty": "dominated novelty",
+  learned: "learned axes",
+};
+
+/** What a container keeps, by the spec's word. */
+export const containerText = (kind: string) => CONTAINERS[kind] ?? kind;
+
 export const text = {
   forkCreature: "Start a new run from this creature",
   archive: "Archive",
@@ -17,6 +26,8 @@ export const text = {
   voronoi: (cells: string, axes: number) => `${cells} Voronoi cells over ${axes} descriptors`,
   grid: (cells: string, axes: number) =>
     `${cells} cells over ${axes} ${axes === 1 ? "descriptor" : "descriptors"}`,
+  places: (places: string, container: string) => `${places} places, ${container}`,
+  binElites: "Elites at this position",
   legend: (label: string, low: unknown, high: unknown) => `${label} from ${low} to ${high}`,
   colour: "Colour",
   palette: "Palette",
@@ -26,6 +37,7 @@ export const text = {
   generation: "Generation",
   open: "Open",
   bestOf: "best of",
+  oneOf: "one of",
   here: "at this position",
   tileSize: "Tile size",
   galleryLabel: (select: boolean) => `Gallery. Arrow keys move between creatures, ${keyHelp(select)}`,
@@ -55,6 +67,11 @@ export const text = {
   tourBest: "The best of every kind",
   tourBestAbout: (elites: string, cells: string) =>
     `This run does not search for a single champion. It keeps the best swimmer of every kind: ${elites} of ${cells} kinds have one so far.`,
+  tourPlacesAbout: (elites: string, container: string) =>
+    `This run does not search for a single champion. It keeps many different swimmers (${container}): ${elites} so far.`,
+  tourPositions: "Positions are kinds",
+  tourPositionsAbout: (x: string, y: string) =>
+    `${x} increases to the right, ${y} upwards. A position shows its fittest swimmer; click it to list the others.`,
   tourKind: "Cells are kinds",
   tourKindAbout: (x: string, y: string) =>
     `Each cell is one kind of swimmer: ${x} increases to the right, ${y} upwards. A new swimmer takes a cell only if it is fitter than its current elite.`,

@@ -6,7 +6,8 @@ import { fittest } from "../store/elites";
 import { count, number } from "../ui/format";
 import type { Step } from "../ui/Tour";
 import type { ArchiveView } from "./archiveView";
-import { text } from "./text";
+import { containerOf } from "./axes";
+import { containerText, text } from "./text";
 
 const STORAGE_KEY = "microcosmos:tour-taken";
 
@@ -48,10 +49,15 @@ export function stepsOf(run: Run, archive: Archive, { axes, elites, colouring }:
   const colour = colouring.measure.title.toLowerCase();
   const aboutColour = best && text.tourColourAbout(colour, best.generation, number(best.fitness));
   const aboutTime = running ? text.tourLiveAbout : text.tourHistoryAbout(count(run.generation));
-  const cells = text.tourBestAbout(count(elites.size), count(archive.cells));
+  const found = count(elites.size);
+  const pool = archive.kind === "pool";
+  const aboutElites = pool
+    ? text.tourPlacesAbout(found, containerText(containerOf(run)?.kind ?? ""))
+    : text.tourBestAbout(found, count(archive.cells));
+  const aboutKinds = pool ? text.tourPositionsAbout : text.tourKindAbout;
   const steps = [
-    ["map", ".map-plot, .gallery-port", text.tourBest, cells],
-    ["axes", ".axis-x", text.tourKind, text.tourKindAbout(x!, y!)],
+    ["map", ".map-plot, .gallery-port", text.tourBest, aboutElites],
+    ["axes", ".axis-x", pool ? text.tourPositions : text.tourKind, aboutKinds(x!, y!)],
     ["legend", ".legend", text.tourColour, aboutColour ?? text.tourNoColour],
     ["time", ".time-slider", running ? text.tourLive : text.tourHistory, aboutTime],
     ["views", ".archive-head", text.tourOpen, text.tourOpenAbout],

@@ -2,7 +2,7 @@
 
 import type { Archive, ElitesEvent, GenerationEvent, Generations } from "../api/types";
 import { type Curves, NO_CURVES, appendCurves, cutCurves, mergeCurves } from "./curves";
-import { type Elites, truncateElites, mergeElites, withElites } from "./elites";
+import { type Changes, type Elites, truncateElites, mergeElites, withChanges, withElites } from "./elites";
 
 export interface Detail {
   /** Null before the first snapshot with an archive. */
@@ -11,7 +11,7 @@ export interface Detail {
   /** Null before the first snapshot. */
   curves: Curves | null;
   /** Events since the run was opened or the store was reset. */
-  recent: { readonly elites: Elites; readonly curves: Curves };
+  recent: { readonly elites: Changes; readonly curves: Curves };
   viewers: number;
 }
 
@@ -26,7 +26,7 @@ export const EMPTY_DETAIL: Detail = {
 };
 
 export function withElitesEvent(detail: Detail, event: ElitesEvent): Detail {
-  const recent = { ...detail.recent, elites: withElites(detail.recent.elites, event) };
+  const recent = { ...detail.recent, elites: withChanges(detail.recent.elites, event) };
   return { ...detail, elites: withElites(detail.elites, event), recent };
 }
 

@@ -10,6 +10,8 @@ describe("the history of an archive", () => {
     creature: ["a", "b", "c"],
     trusted: [null, false, true],
     measures: {},
+    emptied: [] as number[],
+    emptied_generation: [] as number[],
   };
 
   it.each([
@@ -33,5 +35,14 @@ describe("the history of an archive", () => {
       [...elitesAt(generation).values()].map(({ creature }) => creature).join(""),
     );
     expect(names).toEqual(["cb", "ab", "", "ab", "cb"]);
+  });
+
+  it("is without the cells that lost their elite, until they have a new one", () => {
+    const losses = { emptied: [1, 2], emptied_generation: [2, 3] };
+    const elitesAt = elitesByGeneration({ ...history, ...losses });
+    const names = [1, 2, 3, 4, 2, 4].map((generation) =>
+      [...elitesAt(generation).values()].map(({ creature }) => creature).join(""),
+    );
+    expect(names).toEqual(["ab", "b", "", "c", "b", "c"]);
   });
 });

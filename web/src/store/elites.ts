@@ -1,6 +1,6 @@
 /** The elite in each cell, from snapshots, events and the history. */
 
-import type { Archive, ArchiveColumns, History } from "../api/types";
+import type { Archive, ArchiveColumns, ElitesEvent, History } from "../api/types";
 
 export interface Elite {
   fitness: number;
@@ -15,42 +15,67 @@ export interface Elite {
 
 export type Elites = ReadonlyMap<number, Elite>;
 
-/** The elites after an event with changed cells. */
-export function withElites(
-  elites: Elites,
-  { generation, ...columns }: ArchiveColumns & { generation: number },
-): Elites {
-  const next = new Map(elites);
-  columns.cell.forEach((cell, i) => next.set(cell, eliteAt(columns, i, generation)));
+/** A cell that lost its elite. */
+interface Loss {
+  creature: null;
+  reportedAt: number;
+}
+
+/** The last change of each cell, from events. */
+export type Changes = ReadonlyMap<number, Elite | Loss>;
+
+/** The changes after an event. */
+export function withChanges(changes: Changes, event: ElitesEvent): Changes {
+  const next = new Map(changes);
+  const reportedAt = event.generation;
+  event.cell.forEach((cell, i) => next.set(cell, eliteAt(event, i, reportedAt)));
+  for (const cell of event.emptied) next.set(cell, { creature: null, reportedAt });
   return next;
 }
 
+/** The elites after an event with changed cells. */
+export const withElites = (elites: Elites, event: ElitesEvent): Elites =>
+  applied(elites, withChanges(new Map(), event));
+
 /** A snapshot with later events that arrived before it. */
-export function mergeElites(archive: Archive, known: Elites): Elites {
-  const next = new Map<number, Elite>();
-  archive.cell.forEach((cell, i) => {
-    next.set(cell, eliteAt(archive, i, archive.elite_generation[i]!));
-  });
-  for (const [cell, elite] of known) {
-    if (elite.reportedAt > archive.generation) next.set(cell, elite);
+export function mergeElites(archive: Archive, known: Changes): Elites {
+  const snapshot = archive.cell.map(
+    (cell, i) => [cell, eliteAt(archive, i, archive.elite_generation[i]!)] as const,
+  );
+  const later = [...known].filter(([, { reportedAt }]) => reportedAt > archive.generation);
+  return applied(new Map(snapshot), new Map(later));
+}
+
+function applied(elites: Elites, changes: Changes): Elites {
+  const next = new Map(elites);
+  for (const [cell, elite] of changes) {
+    if (elite.creature === null) next.delete(cell);
+    else next.set(cell, elite);
   }
   return next;
 }
 
-export function truncateElites(elites: Elites, generation: number): Elites {
-  return new Map([...elites].filter(([, elite]) => elite.reportedAt <= generation));
+/** The elites or changes that were reported up to a generation. */
+export function truncateElites<E extends { reportedAt: number }>(
+  elites: ReadonlyMap<number, E>,
+  generation: number,
+): ReadonlyMap<number, E> {
+  return new Map([...elites].filter(([, { reportedAt }]) => reportedAt <= generation));
 }
 
 /** A function from a generation to its elites; it is fastest if generations increase. */
 export function elitesByGeneration(history: History): (generation: number) => Elites {
-  const { elite_generation: entered } = history;
+  const { elite_generation: entered, emptied_generation: lost } = history;
   let elites: Elites = new Map();
-  let [next, shown] = [0, 0];
+  let [gains, losses, shown] = [0, 0, 0];
   return (generation) => {
     const later: Map<number, Elite> = generation < shown ? new Map() : new Map(elites);
-    if (generation < shown) next = 0;
-    for (; next < entered.length && entered[next]! <= generation; next++) {
-      later.set(history.cell[next]!, eliteAt(history, next, entered[next]!));
+    if (generation < shown) [gains, losses] = [0, 0];
+    for (;;) {
+      const [gain, loss] = [entered[gains] ?? Infinity, lost[losses] ?? Infinity];
+      if (Math.min(gain, loss) > generation) break;
+      if (loss < gain) later.delete(history.emptied[losses++]!);
+      else later.set(history.cell[gains]!, eliteAt(history, gains++, gain));
     }
     [elites, shown] = [later, generation];
     return elites;

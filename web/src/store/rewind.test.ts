@@ -6,6 +6,7 @@ import {
   close,
   creatures,
   elites,
+  emptied,
   generation,
   open,
   opened,
@@ -42,6 +43,24 @@ describe("a snapshot", () => {
   it("that was requested before a reset is ignored", () => {
     const next = after(INITIAL_STATE, open, reset, snapshotSince(INITIAL_STATE));
     expect(next.details.get("a")!.archive).toBeNull();
+  });
+});
+
+describe("a cell that loses its elite", () => {
+  it("is empty until it has a new one", () => {
+    expect(creatures(after(opened, emptied(3, 0)))).toEqual({ 5: "bb" });
+    expect(creatures(after(opened, emptied(3, 0), elites(4, 0, "cc")))).toEqual({ 0: "cc", 5: "bb" });
+  });
+
+  it("stays empty after an older snapshot, not after a newer one", () => {
+    expect(creatures(after(opened, emptied(3, 5), snapshot))).toEqual({ 0: "aa" });
+    expect(creatures(after(opened, emptied(2, 5), snapshot))).toEqual({ 0: "aa", 5: "bb" });
+  });
+
+  it("has its elite again in the snapshot after a rewind", () => {
+    const next = after(opened, emptied(3, 5), rewind(2));
+    expect(creatures(next)).toEqual({ 0: "aa" });
+    expect(creatures(snapshot(next))).toEqual({ 0: "aa", 5: "bb" });
   });
 });
 

@@ -19,6 +19,7 @@ const ARCHIVE: Archive = {
   generation: 2,
   kind: "grid",
   cells: 16,
+  coverage: 2 / 16,
   axes: [],
   recorded: [],
   measures: {},
@@ -31,6 +32,8 @@ const ARCHIVE: Archive = {
   elite_generation: [1, 2],
   creature: ["aa", "bb"],
   trusted: [false, true],
+  emptied: [],
+  emptied_generation: [],
 };
 
 const column = [1, 2];
@@ -64,7 +67,13 @@ export const generation =
 
 export function elites(number: number, cell: number, creature: string): Change {
   const columns = { cell: [cell], fitness: [9], descriptors: [[0, 0]], creature: [creature] };
-  const event = { run: "a", generation: number, elite_generation: [number], ...columns };
+  const event = { run: "a", generation: number, elite_generation: [number], emptied: [], ...columns };
+  return (state) => changes.withElitesEvent(state, event);
+}
+
+export function emptied(number: number, ...cells: number[]): Change {
+  const columns = { cell: [], fitness: [], descriptors: [], creature: [], elite_generation: [] };
+  const event = { run: "a", generation: number, emptied: cells, ...columns };
   return (state) => changes.withElitesEvent(state, event);
 }
 

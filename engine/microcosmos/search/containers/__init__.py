@@ -11,6 +11,7 @@ from jaxtyping import Float
 from ..cells import Axis, Cells, Grid, Voronoi
 from ..insertion import Elites, Inserted, insert_into_cells
 from .fronts import Fronts, crowding_distance, front
+from .learned import LearnedAxes, learned_axes
 from .novelty import DominatedNovelty, dominated_novelty
 from .quality import FrontFigures, front_figures, hypervolume
 from .survival import Survival, insert_survivors

@@ -44,6 +44,10 @@ class Survival(eqx.Module):
     def axes(self) -> tuple[Axis, ...]:
         return self.cells.axes
 
+    def changes(self, generation: int) -> bool:
+        """Return whether `refreshed` may change the container in this generation."""
+        return False
+
     def refreshed(self, archive: Elites, candidates: Elites, generation: int) -> "Survival":
         """Return the container with which a generation, counted from 1, is inserted."""
         return self

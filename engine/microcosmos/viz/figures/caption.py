@@ -22,21 +22,32 @@ ENCODINGS = {
     "body-graph": "CPPN that knows the place of each node",
 }
 """Controllers whose names differ from those of their encodings."""
+CONTAINERS = {
+    "fronts": "a Pareto front in each cell",
+    "dominated-novelty": "dominated novelty in place of cells",
+    "learned": "learned axes",
+}
 
 
 def of_archive(found: Archive, names: list[str] | None) -> str:
     """Return the caption of a map."""
     along = chosen(found, names)
-    filled, cells = len(found.cells), found.spec.archive.cells
     fittest = "the ring marks the fittest" if len(along) == 2 else "the fittest has"
     best = f"({found.fitness.max():.3g})" if len(along) == 2 else f"{found.fitness.max():.3g}"
-    first = (
-        f"Archive of {filled:,} elites in {cells:,} cells ({100 * filled / cells:.1f} %) over "
-        f"{_over(along)}; {fittest} {best}."
-    )
-    if len(along) < len(found.axes) or {a.name for a in along} != {a.name for a in found.axes}:
+    first = f"{_elites(found)} over {_over(along)}; {fittest} {best}."
+    own = {axis.name for axis in found.axes}
+    if found.pool or {axis.name for axis in along} != own:
         first += " Where elites share a place, the fittest is shown."
     return " ".join([first, run(found)])
+
+
+def _elites(found: Archive) -> str:
+    """Return the numbers of elites and cells, and the coverage."""
+    number, cells = len(found.cells), found.spec.archive.cells
+    if found.pool:
+        covered = f"they cover {100 * found.curves['coverage'][-1]:.1f} % of {cells:,} cells"
+        return f"Archive of {number:,} elites; {covered}"
+    return f"Archive of {number:,} elites in {cells:,} cells ({100 * number / cells:.1f} %)"
 
 
 def of_curves(groups: Sequence[Group], shown: Sequence[str]) -> str:
@@ -106,6 +117,8 @@ def run(found: Archive, seeds: Sequence[int] | None = None) -> str:
     columns = found.curves
     done, evaluations = len(columns["evaluations"]), int(columns["evaluations"][-1])
     method = "NEAT" if spec.experiment == "neuroevolution" else "MAP-Elites"
+    if spec.archive.container is not None:
+        method += f" with {CONTAINERS[spec.archive.container.kind]}"
     return (
         f"{method} ({_emitters(spec)}), {done:,} generations of {spec.search.batch} "
         f"({evaluations:,} evaluations{seeded}). {_fitness(spec)} over {spec.task.steps:,} "

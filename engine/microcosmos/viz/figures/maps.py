@@ -61,9 +61,12 @@ def _over_all_axes(found: Archive, along: list[Axis]) -> bool:
 
 
 def bins(found: Archive, along: list[Axis]) -> np.ndarray:
-    """Return the bin of each elite (axis, elite); from its cell if the axis is a grid's."""
+    """Return the bin of each elite (axis, elite); from its cell if the axis is a grid's.
+
+    An archive with a container has places instead of cells: measures tell the bin.
+    """
     own = [axis.name for axis in found.axes]
-    grid = found.centroids is None
+    grid = found.centroids is None and not found.pool
     places = np.unravel_index(found.cells, found.spec.archive.shape) if grid else ()
 
     def bins_of(axis: Axis) -> np.ndarray:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...archive import file
+from ...archive.export import tessellation
 from ...spec import Descriptor, Neuroevolution, PluginVersion, QualityDiversity, parse
 
 Search = QualityDiversity | Neuroevolution
@@ -25,10 +26,11 @@ class Archive:
     measures: dict[str, np.ndarray]
     """Measures of each elite, by name."""
     cells: np.ndarray
+    """The cell of each elite; with a container its place, which does not tell where it lies."""
     fitness: np.ndarray
     generation: np.ndarray
     centroids: np.ndarray | None
-    """(cell, axis) from 0 to 1 on the axes' own scales; None for a grid."""
+    """(cell, axis) from 0 to 1 on the axes' own scales; None for a grid or a container."""
     curves: dict[str, np.ndarray]
     lineage: dict[str, np.ndarray]
     """Columns with an entry for each creature that entered the archive, in order."""
@@ -37,6 +39,11 @@ class Archive:
     @property
     def axes(self) -> tuple[Descriptor, ...]:
         return self.spec.archive.descriptors
+
+    @property
+    def pool(self) -> bool:
+        """Whether a container numbers the places of elites, instead of cells."""
+        return self.spec.archive.container is not None
 
     @property
     def plugins(self) -> dict[str, PluginVersion]:
@@ -85,7 +92,7 @@ def read(data: bytes) -> Archive:
         cells=archive["cell"],
         fitness=archive["fitness"].astype(float),
         generation=archive["generation"],
-        centroids=archive.get("centroids"),
+        centroids=tessellation(archive, json.loads(attributes["spec"])["archive"]),
         curves=tree["curves"],
         lineage=tree["lineage"],
         operators=tuple(json.loads(attributes["operators"])),

@@ -234,9 +234,9 @@ def _results() -> None:
         sa.Column("run_id", sa.Uuid(), _to_run(), primary_key=True),
         sa.Column("cell", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("generation", sa.Integer(), primary_key=True, autoincrement=False),
-        sa.Column("fitness", sa.Double(), nullable=False),
-        sa.Column("descriptors", sa.JSON(), nullable=False),
-        sa.Column("creature", HASH, _to_creature(), nullable=False),
+        sa.Column("fitness", sa.Double()),
+        sa.Column("descriptors", sa.JSON()),
+        sa.Column("creature", HASH, _to_creature()),
     )
     op.create_index("ix_elites_creature", "elites", ["creature"])
     op.create_table(

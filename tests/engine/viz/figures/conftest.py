@@ -13,8 +13,18 @@ AXES = ({"name": "bending_effort", "bins": 4}, {"name": "straightness", "bins": 
 
 @pytest.fixture
 def made():
-    def make(elites, *, axes=AXES, centroids=None, best=(1.0, 2.0), lineage=None, **more):
-        cells = {} if centroids is None else {"centroids": len(centroids)}
+    def make(
+        elites,
+        *,
+        axes=AXES,
+        centroids=None,
+        container=None,
+        best=(1.0, 2.0),
+        lineage=None,
+        **more,
+    ):
+        cells = {"container": container}
+        cells |= {} if centroids is None else {"centroids": len(centroids)}
         document = {"experiment": "quality-diversity", **more}
         document["archive"] = {"descriptors": axes, **cells}
         curves = {

@@ -48,6 +48,23 @@ def test_the_fittest_of_elites_in_one_place_is_shown(made):
     assert [values[2, k] for k in range(3)] == [1, 3, 2]
 
 
+def test_elites_of_a_container_stand_where_their_measures_are(made):
+    """Whatever the numbers of their places."""
+    low, high = {"bending_effort": 1e-3}, {"bending_effort": 10.0}
+    elites = [
+        {"cell": 0, "fitness": 1.0, "straightness": 0.9} | high,
+        {"cell": 63, "fitness": 2.0, "straightness": 0.1} | low,
+        {"cell": 7, "fitness": 3.0, "straightness": 0.1} | low,
+    ]
+    found = made(elites, container={"kind": "dominated-novelty", "size": 64})
+    values = shown(maps.archive(found))
+    assert np.argwhere(np.isfinite(values)).tolist() == [[0, 0], [4, 3]]
+    assert (values[0, 0], values[4, 3]) == (3.0, 1.0)
+    text = caption.of_archive(found, None)
+    assert "Archive of 3 elites; they cover 50.0 % of 20 cells over bending" in text
+    assert "Where elites share a place, the fittest is shown. MAP-Elites with" in text
+
+
 def test_logarithmic_axes_have_decades_and_units(made):
     panel = maps.archive(made(ONE)).axes[0]
     assert (panel.get_xscale(), panel.get_yscale()) == ("log", "linear")

@@ -99,7 +99,9 @@ function PartSwitch({ part, off, state }: { part: Section; off: boolean; state: 
   );
 }
 
-/** The choice between several parts; a newly selected one has its defaults. */
+const NONE = ["null", text.none] as const;
+
+/** The choice between several parts, or none; a newly selected one has its defaults. */
 function KindSelect({ union, state }: { union: Union; state: FormState }) {
   const path = `${union.path}.${union.tag}`;
   const value = valueAt(state.document, path);
@@ -108,9 +110,10 @@ function KindSelect({ union, state }: { union: Union; state: FormState }) {
   const at = state.changed.has(path) ? path : union.path;
   const note = messageOf(state.note, state.document, union.path);
   const choose = (name: string) => {
-    const before = valueAt(state.original, path) === name;
-    state.change(union.path, before ? original : union.parts.get(name)!.initial!);
+    const before = String(valueAt(state.original, path)) === name;
+    state.change(union.path, before ? original : (union.parts.get(name)?.initial ?? null));
   };
+  const parts = [...union.parts.keys()].map((name) => [name, name] as const);
   return (
     <div class="entry">
       <EntryName path={at} title={words(union.tag)} state={state} target={`field-${path}`} />
@@ -120,7 +123,7 @@ function KindSelect({ union, state }: { union: Union; state: FormState }) {
         aria-describedby={`field-${path}-about`}
         onChange={(event) => choose(event.currentTarget.value)}
       >
-        <Options of={[...union.parts.keys()].map((name) => [name, name])} />
+        <Options of={union.nullable ? [NONE, ...parts] : parts} />
       </select>
       <p id={`field-${path}-about`} class="help about">
         {union.parts.get(String(value))?.help}

@@ -38,6 +38,8 @@ export interface Section extends Common {
 export interface Union extends Common {
   kind: "union";
   tag: string;
+  /** True if no part can be selected. */
+  nullable: boolean;
   parts: ReadonlyMap<string, Section>;
 }
 
@@ -143,7 +145,7 @@ function fieldOf(property: Schema, root: Schema, key: string, path: string, foll
   const inner = notNull(schema, root);
   const nullable = inner !== schema || follows;
   const common = { path, title: words(key), help: text(schema.description) };
-  if (Array.isArray(inner.oneOf)) return unionOf(inner, root, common);
+  if (Array.isArray(inner.oneOf)) return unionOf(inner, root, { ...common, nullable: inner !== schema });
   if ("const" in inner) return { ...common, kind: "constant" };
   if (Array.isArray(inner.enum)) {
     const plugins = inner.plugins && { plugins: inner.plugins as unknown as Record<string, PluginOption> };
@@ -197,7 +199,11 @@ function arrayOf(schema: Schema, root: Schema, common: Common): Field {
 }
 
 /** The names of a part are the constant or the options of its tag. */
-function unionOf(schema: Schema, root: Schema, common: Common): Union {
+function unionOf(
+  schema: Schema,
+  root: Schema,
+  { nullable, ...common }: Common & { nullable: boolean },
+): Union {
   const parts = (schema.oneOf as Schema[]).map((part) => resolve(part, root));
   const tag = tagOf(parts);
   const named = parts.flatMap((part) => {
@@ -208,7 +214,7 @@ function unionOf(schema: Schema, root: Schema, common: Common): Union {
       return [name, { ...sectionOf(rest, root, common), help: text(part.description), initial }];
     });
   });
-  return { ...common, kind: "union", tag, parts: new Map(named) };
+  return { ...common, kind: "union", tag, nullable, parts: new Map(named) };
 }
 
 function rowsOf(schema: Schema, root: Schema, common: Common): Rows {
@@ -216,7 +222,9 @@ function rowsOf(schema: Schema, root: Schema, common: Common): Rows {
   const row = (index: number) => {
     const path = join(common.path, String(index));
     const known = { path, title: `${common.title} ${index + 1}`, help: "" };
-    return Array.isArray(item.oneOf) ? unionOf(item, root, known) : sectionOf(item, root, known);
+    return Array.isArray(item.oneOf)
+      ? unionOf(item, root, { ...known, nullable: false })
+      : sectionOf(item, root, known);
   };
   const first = row(0);
   return {

@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import type { Schema, Spec } from "../../api/types";
 import { changedPaths, messagesByPath, partOf, schemaErrors, valueAt, withChoice } from "./document";
 import { type Choice, type Field, type Rows, type Section, type Union, formOf } from "./fields";
-import { FORM } from "./form.fixture";
+import { FORM, experiment } from "./form.fixture";
 import { withDefaults } from "./schema";
 
 const part = <F extends Field>(section: Section, path: string) =>
@@ -57,6 +57,14 @@ describe("a form", () => {
     expect(union.parts.get("ray")!.initial).toEqual({ builder: "ray" });
     expect(partOf(union, { body: { builder: "worm" } })).toBe(union.parts.get("worm"));
     expect(partOf(union, { body: { builder: "unheard of" } })).toBeNull();
+  });
+
+  it("has a union without a part if null is allowed", () => {
+    const archive = part<Section>(formOf(experiment("quality-diversity").schema), "archive");
+    const union = part<Union>(archive, "archive.container");
+    expect([union.nullable, part<Union>(FORM, "body").nullable]).toEqual([true, false]);
+    expect([...union.parts.keys()]).toContain("fronts");
+    expect(partOf(union, { archive: { container: null } })).toBeNull();
   });
 
   it("has lists of numbers and of words for arrays of them", () => {

@@ -41,9 +41,11 @@ function rebuilt(field: Field, document: Json, made: Json): Json {
     return into(field.fields, withValue(made, field.path, {}));
   }
   if (field.kind === "union") {
+    const part = partOf(field, document);
+    if (!part && field.nullable) return withValue(made, field.path, null);
     const tag = `${field.path}.${field.tag}`;
     const start = withValue(withValue(made, field.path, {}), tag, valueAt(document, tag));
-    return into(partOf(field, document)!.fields, start);
+    return into(part!.fields, start);
   }
   if (field.kind === "rows") {
     const items = valueAt(document, field.path) as Json[];

@@ -4,6 +4,7 @@ export const text = {
   plugin: (name: string, about: string, workers: string) => `${name}: ${about} Plug-in of ${workers}.`,
   each: (range: string) => `Each ${range}`,
   auto: "auto",
+  none: "none",
   resetTo: (value: string) => `Reset to ${value}`,
   undoChange: "Undo change",
   json: "Spec as JSON",

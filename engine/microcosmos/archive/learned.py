@@ -1,0 +1,90 @@
+"""Learned axes of an archive file: the measures they are made of, and the elites on them."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..spec.measures import MEASURES
+from .components import Components, scaled
+from .export import Source, source_bytes
+from .file import Tree, load
+
+PARTS = ("mean", "scale", "weights", "explained", "low", "high")
+
+
+@dataclass(frozen=True)
+class LearnedAxes:
+    """The axes that a search has learned last, and its elites along them."""
+
+    measures: tuple[str, ...]
+    """Measures of which axes are made."""
+    components: Components
+    coordinates: np.ndarray
+    """Elites (elite, axis) in the order of their places, as in `archive/*` of the file."""
+    creature: np.ndarray
+    """The SHA-256 of each elite."""
+    generation: np.ndarray
+    """Generations in which axes were learned."""
+
+    @property
+    def loadings(self) -> np.ndarray:
+        """Return the weights (axis, measure); squares add up to 1 on an axis."""
+        return self.components.weights
+
+    @property
+    def explained(self) -> np.ndarray:
+        """Return the share of the variance of all measures along each axis."""
+        return self.components.explained
+
+    @property
+    def ends(self) -> np.ndarray:
+        """Return the ends (axis, 2), the lower one first."""
+        return np.stack([self.components.low, self.components.high], 1)
+
+    def strongest(self, axis: int, count: int = 8) -> list[tuple[str, float]]:
+        """Return the measures of the largest weights on an axis, the largest first."""
+        weights = self.components.weights[axis]
+        order = np.argsort(-np.abs(weights), kind="stable")[:count]
+        return [(self.measures[i], float(weights[i])) for i in order.tolist()]
+
+
+def learned_axes(archive: Source) -> LearnedAxes:
+    """Return the learned axes of an archive file, or of its path.
+
+    Raises `ValueError` for a file of a search without learned axes, or without any yet.
+    """
+    tree, attributes = load(source_bytes(archive))
+    container = json.loads(attributes["spec"]).get("archive", {}).get("container") or {}
+    if container.get("kind") != "learned":
+        kind = container.get("kind", "none")
+        raise ValueError(f"`archive.container.kind` must be 'learned', got {kind!r}")
+    known = tree["loop"]["container"]
+    if not known["epoch"]:
+        raise ValueError("axes must have been learned, got a file from before: go on with it")
+    recorded = json.loads(attributes["measures"])
+    names = container["measures"] or recorded
+    found = Components(**{name: np.asarray(known[name], float) for name in PARTS})
+    values = _values(tree, [recorded.index(name) for name in names], names)
+    return LearnedAxes(
+        measures=tuple(names),
+        components=found,
+        coordinates=found.coordinates(values),
+        creature=tree["archive"]["creature"],
+        generation=tree["learned"]["generation"],
+    )
+
+
+def floors(names: Sequence[str]) -> tuple[float, ...]:
+    """Return the least value of each measure that enters as a logarithm, 0 for the others.
+
+    It is a hundredth of the lower end of the measure's own axis.
+    """
+    known = (MEASURES.get(name) for name in names)
+    return tuple(one.low / 100 if one and one.scale == "log10" else 0.0 for one in known)
+
+
+def _values(tree: Tree, columns: list[int], names: list[str]) -> Any:
+    return scaled(tree["archive"]["measures"][:, columns], floors(names))
