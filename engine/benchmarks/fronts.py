@@ -5,7 +5,6 @@ Both search by iso+line at equal settings and evaluations. Prints a table and as
 
 import argparse
 import importlib
-import time
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -109,11 +108,11 @@ METHODS: dict[str, Callable[[int, int, int], Scores]] = {
     "QDax": qdax,
     "QDax, elites drawn alike": partial(qdax, alike=True),
 }
-COLUMNS = ("MOQD score", "hypervolume, %", "largest sum", "mean length", "seconds")
+COLUMNS = ("MOQD score", "hypervolume, %", "largest sum", "mean length")
 
 
 def figures(cell: np.ndarray, both: np.ndarray) -> tuple[float, ...]:
-    """Return the figures of `COLUMNS` but the time; the reference point is (0, 0)."""
+    """Return the figures of `COLUMNS`; the reference point is (0, 0)."""
     first, second = both.astype(float).T
     return (
         search.hypervolume(cell, first, second),
@@ -134,12 +133,8 @@ def main() -> None:
     for length in chosen.lengths:
         found: dict[str, np.ndarray] = {}
         for name, method in methods.items():
-            rows = []
-            for seed in range(chosen.seeds):
-                start = time.monotonic()
-                scores = figures(*method(seed, chosen.generations, length))
-                rows.append((*scores, time.monotonic() - start))
-            found[name] = np.array(rows)
+            runs = (method(seed, chosen.generations, length) for seed in range(chosen.seeds))
+            found[name] = np.array([figures(*scores) for scores in runs])
         title = (
             f"Fronts of at most {length}: {chosen.generations * BATCH:,} evaluations, "
             f"{chosen.seeds} seeds, median (quartiles)"
