@@ -107,6 +107,7 @@ bench: peers web
 	$(BIN)/python engine/benchmarks/archive.py
 	$(BIN)/python engine/benchmarks/classic.py
 	$(BIN)/python engine/benchmarks/fronts.py
+	$(BIN)/python engine/benchmarks/aurora.py
 	$(BIN)/python engine/benchmarks/networks.py
 	$(BIN)/python engine/benchmarks/xor.py
 	$(BIN)/python engine/benchmarks/generation.py

@@ -138,6 +138,7 @@ def main() -> None:
             begun = time.monotonic()
             row = METHODS[name](seed, chosen.generations)
             found[name].append(np.append(row, time.monotonic() - begun))
+            print(seed, name, *(f"{figure:.2f}" for figure in found[name][-1]), flush=True)
     rows = [
         (name, *(timing.median_range(column) for column in np.transpose(values).tolist()))
         for name, values in found.items()

@@ -22,6 +22,8 @@ const REPROJECTION = {
     [-0.2, 7],
   ],
   elite_generation: [1, 3, 4],
+  emptied: [],
+  emptied_generation: [],
   creature: ["slow", "odd", "fast"],
   trusted: [null, null, false],
   measures: {},
