@@ -37,7 +37,7 @@ def files(specs, cache):
         "bandit",
         "dominated-novelty",
         pytest.param("fronts", marks=pytest.mark.long),
-        "learned",
+        pytest.param("learned", marks=pytest.mark.long),
         *(pytest.param(f"screened{x}", marks=pytest.mark.long) for x in ("", "-bandit")),
     ],
 )
