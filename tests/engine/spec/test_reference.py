@@ -24,6 +24,7 @@ CmaMegaEmitter.rate
 iso line step weight_step diversity Weights.scale refinement.length PopulationEmitter.threshold
 Bounds.low Bounds.high Graph.nodes Polyline.points softest body_rate shape_rate segment_rate
 GrownBody.segments GrownBody.copies GrownBody.limbs GrownBody.rings exploration
+LearnedAxes.axes
 """
 """Counts, shares, what genes and weights are measured in, and lists of places in cells."""
 
