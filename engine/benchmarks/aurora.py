@@ -25,8 +25,10 @@ ISO, LINE = 0.01, 0.1
 """Deviations for genes from 0 to 1, as QDax has them; ours run from −1 to 1."""
 LEAST = -0.5
 """Lower bound of fitness, so that every elite adds to the score."""
-ROOM, RADIUS = 2 * BINS**2, 1.0
+ROOM, RADIUS = 2 * BINS**2, 0.45
 """QDax's places, of which half are asked for, and its first distance between elites."""
+CONTROLLED = 10
+"""Generations between two changes of that distance, which sort all pairs of places."""
 COLUMNS = ("coverage, %", "QD score", "elites", "seconds")
 
 
@@ -102,7 +104,8 @@ def qdax(seed: int, generations: int) -> np.ndarray:
     for number in range(2, generations + 1):
         key, use = jax.random.split(key)
         repertoire, state, _ = update(repertoire, state, use, info)
-        repertoire, error = control(repertoire, BINS**2, error)
+        if number % CONTROLLED == 0:
+            repertoire, error = control(repertoire, BINS**2, error)
         if schedule.changes(number):
             repertoire, info = loop.train(repertoire, info.model_params, number, use)
     there = np.isfinite(np.asarray(repertoire.fitnesses)[:, 0])

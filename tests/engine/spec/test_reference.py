@@ -23,7 +23,8 @@ Reevaluation.viscosity Reevaluation.max_error Screening.unscreened Energy.rate f
 CmaMegaEmitter.rate
 iso line step weight_step diversity Weights.scale refinement.length PopulationEmitter.threshold
 Bounds.low Bounds.high Graph.nodes Polyline.points softest body_rate shape_rate segment_rate
-GrownBody.segments GrownBody.copies GrownBody.limbs GrownBody.rings exploration LearnedAxes.axes
+GrownBody.segments GrownBody.copies GrownBody.limbs GrownBody.rings exploration
+LearnedAxes.axes
 """
 """Counts, shares, what genes and weights are measured in, and lists of places in cells."""
 
