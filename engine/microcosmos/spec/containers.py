@@ -44,6 +44,21 @@ class DominatedNovelty(Part):
     """Nearest fitter elites whose mean distance decides."""
 
 
+STROKE: tuple[MeasureName, ...] = (
+    "symmetry",
+    "curvature_mean",
+    "curvature_spread",
+    "bending_effort",
+    "stretching_effort",
+    "beats",
+    "wave_number",
+    "wave_direction",
+    "aspect",
+    "turning",
+)
+"""Measures of a stroke, not of how far it carries."""
+
+
 class LearnedAxes(Part):
     """Cells along axes that are learned: principal components of the elites' measures.
 
@@ -61,8 +76,9 @@ class LearnedAxes(Part):
     """Bins along each axis."""
     first: int = field(10, ge=2, le=1_000_000, unit="generations")
     """Generation in which the axes are learned for the second time."""
-    measures: tuple[Annotated[MeasureName, *OR_PLUGIN], ...] = ()
-    """Measures of which the axes are made; empty: all that are recorded."""
+    measures: tuple[Annotated[MeasureName, *OR_PLUGIN], ...] = STROKE
+    """Measures of which the axes are made; empty: all that are recorded, most of which tell how
+    far a creature gets."""
 
     @model_validator(mode="after")
     def refuse_too_few(self) -> "LearnedAxes":

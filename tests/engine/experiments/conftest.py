@@ -81,7 +81,7 @@ SPECS["fronts"] = SMALL | {
     }
 }
 SPECS["learned"] = SMALL | {
-    "archive": {"container": {"kind": "learned", "bins": 5, "first": 2}}
+    "archive": {"container": {"kind": "learned", "bins": 5, "first": 2, "measures": []}}
 }
 SCREENED = {"batch": 64, "screening": {"rounds": 2, "candidates": 4}}
 SPECS["screened-bandit"] = SPECS["bandit"] | {"search": SPECS["bandit"]["search"] | SCREENED}
