@@ -3,7 +3,7 @@
 import csv
 import io
 import struct
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
@@ -22,7 +22,7 @@ from ..runs.deps import RunDep
 from ..services.services import ServicesDep, SessionDep
 from ..storage import ranges
 from ..tables import Artifact, Elite, Result, Run
-from . import elites, reprojection
+from . import elites, learned, reprojection
 from . import measures as recorded_measures
 from .schemas import (
     ArchiveRead,
@@ -47,6 +47,7 @@ LENGTH = struct.Struct("<I")
 def read_archive(
     run: RunDep,
     session: SessionDep,
+    services: ServicesDep,
     generation: Annotated[int | None, Query(ge=0)] = None,
     measures: str = "",
     after: Annotated[int | None, Query(ge=0)] = None,
@@ -59,7 +60,8 @@ def read_archive(
     """
     _refuse_table(run)
     as_of = run.generation if generation is None else min(generation, run.generation)
-    recorded = recorded_measures.recorded(session, run)
+    own = learned.read(session, services, run)
+    recorded = _recorded(session, run, own)
     names = _requested(measures, recorded)
     known = -1 if after is None else min(after, run.generation)
     kind, cells = recorded_measures.kind(run)
@@ -70,22 +72,28 @@ def read_archive(
         axes=recorded_measures.axes(run),
         recorded=recorded,
         coverage=coverage_at(session, run.id, as_of),
-        **_columns(session.execute(elites.as_of(run, as_of, names, known)).all(), names),
+        **_columns(session, lambda stored: elites.as_of(run, as_of, stored, known), names, own),
         **_emptied(session, elites.emptied(run, as_of, known)),
     )
 
 
 @router.get("/archive/history", dependencies=[MAY_READ_SHARED])
-def read_history(run: RunDep, session: SessionDep, measures: str = "") -> HistoryRead:
+def read_history(
+    run: RunDep, session: SessionDep, services: ServicesDep, measures: str = ""
+) -> HistoryRead:
     """Return every elite that ever entered, and every cell that lost one without a new one.
 
     Each generation's archive follows from them.
     """
     _refuse_table(run)
-    names = _requested(measures, recorded_measures.recorded(session, run))
+    own = learned.read(session, services, run)
+    names = _requested(measures, _recorded(session, run, own))
     _refuse_long(session, run)
-    ordered = elites.all_time(run, names).order_by(Elite.generation, Elite.cell)
-    columns = _columns(session.execute(ordered).all(), names)
+
+    def ordered(stored: Sequence[str]) -> Select[*tuple[Any, ...]]:
+        return elites.all_time(run, stored).order_by(Elite.generation, Elite.cell)
+
+    columns = _columns(session, ordered, names, own)
     columns |= _emptied(session, elites.losses(run))
     return HistoryRead(generation=run.generation, **columns)
 
@@ -163,8 +171,22 @@ def _refuse_long(session: Session, run: Run) -> None:
         raise ProblemError(422, "History too long", detail)
 
 
-def _columns(found: Sequence[Any], names: Sequence[str]) -> dict[str, Any]:
-    first = len(elites.COLUMNS)
+def _recorded(session: Session, run: Run, own: learned.LearnedMeasures | None) -> list[Measure]:
+    return [*(own.described if own else []), *recorded_measures.recorded(session, run)]
+
+
+def _columns(
+    session: Session,
+    select_with: Callable[[Sequence[str]], Select[*tuple[Any, ...]]],
+    names: Sequence[str],
+    own: learned.LearnedMeasures | None,
+) -> dict[str, Any]:
+    """Return the wire's columns; `select_with` selects elites with stored measures."""
+    stored, first = learned.stored(names, own), len(elites.COLUMNS)
+    found = session.execute(select_with(stored)).all()
+    values = {name: [elite[first + i] for elite in found] for i, name in enumerate(stored)}
+    if own and set(names) & set(own.names):
+        values |= own.columns(values)
     return {
         "cell": [elite.cell for elite in found],
         "fitness": [elite.fitness for elite in found],
@@ -172,9 +194,7 @@ def _columns(found: Sequence[Any], names: Sequence[str]) -> dict[str, Any]:
         "elite_generation": [elite.generation for elite in found],
         "creature": [elite.creature for elite in found],
         "trusted": [elite.trusted for elite in found],
-        "measures": {
-            name: [elite[first + i] for elite in found] for i, name in enumerate(names)
-        },
+        "measures": {name: values[name] for name in names},
     }
 
 

@@ -22,6 +22,8 @@ class Measure(Wire):
     low: float | None
     high: float | None
     scale: Literal["log10", "linear"]
+    bins: int | None = None
+    """Bins along a learned axis; null for any other measure."""
 
 
 class HistoryRead(Wire):

@@ -43,6 +43,11 @@ class LearnedAxes:
         """Return the ends (axis, 2), the lower one first."""
         return np.stack([self.components.low, self.components.high], 1)
 
+    def places(self, measures: np.ndarray) -> np.ndarray:
+        """Return coordinates (creature, axis) of other creatures, from values (creature,
+        measure) of `measures`."""
+        return self.components.coordinates(scaled(measures, floors(self.measures)))
+
     def strongest(self, axis: int, count: int = 8) -> list[tuple[str, float]]:
         """Return the measures of the largest weights on an axis, the largest first."""
         weights = self.components.weights[axis]

@@ -1921,6 +1921,8 @@ export interface components {
          * @description A measure that is recorded of every elite, with the default ends of an axis.
          */
         Measure: {
+            /** Bins */
+            bins?: number | null;
             /** High */
             high: number | null;
             /** Low */

@@ -5,6 +5,7 @@ import { binOfValue, elitesIn, project, tileWith } from "./projection";
 import { containerText } from "./text";
 import { type Position, voronoiLayout } from "./layout";
 import { Delaunay } from "d3-delaunay";
+import { withComponents } from "./reprojection";
 import { AXES, archiveOf, elite, elitesOf, measuresOf, NONE, over } from "./archive.fixture";
 
 describe("the axes of a map", () => {
@@ -14,6 +15,16 @@ describe("the axes of a map", () => {
     expect(namesOf(archiveOf(2), "turning", "c")).toEqual(["turning", "c"]);
     expect(namesOf(archiveOf(2), "b", null)).toEqual(["b", "a"]);
     expect(namesOf(archiveOf(2), "unheard of", "fitness")).toEqual(["a", "fitness"]);
+  });
+
+  it("are learned axes where there are any, with their own ends and bins", () => {
+    const archive = archiveOf(2, "pool");
+    const learned = { ...archive.recorded[0]!, name: "learned_1", low: -3, high: 2, bins: 5 };
+    archive.recorded = [learned, ...archive.recorded];
+    expect(namesOf(archive, null, null)).toEqual(["learned_1", "a"]);
+    const found = axisOf("learned_1", archive, new Map(), NONE);
+    expect(found).toMatchObject({ low: -3, high: 2, bins: 5, binOfCell: null });
+    expect(withComponents(archive, null).recorded.map(({ name }) => name)).not.toContain("learned_1");
   });
 
   it("can be any measure; descriptors need not be fetched", () => {

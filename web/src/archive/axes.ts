@@ -22,7 +22,8 @@ export const choicesOf = (archive: Archive) => [
 /** The names of both axes: the requested ones, or the archive's first two, or fitness. */
 export function namesOf(archive: Archive, x: string | null, y: string | null): [string, string] {
   const known = new Set(choicesOf(archive).map(([name]) => name));
-  const defaults = [...archive.axes.map(({ name }) => name), FITNESS];
+  const learned = archive.recorded.filter(({ bins }) => bins).map(({ name }) => name);
+  const defaults = [...learned, ...archive.axes.map(({ name }) => name), FITNESS];
   const first = x && known.has(x) ? x : defaults[0]!;
   return [first, y && known.has(y) ? y : (defaults.slice(0, 2).find((name) => name !== first) ?? FITNESS)];
 }
@@ -86,6 +87,16 @@ export function axisOf(name: string, archive: Archive, elites: Elites, measures:
     return { ...archive.axes[index]!, ...measure, bins, binOfCell };
   }
   const recorded = archive.recorded.find((measure) => measure.name === name);
+  if (recorded?.bins) {
+    // A learned axis: its own ends and bins show each elite in its learned cell.
+    return {
+      ...measure,
+      low: recorded.low ?? 0,
+      high: recorded.high ?? 1,
+      bins: recorded.bins,
+      binOfCell: null,
+    };
+  }
   const values = [...elites.values()].map(measure.valueOf).filter((value) => value !== null);
   const defaults = [recorded?.low ?? 0, recorded?.high ?? 1] as const;
   const [low, high, bins] = endsOf(values, measure.scale, ...defaults);

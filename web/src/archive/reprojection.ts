@@ -32,9 +32,10 @@ export function withComponents(archive: Archive, reprojection: Reprojection | nu
   const components = COMPONENTS.map((name) => {
     const share = explained.get(name);
     const title = text.component(name.slice(2), share === undefined ? null : percent(share));
-    return { name, title, unit: "", low: null, high: null, scale: "linear" as const };
+    return { name, title, unit: "", low: null, high: null, scale: "linear" as const, bins: null };
   });
-  const recorded = [...archive.recorded, ...components];
+  // Learned axes are known for elites alone.
+  const recorded = [...archive.recorded.filter(({ bins }) => !bins), ...components];
   const { axes, cells } = reprojection ?? archive;
   return { ...archive, kind: "grid", axes, cells, recorded };
 }

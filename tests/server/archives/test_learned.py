@@ -1,0 +1,85 @@
+"""Learned axes of a run that has ended: measures of its elites, with ends and bins."""
+
+import json
+
+import numpy as np
+import pytest
+import reports
+
+from microcosmos.archive import components, file
+from microcosmos.archive.axes import floors
+from microcosmos.spec import QualityDiversity
+from server.runs.submission import submit
+
+CONTAINER = {"kind": "learned", "bins": 4, "measures": list(reports.EFFORTS)}
+
+
+@pytest.fixture
+def spec():
+    document = reports.DEMO.model_dump(mode="json")
+    document["archive"]["container"] = CONTAINER
+    return QualityDiversity.model_validate(document)
+
+
+@pytest.fixture
+def run_id(services, spec):
+    return submit(services, spec)[0].id
+
+
+@pytest.fixture
+def learned():
+    values = 10 ** np.random.default_rng(0).normal(size=(50, 2))
+    return components.learn(components.scaled(values, floors(reports.EFFORTS)), 2)
+
+
+def checkpoint(spec, learned, epoch=1):
+    document = spec.model_dump(mode="json")
+    archive = {"measures": np.ones((1, 2)), "creature": np.zeros((1, 32), np.uint8)}
+    tree = {
+        "archive": archive,
+        "loop": {"container": {**vars(learned), "epoch": np.int32(epoch)}},
+        "learned": {"generation": np.array([1])},
+    }
+    measures = json.dumps(reports.EFFORTS)
+    attributes = {"format": file.FORMAT, "spec": json.dumps(document), "measures": measures}
+    return file.dump(tree, attributes)
+
+
+def listed(api, run_id, part=""):
+    asked = {"measures": "learned_2,learned_1,bending_effort"}
+    return api.get(f"runs/{run_id}/archive{part}", params=asked)
+
+
+@pytest.mark.postgresql
+def test_elites_have_coordinates_once_the_run_has_ended(
+    api, run_id, record, attempt, spec, learned
+):
+    record(1, {5: 1.0}, measures={"bending_effort": 0.25, "stretching_effort": 4.0})
+    record(2, {7: 2.0}, measures={"bending_effort": 2.0, "stretching_effort": 0.1})
+    attempt.save(2, checkpoint(spec, learned))
+    assert listed(api, run_id).status_code == 422  # Its axes may still change.
+    attempt.finish()
+    values = components.scaled(np.array([[0.25, 4.0], [2.0, 0.1]]), floors(reports.EFFORTS))
+    expected = learned.coordinates(values)
+    for part in ("", "/history"):
+        found = listed(api, run_id, part).json()["measures"]
+        assert list(found) == ["learned_2", "learned_1", "bending_effort"]
+        assert found["learned_1"] == pytest.approx(expected[:, 0].tolist())
+        assert found["learned_2"] == pytest.approx(expected[:, 1].tolist())
+        assert found["bending_effort"] == [0.25, 2.0]
+    recorded = listed(api, run_id).json()["recorded"]
+    assert [one["bins"] for one in recorded[:3]] == [4, 4, None]
+    assert recorded[0]["title"].startswith("Learned axis 1 (")
+    ends = [(one["low"], one["high"]) for one in recorded[:2]]
+    assert ends == list(zip(learned.low.tolist(), learned.high.tolist(), strict=True))
+
+
+def test_a_run_that_has_learned_nothing_has_no_learned_axes(
+    api, run_id, record, attempt, spec, learned
+):
+    record(1, {5: 1.0})
+    attempt.save(1, checkpoint(spec, learned, epoch=0))
+    attempt.finish()
+    assert listed(api, run_id).status_code == 422
+    recorded = api.get(f"runs/{run_id}/archive").json()["recorded"]
+    assert not [one for one in recorded if one["bins"]]
