@@ -48,6 +48,8 @@ METHODS: dict[str, dict[str, Any]] = {
         NEAT, {"operator": "random"}, NEAT | {"crossover": 0.5}, bandit={"window": 50}
     ),
     "dominated novelty": container("dominated-novelty", size=400),
+    "learned axes": container("learned", bins=20),
+    "Pareto fronts": container("fronts"),
     "screened 1 x 10": emitters(NEAT, screening=screened(1, 10)),
     "screened 1 x 40": emitters(NEAT, screening=screened(1, 40)),
     "screened 4 x 10": emitters(NEAT, screening=screened(4, 10)),
