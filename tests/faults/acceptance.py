@@ -15,6 +15,7 @@ import random
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import malformed_hdf5
 import rich
@@ -34,9 +35,21 @@ FAULTS = (kill_job, stop_worker, kill_job, pause_and_resume, kill_job)
 SETTINGS = {"MICROCOSMOS_DEMONSTRATION": "0", "MICROCOSMOS_CHECKPOINT_INTERVAL": "5"}
 
 
+CONTAINERS = ("fronts", "dominated-novelty", "learned")
+
+
+def contained(kind: str) -> dict[str, Any]:
+    """A small search with a container."""
+    document = PRESETS["demo"][1].model_dump(mode="json")
+    document["archive"]["container"] = {"kind": kind}
+    document["search"]["generations"] = 60
+    return document
+
+
 DOCUMENTS = {
     "chains": spec(SEEDS[0], "MAP-Elites, NEAT"),
     "zoo-demo": PRESETS["zoo-demo"][1].model_dump(mode="json"),
+    **{kind: contained(kind) for kind in CONTAINERS},
 }
 """Runs whose archives are compared byte for byte."""
 
