@@ -37,7 +37,7 @@ class LearnedMeasures:
         return [
             Measure(
                 name=name,
-                title=f"Learned axis {i + 1} ({share:.0%} of the variance)",
+                title=f"Learned axis {i + 1} ({100 * share:.0f} % of the variance)",
                 unit="",
                 low=float(low),
                 high=float(high),
