@@ -29,6 +29,14 @@ class Axis:
         return np.searchsorted(edges, np.asarray(values, np.float32), side="right")
 
 
+def cells(axes: Sequence[Axis], columns: Sequence[np.ndarray]) -> np.ndarray:
+    """Return the cells of values, a column for each axis, in C order over the bins."""
+    found = np.zeros(len(columns[0]), np.int64)
+    for one, column in zip(axes, columns, strict=True):
+        found = found * one.bins + one.bin(column)
+    return found
+
+
 def of_spec(spec: Mapping[str, Any]) -> dict[str, Axis]:
     """Return the axes of a run's archive by name, from its spec as JSON."""
     archive = spec["archive"]

@@ -104,16 +104,6 @@ def unit(values: np.ndarray, axis: dict[str, Any]) -> np.ndarray:
     return ((scaled(values, axis) - low) / (high - low)).astype(values.dtype)
 
 
-def bins(values: Sequence[np.ndarray], axes: Sequence[dict[str, Any]]) -> np.ndarray:
-    """Return the bins of values, by axis, in the grid over the axes, in C order."""
-    shape = [axis["bins"] for axis in axes]
-    places = [
-        np.minimum((unit(x, axis) * axis["bins"]).astype(int), axis["bins"] - 1)
-        for x, axis in zip(values, axes, strict=True)
-    ]
-    return np.asarray(np.ravel_multi_index(places, shape))
-
-
 def ends(axis: dict[str, Any]) -> tuple[float, float]:
     """Return the ends of an axis on its own scale."""
     low, high = axis["low"], axis["high"]

@@ -15,7 +15,7 @@ import numpy as np
 from ..spec.measures import MEASURES
 from ..spec.search import MAX_CELLS
 from . import principal
-from .axes import Axis, axis
+from .axes import Axis, axis, cells
 from .population import Creatures
 from .principal import NAME, Component
 
@@ -114,9 +114,7 @@ def reproject(found: Creatures, axes: Sequence[Axis]) -> Reprojection:
         raise ValueError(f"`bins` must give at most {MAX_CELLS:,} cells, got {count:,}")
     values = [found.measures[one.name] for one in axes]
     able = np.flatnonzero(np.all(np.isfinite([found.fitness, *values]), axis=0))
-    cell = np.zeros(len(able), np.int64)
-    for one, column in zip(axes, values, strict=True):
-        cell = cell * one.bins + one.bin(column[able])
+    cell = cells(axes, [column[able] for column in values])
     generation = found.generation[able]
     rank = np.empty(len(able), np.int64)
     rank[np.argsort(-found.fitness[able], kind="stable")] = np.arange(len(able))

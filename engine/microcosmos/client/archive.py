@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from ..archive.export import bins, scaled, unit
+from ..archive.axes import Axis, cells
+from ..archive.export import scaled, unit
 from . import columns, drawing
 from .connection import Connection
 from .creature import Creature
@@ -58,7 +59,8 @@ class Archive:
             return None
         cell, fitness = self.cell, self.fitness
         if self.kind == "pool":
-            cell, fitness = _fittest(bins([*self.descriptors.T], self.axes), fitness)
+            axes = [Axis(**axis) for axis in self.axes]
+            cell, fitness = _fittest(cells(axes, [*self.descriptors.T]), fitness)
         return drawing.archive_map(self.axes, cell, fitness, repr(self)[1:-1])
 
     def best(self) -> Creature:
