@@ -57,8 +57,9 @@ def scaled(measures: np.ndarray, least: Sequence[float]) -> np.ndarray:
 
 
 def learn(values: np.ndarray, axes: int) -> Components:
-    """Return the principal components of rows, which must be in an order of their own.
+    """Return the principal components of rows.
 
+    Sums follow the order of the rows, so that must not depend on how they arrived.
     Measures that are constant, or not finite in any row, do not count.
     """
     count, finite = len(values), np.all(np.isfinite(values), 0)

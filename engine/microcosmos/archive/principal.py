@@ -27,7 +27,7 @@ class Component:
     """Weight of each measure times the standard deviation along the component, the strongest
     first: its correlation with the component, but for values that are cut."""
     ends: tuple[float, float]
-    """All but a hundredth of the creatures are beyond the first, and before the second."""
+    """Ends of its axis; a hundredth of the creatures lies beyond each."""
 
 
 def principal(
