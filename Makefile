@@ -123,7 +123,7 @@ acceptance: install web
 WORLDS ?= 100000
 SANITISED ?= g++
 SANITISERS ?= address,undefined,float-cast-overflow
-CHECKS = -std=c++17 -O1 -g -pthread -ffp-contract=off -Wno-psabi \
+CHECKS = -std=c++17 -O1 -g1 -pthread -ffp-contract=off -Wno-psabi \
 	-fsanitize=$(SANITISERS) -fno-sanitize-recover=all
 fuzz:
 	@folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && \

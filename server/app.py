@@ -1,6 +1,7 @@
 """Assemble the application."""
 
 import asyncio
+import logging
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import partial
@@ -38,6 +39,7 @@ from .shares import page as share_page
 from .shares import routes as shares
 from .shares.access import open_share
 from .specs import routes as experiments
+from .storage import mark
 from .sweeps import routes as sweeps
 from .tables import migrations
 from .workers import routes as workers
@@ -46,6 +48,8 @@ ROUTES = (
     *(experiments, runs, forks, deletion, sweeps, details, archives, creatures, renderings),
     *(shares, events, workers, queue, tokens, health),
 )
+
+log = logging.getLogger(__name__)
 
 
 def create() -> FastAPI:
@@ -87,11 +91,22 @@ def create_app(services: Services) -> FastAPI:
     return app
 
 
+def mark_store(services: Services) -> None:
+    """Mark a new store; with a wrong one people can still read what the database has."""
+    try:
+        mark.leave(services.sessions, services.artifacts)
+    except Exception as error:  # Each kind of store has errors of its own.
+        log.error("The store cannot be marked: %s", error)
+    if fault := mark.fault(services.sessions, services.artifacts):
+        log.error("%s", fault)
+
+
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     services: Services = app.state.services
     await asyncio.to_thread(migrations.upgrade, services.sessions)
     await asyncio.to_thread(bootstrap.refuse_without_admin, services)
+    await asyncio.to_thread(mark_store, services)
     fanout = Fanout(services.settings.redis_url, services.events.stream)
     app.state.fanout = fanout
     await fanout.start()

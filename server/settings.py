@@ -28,6 +28,8 @@ class Settings(BaseSettings):
     """fsspec URL of the store of files. Empty: a folder in the data folder."""
     max_bytes: Annotated[int, Field(gt=0)] | None = None
     """Limit on the memory of a run, in addition to that of the workers."""
+    min_free_bytes: Annotated[int, Field(ge=0)] = 2_000_000_000
+    """Free bytes on a disk below which runs, `/readyz` and the page warn."""
     host: str = "127.0.0.1"
     port: int = Field(
         default=8000, ge=1, le=65535, validation_alias=AliasChoices("PORT", "MICROCOSMOS_PORT")
@@ -47,6 +49,8 @@ class Settings(BaseSettings):
     packages with entry points `microcosmos.plugins` need not be named."""
     demonstration: bool = True
     """Submit a small run in a new data folder."""
+    labels: str = ""
+    """Labels of the workers of this machine, separated by commas: runs can ask for them."""
     checkpoint_interval: float = Field(default=60.0, ge=0.0)
     """Seconds between two checkpoints of a run."""
     lease: float = Field(default=20.0, gt=0.0)

@@ -13,8 +13,13 @@ from collections import Counter
 import pytest
 from xdist.scheduler import LoadScopeScheduling
 
-SHARING = ("tests/faults", "tests/e2e", "tests/engine/experiments")
-"""Folders whose tests share running products or finished runs."""
+SHARING = (
+    "tests/faults",
+    "tests/e2e",
+    "tests/engine/experiments",
+    "tests/engine/bodies/growth",
+)
+"""Folders whose tests share running products, finished runs or grown bodies."""
 
 WALK = "tests/e2e/test_walk.py"
 """The one test in a browser that is not long."""

@@ -6,7 +6,7 @@ from contextlib import suppress
 from pydantic import ValidationError
 
 from microcosmos.build import build
-from microcosmos.device import device_kind, prepare
+from microcosmos.device import prepare
 from microcosmos.experiments import OtherDevice, Stopped
 from microcosmos.plugins import Broken, Missing
 from microcosmos.spec import field_path, parse
@@ -19,7 +19,6 @@ def carry_out(attempt: Attempt) -> None:
     """Compute until the run is done or has to stop."""
     prepare()
     load(attempt.services.settings)
-    attempt.record_device(device_kind())
     try:
         compute(attempt)
     except Missing as error:
@@ -44,8 +43,10 @@ def compute(attempt: Attempt) -> None:
             else experiment.init()
         )
     except OtherDevice as error:
-        attempt.wait_for_override(str(error))
+        # The schedule did not know its kind of device; it does now.
+        attempt.pause_until_resumed(str(error), device=error.recorded)
         return
+    attempt.record_device(experiment.device)
     with suppress(Stopped):
         while not (experiment.done(state) or attempt.interrupted()):
             started = time.monotonic()

@@ -2,7 +2,7 @@
 
 import logging
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from uuid import UUID
@@ -16,6 +16,7 @@ from server.workers import registry
 
 from .device import Device
 from .plugins import PluginReport, PluginWatcher
+from .readiness import Readiness
 from .usage import Gauge, usage
 
 HEARTBEATS_PER_LEASE = 4
@@ -44,11 +45,13 @@ class Heartbeats(threading.Thread):
         worker: str,
         device: Device,
         lease: float,
+        labels: Sequence[str] = (),
         plugins: PluginWatcher | None = None,
+        readiness: Readiness | None = None,
     ):
         super().__init__(name="heartbeat", daemon=True)
         self._sessions, self._worker, self._device = sessions, worker, device
-        self._plugins = plugins
+        self._labels, self._plugins, self._readiness = list(labels), plugins, readiness
         self._interval = lease / HEARTBEATS_PER_LEASE
         self.gauge = Gauge(partial(usage, device), self._interval)
         self._ended = threading.Event()
@@ -68,10 +71,14 @@ class Heartbeats(threading.Thread):
     def watch(self, run: UUID, kill: Callable[[], None]) -> None:
         """Also renew the lease on a run; `kill` ends its job if the run is lost."""
         self._watch = Watch(run, kill)
-        self._due.set()  # The worker's status changes at once.
+        self.hurry()  # The worker's status changes at once.
 
     def release(self) -> None:
         self._watch = None
+        self.hurry()
+
+    def hurry(self) -> None:
+        """Send the next heartbeat now."""
         self._due.set()
 
     def end(self) -> None:
@@ -83,7 +90,7 @@ class Heartbeats(threading.Thread):
         registry.retire(self._sessions, self._worker)
 
     def beat(self) -> None:
-        watch = self._watch
+        watch, ready = self._watch, self._readiness
         plugins = self._plugins.report if self._plugins else PluginReport()
         lease: LeaseState | None = None
         if watch:
@@ -101,6 +108,9 @@ class Heartbeats(threading.Thread):
             load=self.gauge.last.load,
             plugins=list(plugins.plugins),
             unloaded=list(plugins.unloaded),
+            labels=self._labels,
+            device_kinds=ready.device_kinds if ready else [],
+            problem=ready.problem if ready else None,
         )
 
     def _end_lost_job(self, watch: Watch, lease: LeaseState) -> None:

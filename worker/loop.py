@@ -1,7 +1,7 @@
 """Take one job after another from queues, in place of RQ's `work`.
 
 `work` ends at some errors of Redis, and drops a job if a signal arrives just after it was taken
-(tests/worker/test_loop.py, tests/faults/test_exact_resume.py).
+(tests/worker/test_loop.py).
 """
 
 import logging
@@ -25,13 +25,14 @@ PAUSE_SECONDS = 1.0
 log = logging.getLogger(__name__)
 
 
-def serve(worker: BaseWorker, queues: Callable[[], list[Queue]] | None = None) -> None:
-    """Carry out jobs until the process has to stop; `queues` returns the queues to read now."""
+def serve(worker: BaseWorker, may_work: Callable[[], bool] = lambda: True) -> None:
+    """Carry out jobs until the process has to stop, as long as it may work."""
     while not stop_requested():
         with logging_outages():
-            if queues:
-                worker.queues = queues()
-            take_one(worker)
+            if may_work():
+                take_one(worker)
+            else:
+                time.sleep(PAUSE_SECONDS)
     with suppress(RedisError):
         worker.register_death()
 

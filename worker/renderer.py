@@ -20,6 +20,7 @@ from server.settings import Settings
 from . import loop
 from .jobs import prepare_once
 from .process_setup import handle_signals, log_to_stderr
+from .readiness import StoreCheck
 
 WORKER_TTL = 120
 """Seconds without a report after which Redis forgets a renderer."""
@@ -51,7 +52,8 @@ def serve_queue(name: str) -> None:
     with loop.logging_outages():
         retry_interrupted(services.jobs, queue)
     unique = f"{name}-{socket.gethostname()}-{uuid4().hex[:8]}"
-    loop.serve(SimpleWorker([queue], unique, serializer=JSONSerializer, worker_ttl=WORKER_TTL))
+    worker = SimpleWorker([queue], unique, serializer=JSONSerializer, worker_ttl=WORKER_TTL)
+    loop.serve(worker, may_work=StoreCheck(services).is_good)
     services.close()
 
 

@@ -1,7 +1,8 @@
-"""The supervisor: takes runs from the queue and computes each in a process of its own."""
+"""The supervisor: takes one run after another and computes each in a process of its own."""
 
 import logging
 import os
+import signal
 import socket
 import subprocess
 import sys
@@ -9,25 +10,24 @@ import time
 from contextlib import suppress
 from uuid import UUID
 
-from rq.job import Job
-from rq.queue import Queue
-from rq.serializers import JSONSerializer
-from rq.worker import BaseWorker
 from sqlalchemy.exc import SQLAlchemyError
 
-from server.attempts.leases import end_job
-from server.queue.order import in_order
+from server.attempts.leases import Progress, end_job, fail_job, progress
+from server.schedule.take import take
 from server.services import services
 from server.services.services import Services
 from server.settings import Settings
 
-from . import device, loop
+from . import device
 from .heartbeats import HEARTBEATS_PER_LEASE, Heartbeats
+from .job_output import JobOutput
+from .loop import PAUSE_SECONDS, logging_outages
 from .plugins import PluginWatcher
 from .process_setup import handle_signals, log_to_stderr, stop_requested
+from .readiness import Readiness
 
-SHORTEST_LEASE = 2
-"""Shortest lease in Redis, in seconds."""
+IDLE_SECONDS = 1.0
+"""Longest time before an idle worker notices a run of which no message told it."""
 STOP_SECONDS = 18.0
 """Seconds that a job has to stop on request; fewer than this process itself has."""
 STOP_CHECK_SECONDS = 1.0
@@ -39,37 +39,62 @@ the distances of motions with which a run's curves end."""
 log = logging.getLogger(__name__)
 
 
-class Supervisor(BaseWorker):
-    """An RQ worker that runs each job in a process, with a lease on its run.
+class Supervisor:
+    """Carries out runs, one at a time, each in a process, with a lease on it."""
 
-    SQL records the end of a run, so the job is only deleted from Redis.
-    """
+    def __init__(
+        self,
+        services: Services,
+        name: str,
+        environment: dict[str, str],
+        heartbeats: Heartbeats,
+        readiness: Readiness,
+    ):
+        self.services, self.name, self.environment = services, name, environment
+        self.heartbeats, self.readiness = heartbeats, readiness
+        self.job: subprocess.Popen[bytes] | None = None
+        self.stop_sent_at: float | None = None
+        """Time of the first request to the job to stop."""
+        self.error: str | None = None
+        """How the last job died, unless this process had asked it to stop."""
 
-    services: Services
-    heartbeats: Heartbeats
-    lease: int
-    environment: dict[str, str]
-    job: subprocess.Popen[bytes] | None = None
-    stop_sent_at: float | None = None
-    """Time of the first request to the job to stop."""
-    killed: bool = False
-    """The job did not stop on request."""
+    def serve(self) -> None:
+        """Carry out runs until the process has to stop."""
+        alarm = self.services.wake.listen()
+        while not stop_requested():
+            with logging_outages():
+                if not self.readiness.check():
+                    self.heartbeats.hurry()
+                    time.sleep(PAUSE_SECONDS)
+                elif run_id := take(self.services, self.name):
+                    self.carry_out(run_id)
+                else:
+                    alarm.wait(IDLE_SECONDS)
+        alarm.close()
 
-    def execute_job(self, job: Job, queue: Queue) -> None:
-        """Carry out a run; requeue it if its process died."""
-        run_id = UUID(job.id)
+    def carry_out(self, run_id: UUID) -> None:
+        """Compute a run in a process, and return it to the queue if the process dies."""
+        self.error, before = None, progress(self.services, run_id)
         try:
             if not stop_requested():
-                self.prepare_execution(job)
-                self.start(job.id)
-                self.monitor(job)
+                self.start(str(run_id))
+                self.monitor(run_id)
         finally:
-            self.heartbeats.release()
-            with loop.logging_outages():
-                self.services.jobs.remove(job.id)
-            with loop.logging_outages():
-                error = None if self.killed else "the process of the job died unexpectedly"
-                end_job(self.services, run_id, self.name, error)
+            try:
+                with logging_outages():
+                    self.end(run_id, before)
+            finally:
+                self.heartbeats.release()
+
+    def end(self, run_id: UUID, before: Progress | None) -> None:
+        """End the attempt of a job, and count its death unless this host is broken."""
+        if self.error and (
+            has_computed(before, progress(self.services, run_id))
+            or self.readiness.test_device()
+        ):
+            fail_job(self.services, run_id, self.name, self.error)
+        else:
+            end_job(self.services, run_id, self.name)
 
     def start(self, run_id: str) -> None:
         """Start the job's process. Other users can read its arguments: no secrets."""
@@ -77,30 +102,31 @@ class Supervisor(BaseWorker):
             [sys.executable, "-m", "worker.job_process", run_id, self.name, str(os.getpid())],
             env=os.environ | ONE_THREAD | self.environment,
             stdin=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
             process_group=0,
         )
+        self.output = JobOutput(self.job)
         if stop_requested():  # The signal came before there was a process.
             self.stop_job()
 
-    def monitor(self, job: Job) -> None:
-        """Wait for the job's process, and keep its lease in Redis alive."""
+    def monitor(self, run_id: UUID) -> None:
+        """Wait for the job's process."""
         assert self.job
-        self.heartbeats.watch(UUID(job.id), self.job.kill)
+        self.heartbeats.watch(run_id, self.job.kill)
         while (code := self._wait(self.job)) is None:
-            with loop.logging_outages():
-                self.maintain_heartbeats(job)
             if self.stop_sent_at and time.monotonic() - self.stop_sent_at > STOP_SECONDS:
-                self.killed = True  # One block takes too long.
-                self.job.kill()
+                self.job.kill()  # One block takes too long.
         self.job = None
         if code:
-            log.warning("Run %s: its process ended with %s", job.id, code)
+            how = death(code)
+            log.warning("Run %s: its process %s", run_id, how)
+            if not self.stop_sent_at:
+                self.error = "\n".join(filter(None, (f"its process {how}", self.output.tail())))
 
     def _wait(self, job: subprocess.Popen[bytes]) -> int | None:
+        """Return how the job ended. A signal to this process ends no wait, so look again."""
         with suppress(subprocess.TimeoutExpired):
-            return job.wait(
-                STOP_CHECK_SECONDS if self.stop_sent_at else self.lease / HEARTBEATS_PER_LEASE
-            )
+            return job.wait(STOP_CHECK_SECONDS)
         return None
 
     def stop_job(self) -> None:
@@ -109,43 +135,48 @@ class Supervisor(BaseWorker):
             self.stop_sent_at = self.stop_sent_at or time.monotonic()
             self.job.terminate()
 
-    def get_heartbeat_ttl(self, job: Job) -> int:
-        return self.lease
+
+def has_computed(before: Progress | None, now: Progress | None) -> bool:
+    """Return whether an attempt that began between has recorded a generation."""
+    return (
+        before is not None
+        and now is not None
+        and now.attempt > before.attempt
+        and now.generation > before.checkpoint
+    )
 
 
-def runnable_queues(shared: Services, plugin_versions: set[str]) -> list[Queue]:
-    """Return the queues of runs that these plug-ins can carry out, longest waiting first."""
-    if not plugin_versions:
-        return shared.jobs.run_queues
-    with shared.sessions.read() as session:
-        queued = in_order(session)
-    able = [run for run in queued if plugin_versions.issuperset(run.plugin_versions or ())]
-    queues = [shared.jobs.run_queue(run.plugin_versions, run.sweep is not None) for run in able]
-    return list({queue.name: queue for queue in (*queues, *shared.jobs.run_queues)}.values())
+def death(code: int) -> str:
+    """Say how a process ended with a status other than 0."""
+    if code >= 0:
+        return f"ended with status {code}"
+    name = signal.Signals(-code).name if -code in set(signal.Signals) else f"signal {-code}"
+    hint = ", perhaps for lack of memory" if -code == signal.SIGKILL else ""
+    return f"was killed by {name}{hint}"
 
 
 def supervise(settings: Settings, index: int) -> None:
     """Run the worker of this number on this machine until it has to stop."""
     shared = services.connect(settings)
     name = f"{socket.gethostname()}-{os.getpid()}"
-    found = device.find(index, settings.workers)
+    found = device.find(index, max(1, settings.workers))
     if found.threads:
         device.pin(found.threads)
-    lease = max(SHORTEST_LEASE, round(settings.lease))
-    worker = Supervisor(
-        shared.jobs.run_queues, name, worker_ttl=lease, serializer=JSONSerializer
-    )
-    worker.services, worker.lease, worker.environment = shared, lease, found.environment
     plugins = PluginWatcher(settings, settings.lease / HEARTBEATS_PER_LEASE)
-    worker.heartbeats = Heartbeats(shared.sessions, name, found, settings.lease, plugins)
+    readiness = Readiness(shared, found)
+    labels = [one.strip() for one in settings.labels.split(",") if one.strip()]
+    heartbeats = Heartbeats(
+        shared.sessions, name, found, settings.lease, labels, plugins, readiness
+    )
+    worker = Supervisor(shared, name, found.environment, heartbeats, readiness)
     handle_signals(worker.stop_job, interrupt=True)
     log.info("Worker %s on %s", name, found.name)
-    worker.heartbeats.start()
+    heartbeats.start()
     plugins.start()
-    loop.serve(worker, lambda: runnable_queues(shared, plugins.report.plugin_versions))
+    worker.serve()
     plugins.end()
     with suppress(SQLAlchemyError):
-        worker.heartbeats.end()
+        heartbeats.end()
     shared.close()
 
 

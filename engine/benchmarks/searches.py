@@ -1,13 +1,15 @@
 """Searches for swimmers beside each other, at equal numbers of simulations.
 
 Prints tables and asserts nothing. Every run is an archive file in `--results`: a call goes on
-where the last one ended, and repeats no finished run. Coverage and QD score count feasible
-creatures only, as archives do.
+where the last one ended. The figures of a finished run are a row of `searches.csv` beside this
+file, and it is not repeated: they are the same on every machine. Delete the rows of a search
+that has changed. Coverage and QD score count feasible creatures only, as archives do.
+`generation.py` has the seconds.
 """
 
 import argparse
+import csv
 import json
-import time
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -17,12 +19,16 @@ import timing
 from ranking import holm, quartiles, ranks
 
 import microcosmos as mc
-from microcosmos.archive import file
+from microcosmos.archive import file, variety
 from microcosmos.spec import parse
 from microcosmos.spec.quality_diversity import PRESETS
 
 NEAT = {"operator": "neat", "select": "mixed"}
 DIRECT: dict[str, Any] = {"control": {"encoding": "direct"}}
+
+
+AT_THE_END = {"every": 1_000_000, "samples": 4}
+"""Re-evaluation of the elites once, after the last generation."""
 
 
 def emitters(*given: Mapping[str, Any], **search: Any) -> dict[str, Any]:
@@ -52,6 +58,7 @@ METHODS: dict[str, dict[str, Any]] = {
     "Pareto fronts": container("fronts"),
     "screened 1 x 10": emitters(NEAT, screening=screened(1, 10)),
     "screened 1 x 40": emitters(NEAT, screening=screened(1, 40)),
+    "screened 2 x 20": emitters(NEAT, screening=screened(2, 20)),
     "screened 4 x 10": emitters(NEAT, screening=screened(4, 10)),
     "screened 4 x 40": emitters(NEAT, screening=screened(4, 40)),
     "direct iso+line": DIRECT | emitters({"operator": "iso+line"}),
@@ -69,7 +76,14 @@ AXES = {
     ],
 }
 """Axes of the archive: the preset's, or two that only the fluid tells."""
-COLUMNS = ("QD score", "coverage, %", "best", "feasible, %")
+COLUMNS = ("QD score", "corrected QD score", "coverage, %", "best", "feasible, %", "kinds")
+"""Corrected: from the means of four disturbed evaluations of every elite. Kinds: of motion."""
+TESTED = 4
+"""Columns that are tested."""
+RECORD = Path(__file__).with_name("searches.csv")
+"""Figures of finished runs."""
+RUN = ("preset", "axes", "method", "generations", "seed")
+"""What a run is known by in the record."""
 
 
 def main() -> None:
@@ -85,23 +99,37 @@ def main() -> None:
     found: dict[str, list[list[float]]] = {method: [] for method in chosen.methods}
     for seed in range(chosen.seeds):
         for method in chosen.methods:
-            found[method].append(figures(carried_out(chosen, method, seed)))
+            found[method].append(recorded(chosen, method, seed))
     rows = {method: np.array(values) for method, values in found.items()}
     evaluations = chosen.generations * PRESETS[chosen.preset][1].search.batch
     title = f"{chosen.preset}, {evaluations:,} simulations, {chosen.seeds} seeds"
     lines = [(method, *map(quartiles, values.T)) for method, values in rows.items()]
-    columns = ("", *COLUMNS, "seconds")
-    timing.print_table(f"{title}: median (quartiles)", columns, lines)
+    timing.print_table(f"{title}: median (quartiles)", ("", *COLUMNS), lines)
     print_tests(rows)
+
+
+def recorded(chosen: argparse.Namespace, method: str, seed: int) -> list[float]:
+    """Return the columns of a run, from the record or by carrying it out."""
+    run = (chosen.preset, chosen.axes, method, str(chosen.generations), str(seed))
+    with RECORD.open(newline="") as stream:
+        for row in csv.DictReader(stream):
+            if tuple(row[name] for name in RUN) == run:
+                return [float(row[name]) for name in COLUMNS]
+    found = figures(carried_out(chosen, method, seed))
+    with RECORD.open("a", newline="") as stream:
+        csv.writer(stream, lineterminator="\n").writerow([*run, *(f"{x:.6g}" for x in found)])
+    return found
 
 
 def carried_out(chosen: argparse.Namespace, method: str, seed: int) -> Path:
     """Return the archive file of a finished run."""
-    document = PRESETS[chosen.preset][1].model_dump(mode="json", exclude_unset=True)
+    preset = PRESETS[chosen.preset][1]
+    document = preset.model_dump(mode="json", exclude_unset=True)
+    document["control"] = preset.control.model_dump(mode="json")  # With its `encoding`.
     changes = METHODS[method]
     search = document.get("search", {}) | changes.get("search", {})
     search = {name: value for name, value in search.items() if value is not None}
-    search |= {"generations": chosen.generations}
+    search |= {"generations": chosen.generations, "reevaluation": AT_THE_END}
     archive = document.get("archive", {})
     if axes := AXES[chosen.axes]:
         archive["descriptors"] = axes
@@ -112,13 +140,8 @@ def carried_out(chosen: argparse.Namespace, method: str, seed: int) -> Path:
     name = f"{chosen.preset} {chosen.axes} {method} {chosen.generations} {seed}.h5"
     path = chosen.results / name
     path.parent.mkdir(parents=True, exist_ok=True)
-    clock = path.with_suffix(".seconds.json")
-    spent = json.loads(clock.read_text()) if clock.exists() else 0.0
-    began = time.monotonic()
-    whole = path.exists() and is_whole(path)
-    if not whole:
+    if not path.exists() or not is_whole(path):
         mc.evolve(parse(document), path)
-        clock.write_text(json.dumps(spent + time.monotonic() - began))
     print(f"{name}: " + ", ".join(f"{x:.3f}" for x in figures(path)), flush=True)
     return path
 
@@ -130,13 +153,15 @@ def is_whole(path: Path) -> bool:
 
 
 def figures(path: Path) -> list[float]:
-    """Return the columns of a run, and its seconds."""
+    """Return the columns of a finished run."""
     tree, _ = file.load(path.read_bytes())
-    curves = {name: np.asarray(column)[-1] for name, column in tree["curves"].items()}
-    feasible = 1 - curves["infeasible"] / curves["evaluations"]
-    seconds = json.loads(path.with_suffix(".seconds.json").read_text())
-    score, coverage = curves["qd_score"], 100 * curves["coverage"]
-    return [float(x) for x in (score, coverage, curves["best"], 100 * feasible, seconds)]
+    curves = {name: np.asarray(column) for name, column in tree["curves"].items()}
+    infeasible = curves["infeasible"][-2] / curves["evaluations"][-2]
+    names = ("qd_score", "corrected_qd_score", "coverage", "best")
+    scales = (1, 1, 100, 1)
+    values = [scale * curves[name][-1] for name, scale in zip(names, scales, strict=True)]
+    kinds = variety.of(path.read_bytes()).kinds
+    return [float(x) for x in (*values, 100 * (1 - infeasible), kinds)]
 
 
 def print_tests(rows: dict[str, np.ndarray]) -> None:
@@ -147,7 +172,7 @@ def print_tests(rows: dict[str, np.ndarray]) -> None:
     for method, values in rows.items():
         if method == BASELINE:
             continue
-        for i, column in enumerate(COLUMNS[:3]):
+        for i, column in enumerate(COLUMNS[:TESTED]):
             share, p = ranks(values[:, i], base[:, i])
             ratio = np.median(values[:, i]) / np.median(base[:, i])
             lines.append((method, column, f"{ratio:.2f}", f"{100 * share:.0f} %"))

@@ -43,7 +43,8 @@ def zig(place: Path) -> str | None:
     # Zig adds checks of undefined behaviour that need a library of its own. It compiles its C++
     # library once for programs and libraries if both are stripped and have the same addressing.
     command.write_text(
-        f"#!/bin/sh\nexport PYTHONPATH={place} ZIG_GLOBAL_CACHE_DIR={place / 'cache'}\n"
+        f"#!/bin/sh\nexport PYTHONPATH={place}\n"
+        f"export ZIG_GLOBAL_CACHE_DIR=${{ZIG_GLOBAL_CACHE_DIR:-{place / 'cache'}}}\n"
         f'exec {sys.executable} -m ziglang c++ -fno-sanitize=all -fPIC -s "$@"\n'
     )
     command.chmod(0o755)

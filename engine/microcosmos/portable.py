@@ -26,6 +26,7 @@ def product(
     return jnp.sum(one[:, :, None] * other[None], 1)
 
 
+@jax.jit
 def long_product(
     one: Float[Array, "row item"], other: Float[Array, "item column"]
 ) -> Float[Array, "row column"]:

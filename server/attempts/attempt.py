@@ -9,24 +9,25 @@ from dataclasses import dataclass, field
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import case, func
+from sqlalchemy import case
 from sqlalchemy.orm import Session
 
 from microcosmos.archive.report import Report
 from microcosmos.sizes import size
 
+from ..auth.device_use import count_device_time
 from ..core.database import clock, retried
 from ..creatures import initial
 from ..runs import log
 from ..runs.announce import announce
 from ..runs.lifecycle import change, fail_attempt, stop_attempt
 from ..services.services import Services
+from ..storage import space
 from ..storage.artifacts import checkpoint_path
 from ..tables import (
     CANCELLED,
     FAILED,
     FINISHED,
-    OVERRIDE_NEEDED,
     PAUSED,
     RUNNING,
     Generation,
@@ -66,7 +67,9 @@ class Attempt:
     outage_seconds: float = 0.0
     """Seconds that a write waits while the database is away."""
     requested_state: str | None = None
-    """`paused` or `cancelled`, if a person has requested it."""
+    """The state in which a person, or an urgent run, wants the run: see `Run`."""
+    recorded: bool = False
+    """It has recorded a generation."""
     checked_at: float = field(default_factory=time.monotonic)
     announced_at: float = 0.0
 
@@ -75,6 +78,7 @@ class Attempt:
         self.saved_at = time.monotonic() if self.generation else -math.inf
 
     def record_device(self, device: str) -> None:
+        """Record the kind of device that computes the run from here on."""
         self._update(f"Computing on {device}.", device=device)
 
     @retried
@@ -132,8 +136,9 @@ class Attempt:
             # After an outage an earlier try may have been committed.
             if session.get(Generation, (self.run_id, report.generation)) is None:
                 recording.write(session, self.run_id, rows)
+                count_device_time(session, run.owner, seconds)
             self.requested_state = run.requested_state
-        self.seconds = total
+        self.seconds, self.recorded = total, True
         for kind, data in recording.events(self.run_id, rows):
             self.services.events.publish(kind, self.run_id, data)
         if time.monotonic() - self.announced_at >= ANNOUNCE_SECONDS:
@@ -155,6 +160,8 @@ class Attempt:
                 f"The one of generation {self.generation} stays; the worker will try again."
             )
             return False
+        if warning := space.shortage(self.services.settings, self.services.artifacts):
+            self.warn(f"{warning}.")
         return True
 
     @retried
@@ -202,7 +209,7 @@ class Attempt:
             self.requeue()
 
     def warn(self, text: str) -> None:
-        """Show a warning on the run; the next checkpoint clears it."""
+        """Show a warning on the run; the next checkpoint that is written clears it."""
         self._update(text, "warning", log.UNSAVED, warning=text)
 
     def finish(self) -> None:
@@ -218,19 +225,10 @@ class Attempt:
     def pause(self) -> None:
         self._update(f"Stopped after generation {self.generation}.", **_paused())
 
-    def wait_for_override(self, reason: str) -> None:
-        """Pause until a person allows this kind of device, whose results may differ in bits."""
-        text = (
-            f"{reason} Resume the run to continue on this device; its archive will record that."
-        )
-        self._update(
-            text, "warning", **_paused(), warning=text, device_override=OVERRIDE_NEEDED
-        )
-
-    def pause_until_resumed(self, reason: str) -> None:
+    def pause_until_resumed(self, reason: str, **values: Any) -> None:
         """Pause until a person adds the missing plug-in or file and resumes the run."""
         text = f"{reason.rstrip('.')}. Then resume the run."
-        self._update(text, "warning", **_paused(), warning=text)
+        self._update(text, "warning", **_paused(), warning=text, **values)
 
     @retried
     def requeue(self) -> None:
@@ -238,6 +236,7 @@ class Attempt:
         with self._current() as (session, _):
             stop_attempt(session, self.run_id)
         announce(self.services, self.run_id)
+        self.services.wake.send()
 
     def fail(self, error: str) -> None:
         """Record the traceback, and requeue the run unless this was its last attempt."""
@@ -245,6 +244,7 @@ class Attempt:
             if not fail_attempt(session, self.run_id, Run.attempt == self.number, error=error):
                 raise ClaimLost(f"run {self.run_id}, attempt {self.number}")
         announce(self.services, self.run_id)
+        self.services.wake.send()
 
     @retried
     def _update(
@@ -285,9 +285,10 @@ def _ended(status: str) -> dict[str, Any]:
 def _paused() -> dict[str, Any]:
     """Return the values of a paused run, or of a cancelled one if that was requested."""
     return {
-        "status": func.coalesce(Run.requested_state, PAUSED),
+        "status": case((Run.requested_state == CANCELLED, CANCELLED), else_=PAUSED),
         "finished_at": case((Run.requested_state == CANCELLED, clock()), else_=None),
         "worker": None,
+        "released_at": clock(),
         "requested_state": None,
         "requested_at": None,
     }

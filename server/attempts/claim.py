@@ -8,13 +8,13 @@ from uuid import UUID
 
 from sqlalchemy import func, or_
 
-from ..core.database import clock
+from ..core.database import clock, now
 from ..runs import log
 from ..runs.announce import announce
 from ..runs.lifecycle import change, fail_attempt
+from ..schedule.fit import any_device
 from ..services.services import Services
-from ..tables import OVERRIDE_ALLOWED, QUEUED, RUNNING, Run, Worker
-from ..workers import plugins
+from ..tables import QUEUED, RUNNING, Run
 from .attempt import Attempt, ClaimLost
 from .checkpoints import CheckpointUnavailable, rewind
 from .leases import lease_expired
@@ -25,27 +25,33 @@ OUTAGE_SECONDS = 600.0
 logger = logging.getLogger(__name__)
 
 
+class NothingComputed(Exception):
+    """An attempt failed before its first generation."""
+
+
 def claim(services: Services, run_id: UUID, worker: str) -> Attempt | None:
     """Start an attempt at a queued run; None if this worker cannot have the run.
 
-    A run that this worker already had, or whose lease has expired, counts as queued. Rows that
-    were recorded after its checkpoint are deleted.
+    A run that this worker already had, or whose lease has expired, counts as queued; one that
+    another worker has taken does not. Rows that were recorded after its checkpoint are deleted.
     """
     with services.sessions.write.begin() as session:
         run = session.get(Run, run_id)
-        if run and not plugins.has_versions(session.get(Worker, worker), run.plugin_versions):
-            return None  # The run waits in another queue.
+        other_device = run is not None and any_device(run, now(session))
         over = or_(Run.worker == worker, lease_expired(session, services.settings.lease))
         fail_attempt(session, run_id, over, error="the worker stopped reporting")
         started = {
             "status": RUNNING,
+            "interrupted": False,
+            "avoided_worker": None,
             "attempt": Run.attempt + 1,
             "attempts_without_checkpoint": Run.attempts_without_checkpoint + 1,
             "worker": worker,
             "heartbeat_at": clock(),
             "started_at": func.coalesce(Run.started_at, clock()),
         }
-        run = change(session, run_id, Run.status == QUEUED, **started)
+        free = or_(Run.worker.is_(None), Run.worker == worker)
+        run = change(session, run_id, Run.status == QUEUED, free, **started)
         if run:
             before = run.generation
             rewound = rewind(session, run)
@@ -57,7 +63,7 @@ def claim(services: Services, run_id: UUID, worker: str) -> Attempt | None:
                 spec=run.spec,
                 generation=run.checkpoint_generation,
                 seconds=run.seconds,
-                other_device=run.device_override == OVERRIDE_ALLOWED,
+                other_device=other_device,
             )
     if run and rewound:
         attempt.publish_rewind()
@@ -72,6 +78,7 @@ def claimed(
     """Yield an attempt that waits while the database is away, or None if it cannot be claimed.
 
     An error inside is recorded on the run. An attempt that has lost its claim ends silently.
+    Raise `NothingComputed` for an error before the first generation: its host may be broken.
     """
     attempt = claim(services, run_id, worker)
     if attempt is None:
@@ -86,7 +93,9 @@ def claimed(
         logger.error("Run %s: %s", run_id, error)
         with suppress(ClaimLost):
             attempt.pause_until_resumed(str(error))
-    except Exception:
+    except Exception as error:
         logger.exception("Run %s failed", run_id)
+        if not attempt.recorded:
+            raise NothingComputed from error
         with suppress(ClaimLost):
             attempt.fail(traceback.format_exc())

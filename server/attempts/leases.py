@@ -1,15 +1,14 @@
 """Leases: renew one, test whether it has expired, and end it with its job."""
 
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 from uuid import UUID
 
-from sqlalchemy import or_
+from sqlalchemy import or_, select
 from sqlalchemy.orm import Session
 
 from ..core.database import Sessions, ago, clock
-from ..queue.order import requeue
 from ..runs.announce import announce
-from ..runs.lifecycle import change, fail_attempt, stop_attempt
+from ..runs.lifecycle import change, fail_attempt, fail_unclaimed, release, stop_attempt
 from ..services.services import Services
 from ..tables import QUEUED, RUNNING, Run
 
@@ -19,17 +18,16 @@ LeaseState = Literal["held", "waiting", "over", "lost"]
 def heartbeat(sessions: Sessions, run_id: UUID, worker: str) -> LeaseState:
     """Renew a worker's lease on a run, and return the lease's state.
 
-    `waiting`: no worker has claimed the run yet. `over`: no attempt is active any more.
+    `waiting`: its worker has not claimed the run yet. `over`: no worker has it any more.
     `lost`: another worker has the run, so the job must be killed.
     """
     with sessions.write.begin() as session:
-        mine = (Run.status == RUNNING, Run.worker == worker)
-        if change(session, run_id, *mine, heartbeat_at=clock()):
-            return "held"
+        mine = (Run.worker == worker, Run.status.in_((RUNNING, QUEUED)))
+        if run := change(session, run_id, *mine, heartbeat_at=clock()):
+            return "held" if run.status == RUNNING else "waiting"
         run = session.get(Run, run_id)
-        if run and run.status == RUNNING:
-            return "lost"
-        return "waiting" if run and run.status == QUEUED else "over"
+        taken = run and run.worker and run.status in (RUNNING, QUEUED)
+        return "lost" if taken else "over"
 
 
 def lease_expired(session: Session, lease: float) -> Any:
@@ -37,14 +35,46 @@ def lease_expired(session: Session, lease: float) -> Any:
     return or_(Run.heartbeat_at.is_(None), Run.heartbeat_at < ago(session, lease))
 
 
-def end_job(services: Services, run_id: UUID, worker: str, error: str | None = None) -> None:
-    """End the attempt of a dead job. Without an `error`, its worker killed it on purpose."""
-    mine = Run.worker == worker
+class Progress(NamedTuple):
+    """How far a run is."""
+
+    attempt: int
+    """Number of its last attempt."""
+    generation: int
+    """Its last recorded generation."""
+    checkpoint: int
+    """The generation of its last checkpoint, to which the next attempt returns."""
+
+
+def progress(services: Services, run_id: UUID) -> Progress | None:
+    """Return how far a run is; None if it is gone."""
+    with services.sessions.read() as session:
+        columns = (Run.attempt, Run.generation, Run.checkpoint_generation)
+        found = session.execute(select(*columns).where(Run.id == run_id)).one_or_none()
+    return Progress(*found) if found else None
+
+
+def end_job(services: Services, run_id: UUID, worker: str) -> None:
+    """End the attempt of a job that its worker has stopped; it does not count."""
     with services.sessions.write.begin() as session:
-        if error:
-            run = fail_attempt(session, run_id, mine, error=error)
-        else:
-            run = stop_attempt(session, run_id, mine)
+        mine = Run.worker == worker
+        run = stop_attempt(session, run_id, mine) or release(session, run_id, mine)
+    _announce(services, run_id, run)
+
+
+def fail_job(services: Services, run_id: UUID, worker: str, error: str) -> None:
+    """End the attempt of a job that has died, and count it.
+
+    A job that died before it claimed the run counts too: else it would be tried for ever.
+    """
+    with services.sessions.write.begin() as session:
+        mine = Run.worker == worker
+        run = fail_attempt(session, run_id, mine, error=error)
+        run = run or fail_unclaimed(session, run_id, mine, error=error)
+    _announce(services, run_id, run)
+
+
+def _announce(services: Services, run_id: UUID, run: Run | None) -> None:
     if run:
         announce(services, run_id)
-    requeue(services.sessions, services.jobs, run_id)
+        services.wake.send()

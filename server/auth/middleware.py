@@ -80,13 +80,18 @@ class PrincipalMiddleware:
         return None
 
     async def _page(self, request: HTTPConnection) -> Response | None:
-        """Move a token in the address of a page into a cookie. The page itself is public."""
+        """Move a token in the address of a page into a cookie. The page itself is public.
+
+        Links of other sites sign nobody in: else their authors would see what is submitted.
+        """
         given = request.query_params.get("token")
         if given is None or not self.needs_token:
             return None
         clean = request.url.remove_query_params("token")
         # The log of requests is written at the end: it must not name the secret.
         request.scope["query_string"] = clean.query.encode()
+        if _follows_a_foreign_link(request.headers):
+            return RedirectResponse(clean, 303)  # The page asks for a token.
         try:
             principal = await run_in_threadpool(self.authenticator.identify, given)
         except ProblemError as error:
@@ -122,6 +127,15 @@ def _refuse_foreign_origin(headers: Headers) -> None:
     if origin is not None and _split(origin).netloc != headers.get("host", ""):
         needed = f"Origin must be this server's own page; got {origin!r}."
         raise ProblemError(403, "Forbidden", needed)
+
+
+def _follows_a_foreign_link(headers: Headers) -> bool:
+    """Tell whether a page of another site names the address: nobody typed or opened it."""
+    site = headers.get("sec-fetch-site")
+    if site is None:  # An old browser, or none.
+        referer = headers.get("referer")
+        return referer is not None and _split(referer).netloc != headers.get("host", "")
+    return site not in ("none", "same-origin")
 
 
 def _split(address: str) -> SplitResult:

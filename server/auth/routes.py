@@ -6,12 +6,14 @@ from fastapi import APIRouter, Request, Response
 
 from ..core.json_body import json_route
 from ..services.services import ServicesDep, SessionDep
+from ..tables import USE_DAYS
 from . import tokens
 from .authenticate import Authenticator
 from .authorize import MAY_ADMINISTER, PUBLIC, Reader
 from .cookies import delete_token, set_token
+from .device_use import device_seconds
 from .middleware import address
-from .schemas import PrincipalRead, SignIn, TokenCreate, TokenCreated, TokenRead
+from .schemas import PrincipalRead, Quota, SignIn, TokenCreate, TokenCreated, TokenRead
 
 BODY_BYTES = 1 << 12
 
@@ -27,15 +29,24 @@ async def read_current(services: ServicesDep, principal: Reader) -> PrincipalRea
 @router.get("/tokens", dependencies=[MAY_ADMINISTER])
 def list_tokens(session: SessionDep) -> list[TokenRead]:
     """Return all tokens, revoked ones too, newest first, without their secrets."""
-    return [TokenRead.model_validate(token) for token in tokens.all_tokens(session)]
+    used = device_seconds(session, USE_DAYS)
+    read = [TokenRead.model_validate(token) for token in tokens.all_tokens(session)]
+    return [one.model_copy(update={"used_hours": used.get(one.id, 0.0) / 3600}) for one in read]
 
 
 @router.post("/tokens", status_code=201, dependencies=[MAY_ADMINISTER])
 def create_token(asked: TokenCreate, services: ServicesDep) -> TokenCreated:
     """Create a token. Only this answer contains its secret."""
-    created = tokens.create(services, asked.name, asked.scope, asked.expires_at)
+    created = tokens.create(services, **asked.model_dump())
     read = TokenRead.model_validate(created.token)
     return TokenCreated(**read.model_dump(), secret=created.secret)
+
+
+@router.patch("/tokens/{token_id}", dependencies=[MAY_ADMINISTER])
+def change_token(token_id: UUID, asked: Quota, services: ServicesDep) -> TokenRead:
+    """Change the quota of a token; omitted limits stay as they are."""
+    quota = asked.model_dump(exclude_unset=True)
+    return TokenRead.model_validate(tokens.change_quota(services, token_id, quota))
 
 
 @router.delete("/tokens/{token_id}", dependencies=[MAY_ADMINISTER])

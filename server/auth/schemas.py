@@ -4,14 +4,23 @@ from datetime import datetime
 from typing import Annotated
 from uuid import UUID
 
-from pydantic import AwareDatetime, StringConstraints
+from pydantic import AwareDatetime, Field, StringConstraints
 
 from ..core.schemas import Wire
 from .principal import Scope
 
 
-class TokenCreate(Wire):
-    """Name, scope and end of a new token."""
+class Quota(Wire):
+    """Limits on the runs of a token; None: without limit."""
+
+    max_queued: Annotated[int, Field(ge=0, le=1_000_000)] | None = None
+    max_running: Annotated[int, Field(ge=0, le=10_000)] | None = None
+    device_hours: Annotated[float, Field(ge=0.0, le=1e9)] | None = None
+    """Hours of devices in 30 days. Runs that have begun go on; no further one starts."""
+
+
+class TokenCreate(Quota):
+    """Name, scope, end and quota of a new token."""
 
     name: Annotated[
         str,
@@ -24,7 +33,7 @@ class TokenCreate(Wire):
     """Without it the token never expires."""
 
 
-class TokenRead(Wire):
+class TokenRead(Quota):
     """A token without its secret."""
 
     id: UUID
@@ -36,6 +45,8 @@ class TokenRead(Wire):
     revoked_at: datetime | None
     last_used_at: datetime | None
     """Accurate to five minutes."""
+    used_hours: float = 0.0
+    """Hours of devices that its runs have had in 30 days."""
 
 
 class TokenCreated(TokenRead):

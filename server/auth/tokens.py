@@ -6,7 +6,7 @@ The table holds the hash of a secret, never the secret.
 import asyncio
 import logging
 import secrets
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime, timedelta
@@ -60,7 +60,11 @@ def hashed(secret: str) -> str:
 
 
 def create(
-    services: Services, name: str, scope: Scope, expires_at: datetime | None = None
+    services: Services,
+    name: str,
+    scope: Scope,
+    expires_at: datetime | None = None,
+    **quota: float | None,
 ) -> NewToken:
     """Create a token; raise `ProblemError` if a live token has the name."""
     secret = PREFIX + secrets.token_urlsafe(SECRET_BYTES)
@@ -76,6 +80,7 @@ def create(
                 prefix=secret[:PREVIEW_LENGTH],
                 scope=scope,
                 expires_at=expires_at,
+                **quota,
             )
             session.add(token)
             session.flush()
@@ -141,6 +146,18 @@ def revoke(services: Services, token: UUID, last: bool = False) -> Token:
                 )
                 raise ProblemError(409, "The last admin", detail)
             found.revoked_at = found.expires_at if found.expired(session) else now(session)
+    return found
+
+
+def change_quota(services: Services, token: UUID, quota: Mapping[str, float | None]) -> Token:
+    """Change limits on the runs of a token."""
+    with services.sessions.write.begin() as session:
+        found = session.get(Token, token)
+        if found is None:
+            raise ProblemError(404, "Not found", f"No token has the id {token}.")
+        for name, limit in quota.items():
+            setattr(found, name, limit)
+    services.wake.send()
     return found
 
 

@@ -58,7 +58,6 @@ def purge_rows(services: Services) -> bool:
         if gone:
             _delete_run(session, run.id)
     if gone:
-        services.jobs.remove(str(run.id))
         services.events.publish("purge", run.id, {"run": str(run.id)})
         log.info("run %s is purged", run.id)
     return True

@@ -1,19 +1,20 @@
 """Position in the queue: why a run waits."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from uuid import UUID
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from uuid import UUID, uuid4
 
-from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from microcosmos.sizes import size
-
-from ..queue.order import in_order
+from ..core.database import now
+from ..schedule import quota
+from ..schedule.fit import fitting
+from ..schedule.order import in_order
+from ..schedule.take import runs_of
 from ..services.services import Services
-from ..specs.parsing import parse_stored
-from ..tables import QUEUED, Run, Worker
-from ..workers import plugins, registry
+from ..tables import NORMAL, QUEUED, Run, Worker
+from ..workers import registry
 from .schemas import QueueAhead
 
 NO_WORKER = "No worker is alive: start one with `make run` or `python -m worker.supervisor`."
@@ -23,43 +24,58 @@ NO_WORKER = "No worker is alive: start one with `make run` or `python -m worker.
 class QueueState:
     """The queued runs, and the workers that take them."""
 
+    moment: datetime
     runs: list[UUID]
-    """In the order in which workers take them."""
+    """In their order: those that a worker has taken, then those that wait."""
+    taken: int
     alive: list[Worker]
-    running: dict[str, Run]
-    """By worker."""
-    singles: int
-    """Number of runs outside sweeps, which go before all others."""
+    """Live workers that take runs."""
+    having: Mapping[str, UUID]
+    """The run that a worker has, by the worker's name."""
+    exhausted: Mapping[UUID | None, str]
+    """Why no further run of an owner starts, by owner."""
+    problem: str | None = None
+    """Why no live worker takes runs, if that is so."""
 
-    @property
-    def busy(self) -> list[str]:
-        return [worker.name for worker in self.alive if worker.status == "busy"]
-
-    @property
-    def idle(self) -> int:
-        return len(self.alive) - len(self.busy)
-
-    def before(self, place: int) -> int:
-        """Return the number of runs before a place, from 0; negative if it is being taken.
-
-        A busy worker without a run has taken one and prepares it.
-        """
-        return place - sum(name not in self.running for name in self.busy)
-
-    def ahead(self, sweep: bool = False) -> QueueAhead:
-        """Return the queue ahead of a run, or a sweep, that is submitted now."""
-        before = max(0, self.before(len(self.runs) if sweep else self.singles))
-        return QueueAhead(runs_ahead=before, workers=len(self.alive), idle_workers=self.idle)
+    def idle(self, workers: Sequence[Worker]) -> int:
+        return sum(worker.name not in self.having for worker in workers)
 
 
 def queue_state(services: Services, session: Session) -> QueueState:
     alive = registry.live(session, services.settings.lease)
-    single = select(func.count()).where(Run.status == QUEUED, Run.sweep.is_(None))
+    able = [worker for worker in alive if worker.problem is None]
+    problem = None if able or not alive else f"Worker {alive[0].name}: {alive[0].problem}."
+    queued = in_order(session)
     return QueueState(
-        runs=[run.id for run in in_order(session)],
-        alive=alive,
-        running=registry.running(session, alive),
-        singles=session.scalars(single).one(),
+        moment=now(session),
+        runs=[run.id for run in queued],
+        taken=sum(run.worker is not None for run in queued),
+        alive=able,
+        having=runs_of(session, able),
+        exhausted=quota.exhausted(session, {run.owner for run in queued}),
+        problem=problem,
+    )
+
+
+def ahead(
+    services: Services, session: Session, owner: UUID | None, sweep: bool = False
+) -> QueueAhead:
+    """Return the queue ahead of a run, or a sweep, that its owner submits now."""
+    queue = queue_state(services, session)
+    mine = Run(
+        id=uuid4(),
+        owner=owner,
+        sweep=uuid4() if sweep else None,
+        priority=NORMAL,
+        interrupted=False,
+        created_at=queue.moment,
+        queued_at=queue.moment,
+    )
+    order = [run.id for run in in_order(session, mine)]
+    return QueueAhead(
+        runs_ahead=order.index(mine.id) - queue.taken,
+        workers=len(queue.alive),
+        idle_workers=queue.idle(queue.alive),
     )
 
 
@@ -76,32 +92,26 @@ def reasons_in(queue: QueueState, queued: Sequence[Run]) -> dict[UUID, str]:
 
 def reason(run: Run, place: int, queue: QueueState) -> str:
     """Return a sentence about a run at this place of the queue, from 0."""
+    if run.worker is not None:
+        return f"Worker {run.worker} is about to start it."
     if not queue.alive:
-        return NO_WORKER
-    versions = run.plugin_versions
-    fit = [worker for worker in queue.alive if plugins.has_versions(worker, versions)]
-    if not fit:
-        return plugins.explain_missing(queue.alive, run.spec)
-    queue = replace(queue, alive=fit)
-    before = queue.before(place)
-    if before < 0:
-        return "A worker is about to start it."
-    needed, largest = needed_bytes(run), max(worker.memory_bytes for worker in queue.alive)
-    if needed is not None and needed > largest:
-        return f"Needs {size(needed)}; the largest live worker has {size(largest)}."
-    if queue.idle:
+        return queue.problem or NO_WORKER
+    fit, unmet = fitting(run, queue.alive, queue.moment)
+    if unmet:
+        return unmet
+    if over := queue.exhausted.get(run.owner):
+        return over
+    before = max(0, place - queue.taken)
+    if queue.idle(fit):
         state = "A worker is free"
-    elif len(queue.alive) > 1:
-        state = f"Waits for a worker: all {len(queue.alive)} are busy"
+    elif len(fit) > 1:
+        state = f"Waits for a worker: all {len(fit)} {which(fit, queue)}are busy"
     else:
-        computed = queue.running.get(queue.alive[0].name)
-        of_run = f" with run {str(computed.id)[:8]}" if computed else ""
-        state = f"Waits for a worker: the only one is busy{of_run}"
+        state = f"Waits for a worker: the only one {which(fit, queue)}is busy"
+        state += f" with run {str(queue.having[fit[0].name])[:8]}"
     ahead = "1 run is before it" if before == 1 else f"{before:,} runs are before it"
     return f"{state}; {ahead if before else 'this run is next'}."
 
 
-def needed_bytes(run: Run) -> int | None:
-    """Return the memory that a run needs; None if another version wrote its spec."""
-    found = parse_stored(run.spec)
-    return found.estimate.memory_bytes if found else None
+def which(fit: Sequence[Worker], queue: QueueState) -> str:
+    return "" if len(fit) == len(queue.alive) else "that can carry it out "

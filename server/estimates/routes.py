@@ -5,8 +5,10 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from sqlalchemy import select
 
+from ..auth import tokens
 from ..auth.authorize import MAY_READ
 from ..services.services import ServicesDep, SessionDep
+from ..storage import space
 from ..tables import QUEUED, Run
 from ..workers.registry import run_brief
 from . import position
@@ -28,13 +30,17 @@ def read_queue(
     found = {run.id: run for run in session.scalars(queued)}
     runs = [found[run_id] for run_id in first if run_id in found]
     reasons = position.reasons_in(queue, runs)
+    names = tokens.owner_names(session, (run.owner for run in runs))
     items = [
         QueuedRun(
             **run_brief(run).model_dump(),
             waiting_reason=reasons[run.id],
             queued_at=run.queued_at,
-            memory_bytes=position.needed_bytes(run),
+            memory_bytes=run.memory_bytes,
+            priority=run.priority,
+            owner=names.get(run.owner),
         )
         for run in runs
     ]
-    return QueueRead(total=len(queue.runs), items=items)
+    warning = space.shortage(services.settings, services.artifacts)
+    return QueueRead(total=len(queue.runs), warning=warning, items=items)

@@ -4,6 +4,7 @@ from datetime import datetime
 
 from ..core.schemas import Wire
 from ..specs.schemas import DrawingRead
+from ..tables import Priority
 from ..workers.schemas import RunBrief
 
 
@@ -21,7 +22,7 @@ class MeasuredSpeed(Wire):
 
 class QueueAhead(Wire):
     runs_ahead: int
-    """Queued runs that go first, without those that a worker is about to start."""
+    """Queued runs that go first, without those that workers are about to start."""
     workers: int
     idle_workers: int
 
@@ -44,10 +45,15 @@ class QueuedRun(RunBrief):
     queued_at: datetime
     memory_bytes: int | None
     """Needed memory; None if it is unknown."""
+    priority: Priority
+    owner: str | None
+    """Name of the token that created it."""
 
 
 class QueueRead(Wire):
     total: int
     """All queued runs, also those that a worker is about to start."""
+    warning: str | None
+    """About a disk of the installation that is almost full."""
     items: list[QueuedRun]
     """The first ones, in the order in which workers take them."""

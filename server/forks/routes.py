@@ -10,7 +10,6 @@ from microcosmos.spec import Spec
 from ..auth.authorize import Writer
 from ..core.json_body import json_route
 from ..creatures.initial import initial_of
-from ..queue.order import requeue
 from ..runs.announce import changed
 from ..runs.deps import OwnRunId, find_run
 from ..runs.schemas import Extension, Fork, RunRead
@@ -36,7 +35,7 @@ def extend_run(run_id: OwnRunId, services: ServicesDep, sent: Extension) -> RunR
     spec = extending.longer(run, sent.generations)
     refuse_too_large(services, spec)
     longer = changed(services, run_id, lambda session, _: extending.extend(session, run, spec))
-    requeue(services.sessions, services.jobs, run_id)
+    services.wake.send()
     return longer
 
 

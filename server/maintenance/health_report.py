@@ -2,20 +2,22 @@
 
 import shutil
 import time
+from contextlib import suppress
 from pathlib import Path
 from urllib.parse import urlsplit
 from uuid import uuid4
 
 import psutil
 from redis import RedisError
-from sqlalchemy import text
+from sqlalchemy import func, select, text
 from sqlalchemy.exc import SQLAlchemyError
 
 from microcosmos.version import VERSION
 
 from ..core.schemas import Wire
 from ..services.services import Services
-from ..tables import migrations
+from ..storage import mark
+from ..tables import QUEUED, Run, migrations
 from ..workers import registry
 
 PROBE = bytes(4096)
@@ -103,6 +105,8 @@ def disk(services: Services) -> DiskHealth:
         store.delete(path)
     except Exception as failed:  # Each kind of store has errors of its own.
         error = f"{type(failed).__name__}: {failed}"
+    with suppress(SQLAlchemyError):  # The report says so elsewhere.
+        error = error or mark.fault(services.sessions, store)
     folder = Path(store.root) if store.local else None
     there = folder and next(one for one in (folder, *folder.parents) if one.exists())
     usage = there and shutil.disk_usage(there)
@@ -146,17 +150,20 @@ def redis(services: Services) -> RedisHealth:
 def report(services: Services) -> HealthReport:
     found, messages = database(services), redis(services)
     workers: dict[str, int] = {}
+    queues: dict[str, int] = services.jobs.lengths() if messages.reachable else {}
     if found.reachable:
         with services.sessions.read() as session:
             live = registry.live(session, services.settings.lease)
+            runs = session.scalar(select(func.count()).where(Run.status == QUEUED)) or 0
         workers = {
             status: sum(one.status == status for one in live) for status in ("idle", "busy")
         }
+        queues["runs"] = runs
     return HealthReport(
         version=VERSION,
         database=found,
         disk=disk(services),
         redis=messages,
-        queues=services.jobs.lengths() if messages.reachable else {},
+        queues=queues,
         workers=workers,
     )

@@ -60,7 +60,7 @@ def fault(settings: Settings, part: str) -> str:
         if not answers(settings.port, "/healthz"):
             return "The server does not answer."
         if not answers(settings.port, "/readyz"):
-            raise ConnectionError("The server cannot reach the database or Redis.")
+            raise ConnectionError("The server cannot reach the database, Redis or its store.")
         return ""
     services = connect(settings)
     host = socket.gethostname()

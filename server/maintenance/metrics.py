@@ -3,6 +3,7 @@
 import time
 from collections import Counter as Tally
 from collections.abc import Iterable, Iterator
+from pathlib import Path
 
 from prometheus_client import (
     CollectorRegistry,
@@ -22,6 +23,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from microcosmos.version import VERSION
 
 from ..services.services import Services
+from ..storage import space
 from ..tables import RUNNING, STATUSES, Run
 from ..workers import registry
 
@@ -59,6 +61,7 @@ class Metrics(Collector):
         with self.services.sessions.read() as session:
             yield from _runs(session)
             yield _workers(session, self.services.settings.lease)
+        yield _disks(self.services)
         yield from _queues(self.services)
 
     def text(self) -> bytes:
@@ -124,6 +127,14 @@ def _workers(session: Session, lease: float) -> Metric:
     pairs = [(kind, status) for kind in ("cpu", "gpu") for status in ("idle", "busy")]
     counts = ((*pair, found[pair]) for pair in pairs)
     return _gauge("workers", "Live workers.", ("kind", "status"), counts)
+
+
+def _disks(services: Services) -> Metric:
+    """Label the disks by what they hold: paths may tell names."""
+    settings, store = services.settings, services.artifacts
+    kinds = {Path(store.root): "store", settings.data.resolve(): "database"}
+    free = [(kinds[one], space.free_bytes(one)) for one in space.folders(settings, store)]
+    return _gauge("disk_free_bytes", "Free bytes, by what the disk holds.", ("holds",), free)
 
 
 def _queues(services: Services) -> Iterator[Metric]:

@@ -1,6 +1,6 @@
-"""The reconciler: repair runs that lack a worker or a job, and delete expired rows.
+"""The reconciler: repair runs that lack their worker, and delete expired rows.
 
-The server runs it every few seconds, so Redis may be emptied at any time.
+The server runs it every few seconds.
 """
 
 import logging
@@ -13,11 +13,11 @@ from sqlalchemy import delete, select
 from sqlalchemy.exc import SQLAlchemyError
 
 from ..attempts import leases
+from ..attempts.preemption import make_room
 from ..core.database import ago
 from ..deletion.purge import purge
-from ..queue.order import in_order
 from ..runs.announce import announce
-from ..runs.lifecycle import end_attempt, fail_attempt
+from ..runs.lifecycle import end_attempt, fail_attempt, release
 from ..runs.log import note
 from ..services.services import Services
 from ..tables import CANCELLED, QUEUED, RUNNING, Run, Sweep, Worker
@@ -57,8 +57,9 @@ def reconcile(services: Services) -> None:
     """Do all periodic work once."""
     cancel_overdue(services)
     requeue_expired(services)
+    release_unclaimed(services)
+    make_room(services)
     services.jobs.clean()
-    enqueue_missing(services)
     delete_silent_workers(services)
     purge(services)
     delete_empty_sweeps(services)
@@ -96,15 +97,21 @@ def requeue_expired(services: Services) -> None:
             run = fail_attempt(session, run_id, *expired, error=error)
         if run:
             announce(services, run_id)
-            services.jobs.enqueue([run] if run.status == QUEUED else [])
+            services.wake.send()
 
 
-def enqueue_missing(services: Services) -> None:
-    """Enqueue queued runs that have no job, in their order."""
+def release_unclaimed(services: Services) -> None:
+    """Take runs back from workers that died between taking and claiming them."""
     with services.sessions.read() as session:
-        queued = in_order(session)
-    known = services.jobs.runs_with_job() if queued else set()
-    services.jobs.enqueue(run for run in queued if str(run.id) not in known)
+        silent = leases.lease_expired(session, services.settings.lease)
+        taken = (Run.status == QUEUED, Run.worker.is_not(None), silent)
+        found = list(session.scalars(select(Run.id).where(*taken)))
+    for run_id in found:
+        with services.sessions.write.begin() as session:
+            run = release(session, run_id, silent)
+        if run:
+            announce(services, run_id)
+            services.wake.send()
 
 
 def delete_empty_sweeps(services: Services) -> None:

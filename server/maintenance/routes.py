@@ -13,6 +13,7 @@ from ..auth.authorize import MAY_ADMINISTER, MAY_READ, PUBLIC
 from ..core import static_files
 from ..core.schemas import Wire
 from ..services.services import ServicesDep, SessionDep
+from ..storage import mark, space
 from . import health_report
 
 router = APIRouter(tags=["health"])
@@ -33,6 +34,9 @@ Answer = Literal["ok", "unreachable"]
 class Readiness(Wire):
     database: Answer
     redis: Answer
+    store: Literal["ok", "wrong or unreachable"]
+    disk: Literal["ok", "almost full", "full"]
+    """`almost full` is a warning: the server is ready all the same."""
 
 
 @router.get("/health", dependencies=[MAY_ADMINISTER])
@@ -48,16 +52,21 @@ def alive() -> Health:
 
 @outside.get("/readyz", responses={503: {"model": Readiness}}, dependencies=[PUBLIC])
 def ready(services: ServicesDep, session: SessionDep, response: Response) -> Readiness:
-    found = Readiness(database="ok", redis="ok")
+    found = Readiness(database="ok", redis="ok", store="ok", disk="ok")
+    if space.shortage(services.settings, services.artifacts):
+        full = space.is_full(services.settings, services.artifacts)
+        found.disk = "full" if full else "almost full"
     try:
         session.execute(text("SELECT 1"))
+        if mark.fault(services.sessions, services.artifacts):
+            found.store = "wrong or unreachable"
     except SQLAlchemyError:
         found.database = "unreachable"
     try:
         services.redis.ping()
     except RedisError:
         found.redis = "unreachable"
-    if "unreachable" in (found.database, found.redis):
+    if {found.database, found.redis, found.store} != {"ok"} or found.disk == "full":
         response.status_code = 503
     return found
 

@@ -1,13 +1,10 @@
-"""Job queues in Redis: requests to compute runs and renderings. SQL holds their state."""
+"""Job queues in Redis: requests to compute renderings."""
 
-import logging
 import re
-from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from hashlib import sha256
 from typing import Any
 
-from redis import Redis, RedisError
+from redis import Redis
 from redis.backoff import ExponentialBackoff
 from redis.retry import Retry
 from rq import Queue
@@ -16,22 +13,16 @@ from rq.job import Job, JobStatus
 from rq.registry import clean_registries
 from rq.results import Result
 from rq.serializers import JSONSerializer
-from rq.utils import as_text
 
 from ..tables import AUDIT, MEASUREMENT, REPLAY
 
-log = logging.getLogger(__name__)
-
-RUN_JOB = "worker.job_process.main"
 RENDER_JOB = "worker.jobs.render"
-PLUGINS_SEPARATOR = "-plugins-"
-"""Separator of a queue's name and the hash of the plug-ins that its workers must have."""
 TIMEOUTS = {AUDIT: 3600, MEASUREMENT: 3600}
 RENDER_SECONDS = 600
 """Time limit of the renderings that `TIMEOUTS` does not name."""
 FAILURE_SECONDS = 60
 """Seconds that Redis keeps a failed rendering; then it may be tried again."""
-NAMES = ("runs", "sweeps", "renderings", "audits")
+NAMES = ("renderings", "audits")
 
 
 def open_redis(url: str) -> Redis:
@@ -41,55 +32,12 @@ def open_redis(url: str) -> Redis:
 
 
 class Jobs:
-    """The queues `runs`, `sweeps`, `renderings` and `audits`, under a prefix."""
+    """The queues `renderings` and `audits`, under a prefix."""
 
     def __init__(self, redis: Redis, prefix: str):
         self.redis = redis
         self.slug = re.sub(r"[^\w-]", "-", prefix)
-        self.runs, self.sweeps, self.renderings, self.audits = (
-            self._queue(f"{prefix}{name}") for name in NAMES
-        )
-
-    @property
-    def run_queues(self) -> list[Queue]:
-        """Queues of runs that every worker can compute, in the order in which workers look.
-
-        Sweeps have a queue of their own, so that a hundred runs do not delay a single run.
-        """
-        return [self.runs, self.sweeps]
-
-    def enqueue(self, runs: Iterable[Any]) -> None:
-        """Enqueue runs, given by `id`, `sweep` and `plugin_versions`, in their order.
-
-        A job replaces any earlier one of its run. Where Redis does not answer the runs stay
-        queued in SQL, and the reconciler enqueues them.
-        """
-        names: dict[Queue, list[str]] = {}
-        for run in runs:
-            queue = self.run_queue(run.plugin_versions, run.sweep is not None)
-            names.setdefault(queue, []).append(str(run.id))
-        try:
-            for queue, some in names.items():
-                self._replace(queue, some)
-        except RedisError as error:
-            log.warning("runs stay queued until Redis answers: %s", error)
-
-    def _replace(self, queue: Queue, names: Sequence[str]) -> None:
-        for job in Job.fetch_many(names, self.redis, JSONSerializer):
-            if job:
-                self._remove(job)
-        data = [
-            Queue.prepare_data(
-                RUN_JOB, (name,), job_id=name, timeout=-1, result_ttl=0, failure_ttl=3600
-            )
-            for name in names
-        ]
-        with self.redis.pipeline() as pipeline:
-            # In one transaction: another process may enqueue the same run at the same time.
-            for name in names:
-                pipeline.lrem(queue.key, 0, name)
-            queue.enqueue_many(data, pipeline=pipeline)
-            pipeline.execute()
+        self.renderings, self.audits = (self._queue(f"{prefix}{name}") for name in NAMES)
 
     def render(
         self,
@@ -150,45 +98,14 @@ class Jobs:
         with suppress(InvalidJobOperation):  # A job that ends now deletes itself.
             job.delete()
 
-    def run_queue(self, plugin_versions: Sequence[str] | None, of_sweep: bool) -> Queue:
-        """Return the queue of runs that need these plug-ins: workers that have them listen."""
-        queue = self.sweeps if of_sweep else self.runs
-        if not plugin_versions:
-            return queue
-        name = sha256("".join(sorted(plugin_versions)).encode()).hexdigest()[:16]
-        return self._queue(f"{queue.name}{PLUGINS_SEPARATOR}{name}")
-
-    def all_run_queues(self) -> list[Queue]:
-        """Return all queues of runs that Redis knows."""
-        found = [as_text(name) for name in self.redis.smembers(Queue.redis_queues_keys)]  # pyright: ignore
-        names = [name.removeprefix(Queue.redis_queue_namespace_prefix) for name in found]
-        ours = tuple(queue.name + PLUGINS_SEPARATOR for queue in self.run_queues)
-        special = sorted(name for name in names if name.startswith(ours))
-        return [*self.run_queues, *map(self._queue, special)]
-
-    def _all(self) -> list[Queue]:
-        return [*self.all_run_queues(), self.renderings, self.audits]
-
     def _queue(self, name: str) -> Queue:
         return Queue(name, connection=self.redis, serializer=JSONSerializer)
 
-    def runs_with_job(self) -> set[str]:
-        """Return the ids of runs that wait in a queue or that a worker has taken."""
-        found: set[str] = set()
-        for queue in self.all_run_queues():
-            started = queue.started_job_registry.get_job_ids(cleanup=False)
-            found |= {*queue.get_job_ids(), *started}
-        return found
-
     def lengths(self) -> dict[str, int]:
-        """Return the number of jobs that wait, by name; queues with plug-ins are added up."""
-        lengths: dict[str, int] = dict.fromkeys(NAMES, 0)
-        for queue in self._all():
-            kind = next(one for one in NAMES if queue.name.startswith(getattr(self, one).name))
-            lengths[kind] += len(queue)
-        return lengths
+        """Return the number of jobs that wait, by name."""
+        return {name: len(getattr(self, name)) for name in NAMES}
 
     def clean(self) -> None:
         """Drop jobs whose worker has died. Idle workers do it too, but none may be idle."""
-        for queue in self._all():
-            clean_registries(queue)
+        for name in NAMES:
+            clean_registries(getattr(self, name))

@@ -19,8 +19,8 @@ MEDIA_TYPES = {
     MP4: "video/mp4",
     MEASUREMENT: "application/json",
 }
-ON_REQUEST = (REPLAY, AUDIT, STRIP, PREVIEW, GIF, MP4)
-"""Renderings that the first request for them enqueues."""
+ON_REQUEST = (REPLAY, STRIP, PREVIEW, GIF, MP4)
+"""Renderings that the first request for them enqueues. Audits and measurements are ordered."""
 
 
 def existing(

@@ -25,10 +25,12 @@ EXPORTS = (
     ("csv", "text/csv", PoseStream.csv),
     ("npz", "application/octet-stream", PoseStream.npz),
 )
-NOT_ORDERED: Answers = {204: {"description": "Nobody has ordered this measurement"}}
+NOT_ORDERED: Answers = {204: {"description": "Nobody has ordered it"}}
 
 
-def _reader(kind: str) -> Callable[..., Response]:
+def _reader(kind: str, *, on_request: bool = True) -> Callable[..., Response]:
+    """Return the function of a route, which enqueues what is missing if it is `on_request`."""
+
     def read(
         request: Request,
         row: CreatureDep,
@@ -36,15 +38,20 @@ def _reader(kind: str) -> Callable[..., Response]:
         session: SessionDep,
         services: ServicesDep,
     ) -> Response:
-        found = existing(request, row, session, services, kind)
-        if found is None and share and kind != REPLAY:
+        if found := existing(request, row, session, services, kind):
+            return found
+        if not on_request and (share or not storage.is_ordered(services, row.sha256, kind)):
+            return Response(status_code=204)
+        if share and kind != REPLAY:
             raise ProblemError(
                 404, "Not found", f"The share has no {storage.NOUNS[kind]} of it."
             )
-        return found or enqueued(services, row.sha256, kind, anonymous=share is not None)
+        return enqueued(services, row.sha256, kind, anonymous=share is not None)
 
     read.__name__ = f"read_{kind.replace('.', '_')}"
-    read.__doc__ = f"Return the {storage.NOUNS.get(kind, kind)}, or 202 while it is computed."
+    never = "" if on_request else ", or 204 if nobody has ordered one"
+    noun = storage.NOUNS.get(kind, kind)
+    read.__doc__ = f"Return the {noun}, or 202 while it is computed{never}."
     return read
 
 
@@ -52,8 +59,17 @@ for kind in ON_REQUEST:
     router.get(
         f"/{kind}",
         **sends(MEDIA_TYPES[kind], PENDING),
-        dependencies=[MAY_READ if kind in (AUDIT, PREVIEW) else MAY_READ_SHARED],
+        dependencies=[MAY_READ if kind == PREVIEW else MAY_READ_SHARED],
     )(_reader(kind))
+
+router.get(
+    "/audit", **sends(MEDIA_TYPES[AUDIT], PENDING | NOT_ORDERED), dependencies=[MAY_READ]
+)(_reader(AUDIT, on_request=False))
+router.get(
+    "/measurement",
+    responses={200: {"model": Measurement}, **PENDING, **NOT_ORDERED},
+    dependencies=[MAY_READ_SHARED],
+)(_reader(MEASUREMENT, on_request=False))
 
 
 @router.get(
@@ -108,32 +124,19 @@ def read_verdict(row: CreatureDep) -> Verdict:
     return Verdict(trusted=row.trusted)
 
 
-@router.post("/measure", status_code=202, dependencies=[MAY_WRITE])
-def measure(row: CreatureDep, services: ServicesDep) -> Rendering:
+@router.post("/audit", status_code=202, dependencies=[MAY_WRITE])
+def order_audit(row: CreatureDep, session: SessionDep, services: ServicesDep) -> Rendering:
+    """Have the creature audited, unless it was; read `audit`."""
+    if storage.find(session, row.sha256, AUDIT) is None:
+        storage.enqueue(services, row.sha256, AUDIT)
+    return Rendering()
+
+
+@router.post("/measurement", status_code=202, dependencies=[MAY_WRITE])
+def order_measurement(row: CreatureDep, services: ServicesDep) -> Rendering:
     """Have the program that measured it evaluate the creature again; read `measurement`."""
     if not row.measured:
         detail = "The creature's file contains no measurement to compare a new one with."
         raise ProblemError(422, "Never measured", detail)
     storage.enqueue_again(services, row.sha256, MEASUREMENT)
     return Rendering()
-
-
-@router.get(
-    "/measurement",
-    responses={200: {"model": Measurement}, **PENDING, **NOT_ORDERED},
-    dependencies=[MAY_READ_SHARED],
-)
-def read_measurement(
-    request: Request,
-    row: CreatureDep,
-    share: ShareAccessDep,
-    session: SessionDep,
-    services: ServicesDep,
-) -> Response:
-    """Return the measurement; 202 while it is computed, 204 if nobody has ordered one."""
-    if found := existing(request, row, session, services, MEASUREMENT):
-        return found
-    job = services.jobs.find(services.jobs.rendering_id(row.sha256, MEASUREMENT))
-    if share or job is None:
-        return Response(status_code=204)
-    return enqueued(services, row.sha256, MEASUREMENT)

@@ -70,6 +70,11 @@ def enqueue(
         services.jobs.render(creature, kind, anonymous=anonymous)
 
 
+def is_ordered(services: Services, creature: str, kind: str) -> bool:
+    """Tell whether a rendering waits, is computed, or failed a moment ago."""
+    return services.jobs.find(services.jobs.rendering_id(creature, kind)) is not None
+
+
 def enqueue_again(services: Services, creature: str, kind: str) -> None:
     """Enqueue a rendering in place of an earlier one, unless it is underway."""
     job = services.jobs.find(services.jobs.rendering_id(creature, kind))

@@ -16,8 +16,6 @@ from ..core.errors import ProblemError
 from ..tables import (
     CANCELLED,
     FAILED,
-    OVERRIDE_ALLOWED,
-    OVERRIDE_NEEDED,
     PAUSED,
     QUEUED,
     RUNNING,
@@ -54,12 +52,12 @@ def change(session: Session, run_id: UUID, *where: Any, **values: Any) -> Run | 
 def pause(session: Session, run: Run) -> Run:
     """Pause a queued run at once; request it from the worker of a running one."""
     changed = (
-        change(session, run.id, NOT_IN_BIN, Run.status == QUEUED, status=PAUSED)
+        change(session, run.id, NOT_IN_BIN, Run.status == QUEUED, status=PAUSED, worker=None)
         or change(
             session,
             run.id,
             Run.status == RUNNING,
-            or_(Run.requested_state.is_(None), Run.requested_state == PAUSED),
+            or_(Run.requested_state.is_(None), Run.requested_state != CANCELLED),
             requested_state=PAUSED,
             requested_at=clock(),
         )
@@ -78,6 +76,7 @@ def cancel(session: Session, run: Run) -> Run:
             NOT_IN_BIN,
             Run.status.in_((QUEUED, PAUSED)),
             status=CANCELLED,
+            worker=None,
             finished_at=clock(),
         )
         or change(
@@ -97,20 +96,12 @@ def cancel(session: Session, run: Run) -> Run:
 
 
 def resume(session: Session, run: Run) -> Run:
-    """Queue a paused run again, and count its attempts from 0.
-
-    If the run waits for permission to use another kind of device, resuming it gives permission.
-    """
-    override = case(
-        (Run.device_override == OVERRIDE_NEEDED, OVERRIDE_ALLOWED), else_=Run.device_override
-    )
-    values = {"status": QUEUED, "attempts_without_checkpoint": 0, "queued_at": clock()}
-    waited = run.device_override == OVERRIDE_NEEDED
-    paused = (NOT_IN_BIN, Run.status == PAUSED)
-    changed = change(session, run.id, *paused, device_override=override, **values)
+    """Queue a paused run again, and count its attempts from 0."""
+    values = {"status": QUEUED, "attempts_without_checkpoint": 0}
+    values |= {"queued_at": clock(), "interrupted": False}
+    changed = change(session, run.id, NOT_IN_BIN, Run.status == PAUSED, **values)
     changed = changed or refuse(session, "resume", run, "paused")
-    allowed = " Another kind of device is allowed." if waited else ""
-    note(session, changed, f"Resumed: queued again.{allowed}")
+    note(session, changed, "Resumed: queued again.")
     return changed
 
 
@@ -125,28 +116,53 @@ def fail_attempt(session: Session, run_id: UUID, *where: Any, error: str) -> Run
 
     If requested, pause or cancel it instead; fail it after `MAX_ATTEMPTS` attempts.
     """
-    run = end_attempt(session, run_id, *where, error=error)
+    run = end_attempt(session, run_id, *where, error=error, avoided_worker=Run.worker)
     if run is None:
         return None
     note(session, run, f"Attempt {run.attempt} failed: {error}", "error")
+    return _fail_after_last_attempt(session, run, error)
+
+
+def fail_unclaimed(session: Session, run_id: UUID, *where: Any, error: str) -> Run | None:
+    """Count the death of a process that had taken a run and not claimed it yet."""
+    values = {"attempts_without_checkpoint": Run.attempts_without_checkpoint + 1}
+    values |= {"interrupted": True, "error": error}
+    values |= {"worker": None, "avoided_worker": Run.worker}
+    run = change(session, run_id, Run.status == QUEUED, *where, **values)
+    if run is None:
+        return None
+    note(session, run, f"An attempt failed before it began: {error}", "error")
+    return _fail_after_last_attempt(session, run, error)
+
+
+def _fail_after_last_attempt(session: Session, run: Run, error: str) -> Run:
     if run.status == QUEUED and run.attempts_without_checkpoint >= MAX_ATTEMPTS:
         reason = f"{MAX_ATTEMPTS} attempts without a new checkpoint"
         text = f"{reason}; the last one: {error}"
-        run = change(session, run_id, status=FAILED, finished_at=clock(), error=text)
-        assert run is not None
-        note(session, run, f"Failed: {reason}.", "error")
-    else:
-        note_status(session, run)
+        failed = change(session, run.id, status=FAILED, finished_at=clock(), error=text)
+        assert failed is not None
+        note(session, failed, f"Failed: {reason}.", "error")
+        return failed
+    note_status(session, run)
     return run
 
 
 def end_attempt(session: Session, run_id: UUID, *where: Any, **values: Any) -> Run | None:
-    """Queue a running run again without a worker; if requested, pause or cancel it instead."""
+    """Queue a running run again without a worker; if requested, pause or cancel it instead.
+
+    In the queue it goes before all others, for it had its turn, unless it yields to another.
+    """
     status = func.coalesce(Run.requested_state, QUEUED)
     values |= {"requested_state": None, "requested_at": None, "worker": None, "status": status}
-    values |= {"queued_at": clock()}
+    values |= {"interrupted": Run.requested_state.is_(None), "released_at": clock()}
     over = case((Run.requested_state == CANCELLED, clock()), else_=None)
     return change(session, run_id, Run.status == RUNNING, *where, finished_at=over, **values)
+
+
+def release(session: Session, run_id: UUID, *where: Any) -> Run | None:
+    """Take a run back from a worker that has not claimed it."""
+    taken = (Run.status == QUEUED, Run.worker.is_not(None))
+    return change(session, run_id, *taken, *where, worker=None)
 
 
 def stop_attempt(session: Session, run_id: UUID, *where: Any) -> Run | None:

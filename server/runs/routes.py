@@ -3,29 +3,35 @@
 from typing import Annotated, Any, Literal
 from uuid import UUID
 
-from fastapi import APIRouter, Body, Depends, Query, Response
-from pydantic import StringConstraints
+from fastapi import APIRouter, Body, Depends, Query, Request, Response
 from sqlalchemy.orm import Session
 
 from microcosmos.spec import EXPERIMENTS, Spec, drawing, estimate
 
-from ..auth.authorize import MAY_READ, MAY_READ_SHARED, Writer
+from ..auth.authorize import MAY_READ, MAY_READ_SHARED, Reader, Writer
 from ..core.errors import invalid_field
 from ..core.json_body import json_route
 from ..estimates import position
 from ..estimates.eta import speeds_of
 from ..estimates.schemas import EstimateRead
-from ..queue.order import requeue
 from ..services.services import ServicesDep, SessionDep
 from ..specs import parsing
 from ..specs.schemas import DrawingRead
 from ..tables import Run, Status
+from ..workers import registry
 from . import lifecycle, listing
 from .announce import changed
 from .deps import AnyRunDep, OwnRunId
 from .overview import read_run, read_runs
-from .schemas import NAME_LENGTH, RunChange, RunPage, RunRead
-from .submission import SPEC_BYTES, IdempotencyKey, IdempotentRequest, answer, memory_limit
+from .schemas import RunChange, RunPage, RunRead, Submission
+from .submission import (
+    SPEC_BYTES,
+    IdempotencyKey,
+    IdempotentRequest,
+    answer,
+    memory_limit,
+    refuse_urgent,
+)
 
 router = APIRouter(prefix="/runs", tags=["runs"], route_class=json_route(SPEC_BYTES))
 
@@ -38,11 +44,6 @@ def spec_sent(document: Document, services: ServicesDep) -> Spec:
 
 
 SpecDep = Annotated[Spec, Depends(spec_sent)]
-NameQuery = Annotated[
-    str | None,
-    StringConstraints(strip_whitespace=True, max_length=NAME_LENGTH, pattern=r"^[^\x00]*$"),
-    Query(),
-]
 
 
 @router.post("", status_code=202, responses={200: {"model": RunRead}})
@@ -51,20 +52,24 @@ def create_run(
     spec: SpecDep,
     services: ServicesDep,
     response: Response,
+    asked: Annotated[Submission, Query()],
     idempotency_key: IdempotencyKey = None,
-    name: NameQuery = None,
 ) -> RunRead:
     """Queue a run. The same key with the same spec gives the same run, with 200."""
+    refuse_urgent(principal, asked)
     request = IdempotentRequest(spec.model_dump(mode="json"), idempotency_key, principal.token)
-    return answer(services, response, request, lambda: (spec, {"name": name or None}))
+    columns = {**asked.model_dump(), "name": asked.name or None}
+    return answer(services, response, request, lambda: (spec, columns))
 
 
-@router.post("/estimate", dependencies=[MAY_READ])
-def estimate_run(spec: SpecDep, services: ServicesDep, session: SessionDep) -> EstimateRead:
+@router.post("/estimate")
+def estimate_run(
+    principal: Reader, spec: SpecDep, services: ServicesDep, session: SessionDep
+) -> EstimateRead:
     """Return the needs of a run and a drawing, without queueing it."""
     needed = estimate(spec)
-    queue = position.queue_state(services, session)
-    (speed,) = speeds_of(session, [spec], queue.alive)
+    alive = registry.live(session, services.settings.lease)
+    (speed,) = speeds_of(session, [spec], alive)
     return EstimateRead(
         memory_bytes=needed.memory_bytes,
         memory_limit_bytes=memory_limit(services, session),
@@ -72,7 +77,7 @@ def estimate_run(spec: SpecDep, services: ServicesDep, session: SessionDep) -> E
         cell_steps=needed.cell_steps,
         seconds=speed.seconds(needed.cell_steps) if speed else None,
         speed=speed.read(needed.cell_steps) if speed else None,
-        queue=queue.ahead(),
+        queue=position.ahead(services, session, principal.token),
         drawing=DrawingRead.model_validate(drawing(spec)),
     )
 
@@ -113,14 +118,19 @@ def read(run: AnyRunDep, services: ServicesDep, session: SessionDep) -> RunRead:
 
 
 @router.patch("/{run_id}")
-def change_run(run_id: OwnRunId, services: ServicesDep, sent: RunChange) -> RunRead:
-    """Change a run's name, tags or note."""
+def change_run(
+    request: Request, run_id: OwnRunId, services: ServicesDep, sent: RunChange
+) -> RunRead:
+    """Change a run's name, tags, note or scheduling."""
+    refuse_urgent(request.state.principal, sent)
     values = sent.values()
 
     def edit(session: Session, run: Run) -> Run:
         return lifecycle.change(session, run.id, **values) or run if values else run
 
-    return changed(services, run_id, edit)
+    run = changed(services, run_id, edit)
+    services.wake.send()
+    return run
 
 
 @router.post("/{run_id}/pause", status_code=202)
@@ -131,7 +141,7 @@ def pause_run(run_id: OwnRunId, services: ServicesDep) -> RunRead:
 @router.post("/{run_id}/resume", status_code=202)
 def resume_run(run_id: OwnRunId, services: ServicesDep) -> RunRead:
     run = changed(services, run_id, lifecycle.resume)
-    requeue(services.sessions, services.jobs, run_id)
+    services.wake.send()
     return run
 
 

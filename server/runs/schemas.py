@@ -8,6 +8,7 @@ from pydantic import AfterValidator, Field, StringConstraints, model_validator
 
 from ..core.schemas import Wire
 from ..specs.schemas import PictureRead
+from ..tables import NORMAL, Priority
 from ..workers.schemas import RunBrief
 
 NAME_LENGTH = 200
@@ -28,8 +29,36 @@ Tags = Annotated[list[Tag], Field(max_length=20), AfterValidator(distinct)]
 Name = Annotated[str, StringConstraints(strip_whitespace=True, max_length=NAME_LENGTH)]
 
 
-class RunChange(Wire):
-    """New name, tags or note of a run; omitted fields stay as they are."""
+Label = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9._=-]{0,62}$")]
+
+Labels = Annotated[list[Label], Field(max_length=20), AfterValidator(distinct)]
+
+YEAR = 366 * 86_400.0
+
+
+class Scheduling(Wire):
+    """Which workers may carry out a run, and when; omitted fields stay as they are."""
+
+    priority: Priority = NORMAL
+    """`urgent` goes before the runs of all owners and needs a token of an admin; the others
+    order the runs of one owner."""
+    labels: Labels = Field(default=[])
+    """Labels that its worker must have."""
+    may_yield: bool = False
+    """It may have to return to the queue, with a checkpoint, for an urgent run."""
+    device_patience: Annotated[float, Field(ge=0.0, le=YEAR)] | None = None
+    """Seconds that it waits for the kind of device that has computed it so far, before another
+    kind, whose results may differ in bits, goes on with it. None: for ever."""
+
+
+class Submission(Scheduling):
+    """The query of a request that submits a run."""
+
+    name: Annotated[Name, StringConstraints(pattern=r"^[^\x00]*$")] | None = None
+
+
+class RunChange(Scheduling):
+    """New name, tags, note or scheduling of a run; omitted fields stay as they are."""
 
     name: Name | None = None
     tags: Tags = Field(default=[])
@@ -38,9 +67,7 @@ class RunChange(Wire):
     def values(self) -> dict[str, Any]:
         """Return the sent fields; empty texts become None."""
         sent = self.model_dump(exclude_unset=True)
-        return {
-            field: value if field == "tags" else value or None for field, value in sent.items()
-        }
+        return {field: None if value == "" else value for field, value in sent.items()}
 
 
 class Extension(Wire):
@@ -98,8 +125,13 @@ class ForkedFrom(Wire):
 class RunRead(RunBrief):
     tags: list[str]
     note: str | None
-    requested_state: Literal["paused", "cancelled"] | None
-    """A requested state that the worker has not reached yet."""
+    requested_state: Literal["paused", "cancelled", "queued"] | None
+    """A requested state that the worker has not reached yet; `queued`: it yields to an urgent
+    run."""
+    priority: Priority
+    labels: list[str]
+    may_yield: bool
+    device_patience: float | None
     waiting_reason: str | None
     """Why no worker computes it yet; None unless it is queued."""
     spec: dict[str, Any]

@@ -2,7 +2,7 @@
 
 import json
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import timedelta
 from hashlib import sha256
@@ -16,14 +16,16 @@ from sqlalchemy.orm import Session
 from microcosmos.spec import Spec, estimate
 from microcosmos.version import VERSION
 
+from ..auth.principal import ADMIN, Principal
 from ..core.database import now
 from ..core.errors import FieldError, ProblemError
 from ..creatures import initial
+from ..schedule.quota import refuse_too_many
 from ..services.services import Services
-from ..tables import Idempotency, LogEntry, Run, Sweep
+from ..tables import URGENT, Idempotency, LogEntry, Run, Sweep
 from ..workers import plugins, registry
 from .announce import announced, current
-from .schemas import RunRead
+from .schemas import RunRead, Scheduling
 
 SPEC_BYTES = 1 << 20
 """Limit on the body of a request with a spec."""
@@ -61,6 +63,13 @@ def memory_limit(services: Services, session: Session) -> int:
         return cap or os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     largest = max(worker.memory_bytes for worker in live)
     return min(largest, cap) if cap else largest
+
+
+def refuse_urgent(principal: Principal, scheduling: Scheduling) -> None:
+    """Raise `ProblemError` unless the principal may put a run before those of others."""
+    if scheduling.priority == URGENT and not principal.may(ADMIN):
+        detail = "`priority` urgent needs a token of scope `admin`; others may set high."
+        raise ProblemError(403, "Forbidden", detail)
 
 
 def refuse_too_large(services: Services, spec: Spec) -> None:
@@ -144,13 +153,15 @@ def create_runs(
     request: IdempotentRequest,
     sweep: Sweep | None = None,
 ) -> Sequence[Run] | Idempotency:
-    """Create and enqueue all runs or none; or return what the request's key created earlier."""
+    """Create all runs or none; or return what the request's key created earlier."""
+    memory = _memory(drafts)
     try:
         with services.sessions.write.begin() as session:
+            refuse_too_many(session, request.owner, len(drafts))
             if sweep is not None:
                 session.add(sweep)
                 session.flush()
-            runs = _insert(session, drafts, request.owner, sweep)
+            runs = _insert(session, drafts, memory, request.owner, sweep)
             if request.key is not None:
                 created = {"sweep": sweep.id} if sweep is not None else {"run_id": runs[0].id}
                 key, digest = request.stored_key, request.digest
@@ -160,13 +171,22 @@ def create_runs(
         if known is None:
             raise
         return known
-    # Committed before they are enqueued: workers must find the rows.
-    services.jobs.enqueue(runs)
+    services.wake.send()
     return runs
 
 
+def _memory(drafts: Sequence[Draft]) -> dict[int, int]:
+    """Return the needed bytes by the `id` of a spec, which the seeds of a sweep share."""
+    specs = {id(draft.spec): draft.spec for draft in drafts}
+    return {key: estimate(spec).memory_bytes for key, spec in specs.items()}
+
+
 def _insert(
-    session: Session, drafts: Sequence[Draft], owner: UUID | None, sweep: Sweep | None
+    session: Session,
+    drafts: Sequence[Draft],
+    memory: Mapping[int, int],
+    owner: UUID | None,
+    sweep: Sweep | None,
 ) -> list[Run]:
     """Insert rows a microsecond apart, so that lists and the queue keep their order."""
     created = now(session)
@@ -175,6 +195,7 @@ def _insert(
             experiment=draft.spec.experiment,
             spec=draft.document,
             plugin_versions=plugins.needed_versions(draft.document),
+            memory_bytes=memory[id(draft.spec)],
             generations=draft.spec.generations,
             version=VERSION,
             owner=owner,
@@ -202,7 +223,7 @@ def _insert(
 def submit(
     services: Services, spec: Spec, request: IdempotentRequest | None = None, **columns: Any
 ) -> tuple[RunRead, bool]:
-    """Create and enqueue a run; return it and whether it is new."""
+    """Queue a run; return it and whether it is new."""
     document = spec.model_dump(mode="json")
     with services.sessions.read() as session:
         initial.check(session, spec)

@@ -11,6 +11,7 @@ from sqlalchemy.orm import Session
 from ..core import database
 from ..core.database import Sessions
 from ..queue.jobs import Jobs, open_redis
+from ..queue.wake import Wake
 from ..settings import Settings
 from ..storage.artifacts import Artifacts
 from .event_stream import Events
@@ -22,6 +23,7 @@ class Services:
     sessions: Sessions
     redis: Redis
     jobs: Jobs
+    wake: Wake
     events: Events
     artifacts: Artifacts
 
@@ -38,6 +40,7 @@ def connect(settings: Settings) -> Services:
         sessions=database.connect(settings.database),
         redis=redis,
         jobs=Jobs(redis, settings.redis_prefix),
+        wake=Wake(redis, settings.redis_prefix),
         events=Events(redis, settings.redis_prefix),
         artifacts=Artifacts(settings.artifacts),
     )

@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session
 from ..core.errors import ProblemError
 from ..runs.curves import corrected_at
 from ..services.services import Services
-from ..tables import FINISHED, Artifact, Elite, Generation, Run, Share
+from ..tables import FINISHED, NORMAL, Artifact, Elite, Generation, Run, Share
 from . import archive_files
 from .schemas import ShareState
 
@@ -77,6 +77,9 @@ class LiveShare:
             demonstration=False,
             name=share.title,
             tags=[],
+            priority=NORMAL,
+            labels=[],
+            may_yield=False,
             status=FINISHED,
             queued_at=run.created_at,
             finished_at=share.created_at,

@@ -8,6 +8,7 @@ from sqlalchemy.orm import Session
 
 from ..runs.announce import announce as announce_runs
 from ..runs.lifecycle import NOT_IN_BIN, Conflict
+from ..runs.schemas import Scheduling
 from ..runs.submission import Draft, IdempotentRequest, create_runs
 from ..services.services import Services
 from ..tables import Idempotency, Run, Sweep
@@ -29,9 +30,12 @@ def request_of(
 
 
 def submit_sweep(
-    services: Services, plan: Plan, request: IdempotentRequest | None = None
+    services: Services,
+    plan: Plan,
+    request: IdempotentRequest | None = None,
+    scheduling: Scheduling | None = None,
 ) -> tuple[UUID, bool]:
-    """Create the sweep and enqueue its runs; return its id and whether it is new."""
+    """Create the sweep and queue its runs; return its id and whether it is new."""
     with services.sessions.read() as session:
         refuse_initial(session, plan)
     request = request or request_of(plan)
@@ -43,7 +47,10 @@ def submit_sweep(
         grid=plan.grid,
         owner=request.owner,
     )
-    drafts = [Draft(spec, document, {"name": name}) for name, spec, document in plan.runs()]
+    columns = (scheduling or Scheduling()).model_dump()
+    drafts = [
+        Draft(spec, document, {"name": name, **columns}) for name, spec, document in plan.runs()
+    ]
     created = create_runs(services, drafts, request, sweep)
     if isinstance(created, Idempotency):
         assert created.sweep is not None

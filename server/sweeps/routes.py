@@ -10,19 +10,20 @@ from sqlalchemy.orm import Session
 
 from microcosmos.spec import estimate
 
-from ..auth.authorize import MAY_READ, Writer, authorize_owner
+from ..auth.authorize import MAY_READ, Reader, Writer, authorize_owner
 from ..core.errors import ProblemError
 from ..core.json_body import json_route
 from ..core.paging import MOMENT, Order
 from ..deletion import bin
 from ..estimates import position
 from ..estimates.eta import speeds_of
-from ..queue.order import requeue
 from ..runs import lifecycle
-from ..runs.submission import SPEC_BYTES, IdempotencyKey, memory_limit
+from ..runs.schemas import Scheduling
+from ..runs.submission import SPEC_BYTES, IdempotencyKey, memory_limit, refuse_urgent
 from ..services.services import Services, ServicesDep, SessionDep
 from ..specs import parsing
 from ..tables import Run, Sweep
+from ..workers import registry
 from . import summary
 from .commands import announce, change_all, request_of, submit_sweep
 from .overview import read_sweep, read_sweeps
@@ -80,9 +81,11 @@ def create_sweep(
     plan: PlanDep,
     services: ServicesDep,
     response: Response,
+    scheduling: Annotated[Scheduling, Query()],
     idempotency_key: IdempotencyKey = None,
 ) -> SweepRead:
     """Queue all runs of a sweep, or none. The same key with the same request is one sweep."""
+    refuse_urgent(principal, scheduling)
     request = request_of(plan, idempotency_key, principal.token)
     known = request.earlier(services)
     sweep_id, new = known.sweep if known else None, False
@@ -90,18 +93,20 @@ def create_sweep(
         with services.sessions.read() as session:
             limit = memory_limit(services, session)
         refuse_too_large(plan, limit)
-        sweep_id, new = submit_sweep(services, plan, request)
+        sweep_id, new = submit_sweep(services, plan, request, scheduling)
     response.status_code = 202 if new else 200
     response.headers["Location"] = f"/api/v1/sweeps/{sweep_id}"
     return _current(services, sweep_id)
 
 
-@router.post("/estimate", dependencies=[MAY_READ])
-def estimate_sweep(plan: PlanDep, services: ServicesDep, session: SessionDep) -> SweepEstimate:
+@router.post("/estimate")
+def estimate_sweep(
+    principal: Reader, plan: PlanDep, services: ServicesDep, session: SessionDep
+) -> SweepEstimate:
     """Return the needs of all runs of a sweep, without queueing them."""
     needs = [estimate(case.spec) for case in plan.cases]
-    queue = position.queue_state(services, session)
-    speeds = speeds_of(session, [case.spec for case in plan.cases], queue.alive)
+    alive = registry.live(session, services.settings.lease)
+    speeds = speeds_of(session, [case.spec for case in plan.cases], alive)
     times = [
         speed.seconds(needed.cell_steps)
         for speed, needed in zip(speeds, needs, strict=True)
@@ -117,7 +122,7 @@ def estimate_sweep(plan: PlanDep, services: ServicesDep, session: SessionDep) ->
         cell_steps=seeds * sum(needed.cell_steps for needed in needs),
         seconds=seeds * sum(times) if len(times) == len(needs) else None,
         speed=speeds[0].read(needs[0].cell_steps) if speeds[0] else None,
-        queue=queue.ahead(sweep=True),
+        queue=position.ahead(services, session, principal.token, sweep=True),
     )
 
 
@@ -178,7 +183,7 @@ def pause_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
 def resume_sweep(sweep_id: OwnSweepId, services: ServicesDep) -> SweepChanged:
     """Resume every paused run; `skipped` lists the others."""
     resumed = _change_all(services, sweep_id, lifecycle.resume)
-    requeue(services.sessions, services.jobs, *resumed.changed)
+    services.wake.send()
     return resumed
 
 

@@ -15,24 +15,29 @@ from .artifacts import (
 )
 from .base import Base, Expiring, Owned, Sha256
 from .creatures import Creature, GarbageCreature, InitialCreature, Parent
+from .installation import InstallationId
 from .results import CORRECTED, Elite, Generation, Result
 from .runs import (
     CANCELLED,
     FAILED,
     FINISHED,
-    OVERRIDE_ALLOWED,
-    OVERRIDE_NEEDED,
+    HIGH,
+    LOW,
+    NORMAL,
     PAUSED,
+    PRIORITIES,
     QUEUED,
     RUNNING,
     STATUSES,
     TERMINAL,
+    URGENT,
     Idempotency,
     LogEntry,
+    Priority,
     Run,
     Status,
     Sweep,
 )
 from .shares import Share
-from .tokens import Token
+from .tokens import NOBODY, USE_DAYS, DeviceUse, Token
 from .workers import Plugin, Worker

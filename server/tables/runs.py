@@ -15,7 +15,9 @@ QUEUED, RUNNING, PAUSED = "queued", "running", "paused"
 FINISHED, FAILED, CANCELLED = "finished", "failed", "cancelled"
 STATUSES = (QUEUED, RUNNING, PAUSED, FINISHED, FAILED, CANCELLED)
 TERMINAL = (FINISHED, FAILED, CANCELLED)
-OVERRIDE_NEEDED, OVERRIDE_ALLOWED = "needed", "allowed"
+PRIORITIES = LOW, NORMAL, HIGH, URGENT = "low", "normal", "high", "urgent"
+Priority = Literal["low", "normal", "high", "urgent"]
+"""`urgent` goes before the runs of all owners, the others order the runs of one owner."""
 
 
 class Run(Owned, Base):
@@ -24,7 +26,10 @@ class Run(Owned, Base):
     __tablename__ = "runs"
     __table_args__ = (
         CheckConstraint(f"status IN {STATUSES}", name="status"),
-        CheckConstraint(f"requested_state IN {(PAUSED, CANCELLED)}", name="requested_state"),
+        CheckConstraint(
+            f"requested_state IN {(PAUSED, CANCELLED, QUEUED)}", name="requested_state"
+        ),
+        CheckConstraint(f"priority IN {PRIORITIES}", name="priority"),
         Index(None, "created_at", "id"),
         Index(None, "status", "heartbeat_at"),
         Index(None, "sweep", "sweep_index"),
@@ -44,19 +49,36 @@ class Run(Owned, Base):
     note: Mapped[str | None] = mapped_column(Text)
     status: Mapped[str] = mapped_column(String(16), default=QUEUED)
     requested_state: Mapped[str | None] = mapped_column(String(16))
+    """The state that its worker is to leave it in; `queued`: it yields to an urgent run."""
     requested_at: Mapped[datetime | None]
     created_at: Mapped[datetime] = mapped_column(default=clock())
     queued_at: Mapped[datetime] = mapped_column(default=clock())
     """When it last entered the queue, which decides its position there."""
+    interrupted: Mapped[bool] = mapped_column(default=False)
+    """Its worker stopped or died: it goes before all that wait, until a worker has it again."""
+    priority: Mapped[Priority] = mapped_column(String(16), default=NORMAL)
+    labels: Mapped[list[str]] = mapped_column(default=list)
+    """Labels that its worker must have."""
+    memory_bytes: Mapped[int | None] = mapped_column(BigInteger)
+    """Memory that its worker must have."""
+    may_yield: Mapped[bool] = mapped_column(default=False)
+    """It returns to the queue if an urgent run finds no free worker."""
+    device_patience: Mapped[float | None]
+    """Seconds that it waits for the kind of device that has computed it so far, before another
+    kind may go on with it; None: for ever."""
+    released_at: Mapped[datetime | None]
+    """When its last attempt ended."""
     started_at: Mapped[datetime | None]
     finished_at: Mapped[datetime | None]
     attempt: Mapped[int] = mapped_column(default=0)
     """Number of the current attempt; writes of other attempts are refused."""
     attempts_without_checkpoint: Mapped[int] = mapped_column(default=0)
     worker: Mapped[str | None] = mapped_column(String(255))
+    """The worker that has it: a queued run's worker is about to claim it."""
+    avoided_worker: Mapped[str | None] = mapped_column(String(255))
+    """The worker of an attempt that failed: others go first."""
     device: Mapped[str | None] = mapped_column(Text)
-    device_override: Mapped[str | None] = mapped_column(String(16))
-    """Permission to continue on another kind of device; None until it is `needed`."""
+    """The kind of device that has computed it so far."""
     heartbeat_at: Mapped[datetime | None]
     generations: Mapped[int]
     """Number of generations at the end."""

@@ -1,6 +1,6 @@
 """The table of tokens."""
 
-from datetime import datetime
+from datetime import date, datetime
 from uuid import UUID, uuid4
 
 from sqlalchemy import CheckConstraint, Index, String, text
@@ -36,3 +36,26 @@ class Token(Expiring, Base):
     scope: Mapped[str] = mapped_column(String(16))
     created_at: Mapped[datetime] = mapped_column(default=clock())
     last_used_at: Mapped[datetime | None]
+    max_queued: Mapped[int | None]
+    """Quotas of its owner's runs; None: without limit."""
+    max_running: Mapped[int | None]
+    device_hours: Mapped[float | None]
+    """Hours of devices in `USE_DAYS` days."""
+
+
+USE_DAYS = 30
+"""Days over which device hours are counted."""
+
+
+class DeviceUse(Base):
+    """Seconds for which the runs of an owner had a device, by day."""
+
+    __tablename__ = "device_use"
+
+    owner: Mapped[UUID] = mapped_column(primary_key=True)
+    """The id of a token; `NOBODY` for runs without an owner."""
+    day: Mapped[date] = mapped_column(primary_key=True)
+    seconds: Mapped[float]
+
+
+NOBODY = UUID(int=0)

@@ -31,6 +31,11 @@ class Worker(Base):
     plugins: Mapped[list[dict[str, Any]]] = mapped_column(default=list)
     unloaded: Mapped[list[dict[str, Any]]] = mapped_column(default=list)
     """Modules that it could not load: `module` and `reason`."""
+    device_kinds: Mapped[list[str]] = mapped_column(default=list)
+    """Kinds of devices whose results it repeats bit for bit; none before its self-test."""
+    labels: Mapped[list[str]] = mapped_column(default=list)
+    problem: Mapped[str | None] = mapped_column(Text)
+    """Why it takes no run."""
 
 
 class Plugin(Base):

@@ -22,7 +22,9 @@ def report(
     **columns: Any,
 ) -> None:
     """Report a live worker: its run, and in other columns its load and its plug-ins."""
-    columns = {"kind": "cpu", "plugins": [], "unloaded": [], **columns}
+    defaults = {"kind": "cpu", "problem": None}
+    lists = ("plugins", "unloaded", "device_kinds", "labels")
+    columns = {**defaults, **{name: [] for name in lists}, **columns}
     columns |= {"device": device, "memory_bytes": memory_bytes}
     reported = Worker(name=name, status=status, run_id=run_id, **columns)
     with sessions.write.begin() as session:

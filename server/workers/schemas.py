@@ -56,3 +56,8 @@ class WorkerRead(Wire):
     heartbeat_at: datetime
     plugins: list[PluginRead]
     unloaded: list[UnloadedRead]
+    device_kinds: list[str]
+    """Kinds of devices whose results it repeats bit for bit; none before its self-test."""
+    labels: list[str]
+    problem: str | None
+    """Why it takes no run."""

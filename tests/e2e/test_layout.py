@@ -128,9 +128,13 @@ def test_a_malformed_id_is_named_without_parser_words(shared, page, complaints):
 
 
 def test_titles_of_a_family_tree_do_not_overlap(shared, page):
-    archive = shared.product.get(f"runs/{shared.finished('search')}/archive")
-    young = max(range(len(archive["cell"])), key=lambda i: archive["elite_generation"][i])
-    page.goto(f"{shared.product.url}/creatures/{archive['creature'][young]}?back=5")
+    elites = shared.product.get(f"runs/{shared.finished('search')}/archive")["creature"]
+
+    def oldest(creature):
+        found = shared.product.get(f"creatures/{creature}/ancestors?depth=5")["items"]
+        return max((one["distance"] for one in found), default=0)
+
+    page.goto(f"{shared.product.url}/creatures/{max(elites, key=oldest)}?back=5")
     titles = page.locator(".family-title")
     expect(titles.get_by_text("generations back").first).to_be_visible()
     fits = "(e) => e.scrollWidth <= e.clientWidth"

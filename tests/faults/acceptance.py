@@ -7,7 +7,7 @@ killed, stopped, paused and resumed, whose archive has to be byte for byte the u
 one, as has that of a second installation, on PostgreSQL and a Redis server; creatures that
 sense and collect energy; searches with derivatives and without; a page that is left open for
 half an hour, or for as many minutes as `MINUTES` says; thousands of malformed files; and a
-search on an emulated older processor.
+search on an emulated older processor; and twenty hosts with 500 runs in a bad night.
 Names of parts choose some.
 """
 
@@ -21,6 +21,7 @@ import malformed_hdf5
 import rich
 from databases import Missing, service_settings
 from drive import Installation, interrupt, kill_job, pause_and_resume, running, stop_worker
+from group import group
 from left_open import leave_open
 from processors import processors
 from searches import HOURS, METHODS, SEEDS, carry_out, compare, forage, spec
@@ -127,6 +128,7 @@ PARTS = {
     "bodies": bodies,
     "searches": searches,
     "databases": databases,
+    "group": group,
     "foraging": forage,
     "slopes": compare_slopes,
     "page": leave_open,

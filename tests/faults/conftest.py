@@ -3,16 +3,8 @@
 from contextlib import ExitStack
 
 import pytest
-from drive import QUICK, running
+from drive import SHORT, running
 from small_spec import SMALL_SCENE
-
-SHORT = QUICK | {
-    "MICROCOSMOS_DEMONSTRATION": "0",
-    "MICROCOSMOS_CHECKPOINT_INTERVAL": "0.2",
-    "MICROCOSMOS_LEASE": "3",
-    "MICROCOSMOS_RECONCILE_INTERVAL": "0.5",
-}
-"""Settings that shorten minutes to seconds."""
 
 
 @pytest.fixture

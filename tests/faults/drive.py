@@ -19,10 +19,18 @@ ROOT = Path(__file__).parents[2]
 QUICK = {
     "JAX_PLATFORMS": "cpu",
     "JAX_COMPILATION_CACHE_DIR": str(ROOT / ".cache" / "jax"),
+    "MICROCOSMOS_MIN_FREE_BYTES": "0",
     "XLA_FLAGS": "--xla_backend_optimization_level=0 --xla_cpu_use_fusion_emitters=false "
     "--xla_cpu_parallel_codegen_split_count=1",
 }
 """Settings with which programs compile in a fifth of the time, and are cached."""
+SHORT = QUICK | {
+    "MICROCOSMOS_DEMONSTRATION": "0",
+    "MICROCOSMOS_CHECKPOINT_INTERVAL": "0.2",
+    "MICROCOSMOS_LEASE": "3",
+    "MICROCOSMOS_RECONCILE_INTERVAL": "0.5",
+}
+"""Settings that shorten minutes to seconds."""
 TERMINAL = ("finished", "failed", "cancelled")
 SERVICES = ("MICROCOSMOS_REDIS_URL", "MICROCOSMOS_DATABASE_URL", "MICROCOSMOS_ARTIFACTS_URL")
 """Settings that an installation does not inherit."""

@@ -125,16 +125,18 @@ def test_postgresql_and_a_redis_server_give_the_same_bytes(
 
 
 @pytest.mark.long
-def test_a_run_changes_device_only_when_resumed_by_a_person(start_product, spec):
+def test_a_run_changes_device_only_with_its_owners_leave(start_product, spec):
     product = start_product()
     run = product.submit(spec)
     product.reach(run, 3)
     product.end()
     product.environment["XLA_FLAGS"] = "--xla_cpu_enable_fast_math=false"  # Another kind.
     product.start()
-    waiting = product.wait(run, "paused")
-    assert "Resume the run to continue" in waiting["warning"]
-    product.ask(run, "resume")
+    words = "Waits for a worker whose device repeats its bits"
+    waits = product.follow(run, lambda one: words in (one["waiting_reason"] or ""), 120, words)
+    assert waits["attempt"] == 1
+    leave = {"device_patience": 0}
+    product.http.patch(f"/api/v1/runs/{run}", json=leave).raise_for_status()
     product.wait(run, "finished")
     _, attributes = file.load(product.archive(run))
     first, second = json.loads(attributes["device"])

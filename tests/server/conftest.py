@@ -14,6 +14,7 @@ import pytest
 import reports
 from databases import Missing, own_postgresql, own_redis
 from installation import Installation, empty_redis, running
+from queueing import alive, reason, taken, waiting  # noqa: F401  (fixtures)
 from sqlalchemy import event, func, select, update
 
 from microcosmos.archive import creature
@@ -72,6 +73,7 @@ def installations(tmp_path_factory, redis_url) -> Iterator[Callable[[str], Insta
                 lease=20.0,
                 grace=15.0,
                 reconcile_interval=3600.0,
+                min_free_bytes=0,
             )
             return Installation(settings, stack)
 

@@ -15,7 +15,10 @@ from server.core import static_files
 def test_a_server_is_ready_with_redis_and_alive_without(address, serve):
     assert httpx.get(f"{address}/healthz").json()["status"] == "ok"
     ready = httpx.get(f"{address}/readyz")
-    assert (ready.status_code, ready.json()) == (200, {"database": "ok", "redis": "ok"})
+    assert (ready.status_code, ready.json()) == (
+        200,
+        {"database": "ok", "redis": "ok", "store": "ok", "disk": "ok"},
+    )
     with serve(redis_url="redis://127.0.0.1:1/0") as alone:
         assert httpx.get(f"{alone}/healthz").status_code == 200
         ready = httpx.get(f"{alone}/readyz", timeout=20)

@@ -8,20 +8,24 @@ from microcosmos.spec import parse
 from server.attempts.claim import claim
 from server.maintenance.reconcile import reconcile
 from server.runs.submission import IdempotentRequest, submit
-from server.tables import Base, Run
+from server.storage.mark import MARK
+from server.tables import Base, DeviceUse, Run
 
 
 def row_counts(services):
+    """Count the rows of all tables, but for device time: a deleted run has used its own."""
     with services.sessions.read() as session:
         return {
             table.name: session.scalar(select(func.count()).select_from(table))
             for table in Base.metadata.sorted_tables
+            if table.name != DeviceUse.__tablename__
         }
 
 
 def files(services):
     root = Path(services.settings.artifacts)
-    return sorted(str(path.relative_to(root)) for path in root.rglob("*") if path.is_file())
+    found = {str(path.relative_to(root)) for path in root.rglob("*") if path.is_file()}
+    return sorted(found - {MARK})
 
 
 def finish(services, run_id, *reports, files=True):

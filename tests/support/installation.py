@@ -8,12 +8,12 @@ from contextlib import ExitStack, contextmanager
 from functools import cached_property
 
 import uvicorn
-from sqlalchemy import select
 
 from server.app import create_app
 from server.services.services import Services, connect
 from server.settings import Settings
-from server.tables import Base, Run, migrations
+from server.storage import mark
+from server.tables import Base, InstallationId, migrations
 
 
 class Installation:
@@ -22,6 +22,7 @@ class Installation:
     def __init__(self, settings: Settings, stack: ExitStack):
         self.services = connect(settings)
         migrations.upgrade(self.services.sessions)
+        mark.leave(self.services.sessions, self.services.artifacts)
         self._stack = stack
         stack.callback(self.services.close)
 
@@ -31,16 +32,16 @@ class Installation:
 
     def clean(self) -> None:
         with self.services.sessions.write.begin() as session:
-            for left in session.scalars(select(Run.id)):
-                self.services.jobs.remove(str(left))
             for table in reversed(Base.metadata.sorted_tables):
-                session.execute(table.delete())
+                if table.name != InstallationId.__tablename__:
+                    session.execute(table.delete())
         empty_redis(self.services)
         shutil.rmtree(self.services.settings.artifacts, ignore_errors=True)
+        mark.leave(self.services.sessions, self.services.artifacts)
 
 
 def empty_redis(services: Services) -> None:
-    for queue in (*services.jobs.run_queues, services.jobs.renderings, services.jobs.audits):
+    for queue in (services.jobs.renderings, services.jobs.audits):
         queue.delete(delete_jobs=True)
     pattern = f"*{services.settings.redis_prefix[:-1]}*"
     if keys := list(services.redis.scan_iter(pattern, count=1000)):

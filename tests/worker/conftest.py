@@ -24,6 +24,7 @@ def installation(tmp_path_factory):
             redis_url=stack.enter_context(own_redis(tmp_path_factory.mktemp("redis"))),
             redis_prefix="test:",
             checkpoint_interval=0,
+            min_free_bytes=0,
         )
         yield Installation(settings, stack)
 

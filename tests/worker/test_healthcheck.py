@@ -97,7 +97,7 @@ def test_a_part_without_its_database_or_redis_is_not_unhealthy(services, monkeyp
     monkeypatch.setattr(healthcheck, "answers", lambda port, path: False)
     assert healthcheck.fault(settings, "server") == "The server does not answer."
     monkeypatch.setattr(healthcheck, "answers", lambda port, path: path == "/healthz")
-    with pytest.raises(ConnectionError, match="cannot reach the database or Redis"):
+    with pytest.raises(ConnectionError, match="cannot reach the database, Redis"):
         healthcheck.fault(settings, "server")
     lost = settings.model_copy(update={"redis_url": "redis://127.0.0.1:1/0"})
     with pytest.raises(ConnectionError, match="cannot be reached"):

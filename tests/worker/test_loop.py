@@ -13,13 +13,17 @@ from rq.worker import SimpleWorker
 from sqlalchemy import select, update
 
 from server.attempts.claim import claim
+from server.attempts.leases import Progress
 from server.local import process_tree
 from server.renderings.storage import RenderingFailed, enqueue
+from server.runs.lifecycle import MAX_ATTEMPTS
+from server.schedule.take import take
 from server.tables import CANCELLED, Run, Worker
 from server.workers import registry
-from worker import loop, process_setup, supervisor
+from worker import loop, process_setup, readiness, supervisor
 from worker.device import Device
 from worker.heartbeats import HEARTBEATS_AFTER_END, Heartbeats
+from worker.readiness import Readiness
 from worker.renderer import retry_interrupted
 from worker.supervisor import Supervisor
 from worker.usage import Usage
@@ -116,17 +120,25 @@ def heartbeat(services):
 
 
 @pytest.fixture
-def busy(services, heartbeat):
-    """A supervisor whose job can be replaced by another process."""
-    worker = Supervisor([services.jobs.runs], "worker", serializer=JSONSerializer)
-    worker.services, worker.lease, worker.environment = services, 20, {}
-    worker.heartbeats = heartbeat
-    worker.register_birth()
-    return worker
+def busy(services, heartbeat, monkeypatch, tmp_path):
+    """A supervisor that computes on the processor, and that has taken the run."""
+    monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", str(tmp_path))
+    environment = {}
+    readiness = Readiness(services, Device("a processor", 8 << 30, environment))
+    return Supervisor(services, "worker", environment, heartbeat, readiness)
+
+
+@pytest.fixture
+def next_run(services, heartbeat):
+    def next_run():
+        heartbeat.beat()
+        return take(services, "worker")
+
+    return next_run
 
 
 def test_a_job_that_ignores_the_stop_is_killed_at_no_cost(
-    services, run_id, row, busy, monkeypatch
+    services, run_id, row, busy, next_run, monkeypatch
 ):
     started = []
 
@@ -141,9 +153,89 @@ def test_a_job_that_ignores_the_stop_is_killed_at_no_cost(
     monkeypatch.setattr(supervisor, "STOP_SECONDS", 0.0)
     monkeypatch.setattr(supervisor, "STOP_CHECK_SECONDS", 0.05)
     monkeypatch.setattr(busy, "start", start)
-    busy.execute_job(services.jobs.find(str(run_id)), services.jobs.runs)
+    busy.carry_out(next_run())
     assert started[0].returncode == -signal.SIGKILL
     assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
+
+
+def test_a_job_that_dies_before_its_claim_is_counted_with_its_last_words(
+    run_id, row, busy, next_run, capfd
+):
+    busy.environment["MICROCOSMOS_LEASE"] = "soon"
+    for number in range(1, MAX_ATTEMPTS + 1):
+        busy.carry_out(next_run())
+        assert row().attempts_without_checkpoint == number
+    assert row().status == "failed"
+    assert "its process ended with status 1" in row().error
+    assert "input_value='soon'" in row().error
+    assert "Traceback" in capfd.readouterr().err, "the worker's log has all of it"
+
+
+def test_a_host_that_fails_its_self_test_blames_no_run_and_takes_none(
+    run_id, row, busy, next_run, monkeypatch
+):
+    busy.environment["JAX_PLATFORMS"] = "cuda"  # There is none.
+    busy.carry_out(next_run())
+    assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
+    assert row().worker is None, "others may take it"
+    assert busy.readiness.problem.startswith("Its self-test fails: ")
+    assert not busy.readiness.check()
+    busy.environment["JAX_PLATFORMS"] = "cpu"  # The driver is back.
+    assert not busy.readiness.check(), "it is tested again in a while"
+    monkeypatch.setattr(readiness.time, "monotonic", lambda now=time.monotonic: now() + 61)
+    assert busy.readiness.check()
+    assert busy.readiness.problem is None
+    assert busy.readiness.device_kinds[0].startswith("cpu, microcosmos ")
+
+
+def test_a_self_test_is_believed_until_something_has_changed(services, busy, monkeypatch):
+    ready = busy.readiness
+    assert ready.check()
+    monkeypatch.setattr(readiness, "_self_test", lambda _: ([], "it was asked again"))
+    same = Readiness(services, Device("a processor", 8 << 30, {}))
+    assert same.check()
+    assert same.device_kinds == ready.device_kinds
+    changed = {"JAX_PLATFORMS": "cuda"}, {"MICROCOSMOS_KERNEL": "jax"}
+    for environment in changed:
+        assert not Readiness(services, Device("a processor", 8 << 30, environment)).check()
+    assert not Readiness(services, Device("another", 8 << 30, {})).check()
+    assert not ready.test_device()
+    assert not Readiness(services, Device("a processor", 8 << 30, {})).check()
+
+
+def test_a_self_test_ends_when_its_worker_has_to_stop(busy, monkeypatch):
+    monkeypatch.setattr(process_setup, "_stop_requested", True)
+    began = time.monotonic()
+    assert not busy.readiness.test_device()
+    assert busy.readiness.problem == "Its self-test fails: the worker has to stop"
+    assert time.monotonic() - began < readiness.TEST_SECONDS / 10
+
+
+@pytest.mark.parametrize(
+    ("code", "how"),
+    [
+        (3, "ended with status 3"),
+        (-9, "was killed by SIGKILL, perhaps for lack of memory"),
+        (-11, "was killed by SIGSEGV"),
+    ],
+)
+def test_a_death_is_described(code, how):
+    assert supervisor.death(code) == how
+
+
+@pytest.mark.parametrize(
+    ("before", "now", "computed"),
+    [
+        (Progress(1, 71, 60), Progress(2, 61, 60), True),
+        (Progress(1, 71, 60), Progress(2, 65, 65), True),
+        (Progress(1, 71, 60), Progress(2, 60, 60), False),
+        (Progress(1, 71, 60), Progress(1, 71, 60), False),
+        (Progress(0, 0, 0), None, False),
+    ],
+)
+def test_an_attempt_has_computed_if_it_is_beyond_the_checkpoint(before, now, computed):
+    """Generations after the checkpoint are from the attempt before, until the next claim."""
+    assert supervisor.has_computed(before, now) == computed
 
 
 def test_a_job_is_stopped_before_its_supervisor_is_killed():
@@ -192,8 +284,9 @@ def test_a_job_that_loses_or_outlives_its_run_is_killed(
     assert killed == [run_id]
 
 
-def test_a_job_that_has_not_claimed_its_run_yet_is_left_alone(heartbeat, run_id):
+def test_a_job_that_has_not_claimed_its_run_yet_is_left_alone(heartbeat, run_id, next_run):
     killed = []
+    assert next_run() == run_id
     heartbeat.watch(run_id, lambda: killed.append(run_id))
     for _ in range(HEARTBEATS_AFTER_END + 2):
         heartbeat.beat()

@@ -58,11 +58,13 @@ def build_evolution(
     options = device.quick_options() if small else {}
     jitted = partial(jax.jit, compiler_options=options)
     compiled = (lambda program: program) if on_host else jitted
+    insert = search.insert_program(options)
     # Each program is compiled for this run's sizes and seed.
     programs = Programs(
         emit=compiled(build_emission(plan)),
         evaluate_block=build_block(chosen.scene, room_of(chosen)),
-        insert=search.insert_program(options),
+        insert=insert,
+        overwrite=insert if small else search.insert_program(options, donate=True),
         credit=jitted(search.emitters.credit),
         tell=compiled(lambda states, outcome: search.emitters.tell(emitters, states, outcome)),
         forget=jitted(search.reevaluation.forget),

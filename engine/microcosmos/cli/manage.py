@@ -13,6 +13,16 @@ from .monitor import watch_to_end
 from .remote import RUNS, Id, Ids, Json, describe, find, say, server_command, show, title
 
 Name = Annotated[str | None, Option(help="Name of the run.")]
+Priority = Annotated[
+    str | None,
+    Option(help="low, normal or high among your runs; urgent before all (admins)."),
+]
+Patience = Annotated[
+    float | None,
+    Option(
+        metavar="SECONDS", help="Wait so long for the same kind of device, then take another."
+    ),
+]
 Watch = Annotated[bool, Option("--watch", "-w", help="Watch until it ends.")]
 Yes = Annotated[bool, Option("--yes", "-y", help="Do not ask for confirmation.")]
 
@@ -33,13 +43,24 @@ def submit(
         ),
     ] = None,
     name: Name = None,
+    priority: Priority = None,
+    label: Annotated[
+        list[str] | None, Option(help="A label that the worker must have; repeatable.")
+    ] = None,
+    may_yield: Annotated[
+        bool, Option("--may-yield", help="Return to the queue for an urgent run.")
+    ] = False,
+    device_patience: Patience = None,
     watch: Watch = False,
     json: Json = False,
 ) -> None:
     """Queue a run or a sweep, and print its id."""
+    asked = {"priority": priority, "labels": label, "may_yield": may_yield or None}
+    asked |= {"device_patience": device_patience}
+    scheduling = {field: value for field, value in asked.items() if value is not None}
     grid = specs.grid(sweep or [])
     document = specs.applied(server_specs.document(client.connection, spec), settings or [])
-    made = client.submit(document, seeds=seeds, grid=grid or None, name=name)
+    made = client.submit(document, seeds=seeds, grid=grid or None, name=name, **scheduling)
     _report(made, watch, json)
 
 

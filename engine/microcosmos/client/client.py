@@ -61,7 +61,9 @@ class Client:
         self.connection.close()
 
     @overload
-    def submit(self, spec: Any, *, name: str | None = None, key: str | None = None) -> Run: ...
+    def submit(
+        self, spec: Any, *, name: str | None = None, key: str | None = None, **scheduling: Any
+    ) -> Run: ...
 
     @overload
     def submit(
@@ -72,6 +74,7 @@ class Client:
         grid: Mapping[str, Sequence[Any]] | None = None,
         name: str | None = None,
         key: str | None = None,
+        **scheduling: Any,
     ) -> Sweep: ...
 
     def submit(
@@ -82,16 +85,22 @@ class Client:
         grid: Mapping[str, Sequence[Any]] | None = None,
         name: str | None = None,
         key: str | None = None,
+        **scheduling: Any,
     ) -> Run | Sweep:
         """Queue a spec, a file with one, or a preset by its name.
 
         With `seeds` (a number or a list) or a `grid` (values by the dotted path of a field) it
         is a sweep. The same `key` with the same spec is the same run, however often it is sent.
+        `scheduling` may be `priority` (low, normal, high, or for admins urgent), `labels` that
+        the worker must have, `may_yield` to urgent runs, and `device_patience`, the seconds
+        until another kind of device may continue it.
         """
         document, key = specs.document(self.connection, spec), key or str(uuid4())
         if seeds is None and grid is None:
             # The name is sent at once: a run that was queued without it would be sent again.
-            record = self.connection.send("POST", "runs", document, key=key, name=name)
+            record = self.connection.send(
+                "POST", "runs", document, key=key, name=name, **scheduling
+            )
             run = Run(self.connection, record)
             return run.change(name=name) if name and not run.name else run
         many = {
@@ -100,7 +109,8 @@ class Client:
             "grid": {path: list(values) for path, values in (grid or {}).items()},
         }
         many |= {"name": name} if name else {}
-        return Sweep(self.connection, self.connection.send("POST", "sweeps", many, key=key))
+        made = self.connection.send("POST", "sweeps", many, key=key, **scheduling)
+        return Sweep(self.connection, made)
 
     def estimate(self, spec: Any) -> dict[str, Any]:
         """Estimate the memory, work and time of a run."""

@@ -18,13 +18,21 @@ class Experiment(Protocol):
         """Return the state before the first generation."""
         ...
 
+    @property
+    def device(self) -> str:
+        """The kind of device on which the bits of its results depend."""
+        ...
+
     def done(self, state: Any) -> bool:
         """Return whether all generations are completed."""
         ...
 
     def advance(self, state: Any, stop: Callable[[], bool] = ...) -> tuple[Any, Report]:
-        """Compute one generation. Raise `Stopped` if `stop()` is true between blocks; `state`
-        stays valid."""
+        """Compute one generation.
+
+        Raise `Stopped` if `stop()` is true between blocks; `state` stays valid then. Otherwise
+        it must not be used again, since a large archive is overwritten.
+        """
         ...
 
     def save(self, state: Any) -> bytes:

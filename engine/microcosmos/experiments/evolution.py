@@ -39,6 +39,10 @@ class Evolution:
     decide: deciding.Programs | None = None
     """Programs of means that decide; None: offspring compete by their first evaluation."""
 
+    @property
+    def device(self) -> str:
+        return self.plan.device
+
     def init(self) -> State:
         """Raise `ValueError` if files of initial creatures are missing."""
         named = json.loads(self.plan.spec)["search"].get("initial", [])
@@ -100,9 +104,7 @@ class Evolution:
         container = search.refreshed(
             state.container, state.elites, candidates, state.generation + 1
         )
-        elites, inserted = programs.insert(state.elites, candidates, container)
-        if offspring.from_archive:
-            elites = programs.credit(elites, children.parents[:, 0], inserted)
+        elites, inserted = self._placed(state.elites, candidates, container, offspring)
         outcome = search.emitters.outcome(candidates, inserted)
         emitters = offspring.without_replaced(programs.tell(offspring.emitters, outcome))
         inserted = jax.device_get(inserted)
@@ -124,13 +126,32 @@ class Evolution:
             elites=elites,
             counters=offspring.counters,
             emitters=emitters,
-            repeats=programs.forget(state.repeats, inserted.cell, inserted.entered),
+            repeats=programs.forget(
+                state.repeats, inserted.cell, inserted.entered, elites.occupied
+            ),
             outcomes=np.concatenate(
                 [state.outcomes, self._outcomes(offspring.emitter, inserted)[None]]
             ),
             failures=_failures(state, children.genotypes, np.asarray(evaluation.status)),
         )
         return after, new, clipped, np.asarray(inserted.cell)
+
+    def _placed(
+        self,
+        elites: search.Elites,
+        candidates: search.Elites,
+        container: search.Container,
+        offspring: Offspring,
+    ) -> tuple[search.Elites, search.Inserted]:
+        """Insert the candidates, and credit their parents."""
+        # Reevaluation may yet be stopped, and the state has to stay valid.
+        insert = self.programs.insert if self.repeats else self.programs.overwrite
+        elites, inserted = insert(elites, candidates, container)
+        if offspring.from_archive:
+            parents = offspring.children.parents[:, 0]
+            scores = self.programs.credit(elites, parents, inserted)
+            elites = replace(elites, curiosity=scores)
+        return elites, inserted
 
     def _learned(
         self,

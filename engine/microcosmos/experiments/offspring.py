@@ -13,6 +13,7 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Array, Float
 
 from .. import neat, search
 from ..genomes import Genotype
@@ -70,7 +71,9 @@ class Programs:
     each slot."""
     evaluate_block: Callable[[Genotype], search.Evaluation]
     insert: Callable[..., tuple[search.Elites, search.Inserted]]
-    credit: Callable[..., search.Elites]
+    overwrite: Callable[..., tuple[search.Elites, search.Inserted]]
+    """As `insert`; the genotypes of the old archive may be overwritten."""
+    credit: Callable[..., Float[Array, "cell"]]
     tell: Callable[[tuple, search.Outcome], tuple]
     forget: Callable[..., search.reevaluation.Repeats]
     lessons: tuple[Lessons | None, ...]
@@ -161,7 +164,8 @@ def _screened(
     stop: Callable[[], bool],
 ) -> Offspring:
     began = time.monotonic()
-    pool, counters = screening.candidates(plan, given, programs.insert, state, emitter, stop)
+    inserts = programs.insert, programs.overwrite
+    pool, counters = screening.candidates(plan, given, inserts, state, emitter, stop)
     children, counters = screening.chosen(plan, given, state, pool, counters, emitter)
     results, names = LessonResults(), state.creatures
     return Offspring(children, state.emitters, counters, results, began, names, True, emitter)

@@ -54,8 +54,8 @@ def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bo
     """Return the state with every elite reevaluated; raises `Stopped` as `advance` does."""
     assert plan.reevaluation is not None
     began = time.monotonic()
-    done = np.asarray(state.elites.occupied)
-    cells, repeats = np.flatnonzero(done), state.repeats
+    cells, repeats = np.flatnonzero(state.elites.occupied), state.repeats
+    bins = search.cells_of(state.container)
     genotypes = jax.tree.map(lambda x: np.asarray(x)[cells], state.elites.genotypes)
 
     def in_all_cells(rows: np.ndarray) -> np.ndarray:
@@ -72,7 +72,7 @@ def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bo
         if plan.feasible:
             found = search.judged(found)
         everywhere = jax.tree.map(in_all_cells, found)
-        repeats = programs.add(repeats, jnp.asarray(done), everywhere, state.container)
+        repeats = programs.add(repeats, state.elites, everywhere, bins)
     seconds = (time.monotonic() - began) * jax.local_device_count()
     # A run with more generations would not reevaluate here.
     early = not state.ended and state.generation % plan.reevaluation.every != 0
@@ -91,7 +91,8 @@ def figures(programs: Programs, state: State) -> tuple[float, float, float]:
     count = np.asarray(state.repeats.count)
     if not count.any():
         return np.nan, np.nan, np.nan
-    corrected = programs.correct(state.elites, state.repeats, state.container)
+    bins = search.cells_of(state.container)
+    corrected = programs.correct(state.elites, state.repeats, bins)
     corrected = np.asarray(corrected, np.float64)
     there = corrected[np.isfinite(corrected)]
     hits = np.asarray(state.repeats.hits).sum() / count.sum()

@@ -8,6 +8,11 @@ from typing import Any
 class OtherDevice(ValueError):
     """The file was computed on another kind of device, where bits may differ."""
 
+    def __init__(self, message: str, recorded: str):
+        super().__init__(message)
+        self.recorded = recorded
+        """The kind of device that computed the file."""
+
 
 def devices_of(
     spec: str, device: str, attributes: Mapping[str, str], other_device: bool
@@ -22,7 +27,8 @@ def devices_of(
     if devices[-1] != device and not other_device:
         raise OtherDevice(
             f"`device` must be {devices[-1]!r}, on which the run was computed, for the same "
-            f"bits; got {device!r}."
+            f"bits; got {device!r}.",
+            devices[-1],
         )
     return tuple(devices if devices[-1] == device else [*devices, device])
 

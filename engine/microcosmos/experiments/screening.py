@@ -50,14 +50,15 @@ class Pool:
 def candidates(
     plan: Plan,
     programs: Programs,
-    insert: Callable[..., tuple[search.Elites, search.Inserted]],
+    inserts: tuple[Callable[..., tuple[search.Elites, search.Inserted]], ...],
     state: State,
     emitter: Int[np.ndarray, "slot"],
     stop: Callable[[], bool],
 ) -> tuple[Pool, neat.Counters]:
     """Return the candidates of all rounds, and the counters after their genes.
 
-    Takes the number of each slot's emitter, in ascending order.
+    Takes the number of each slot's emitter, in ascending order. The first of `inserts` keeps
+    the archive that it is given, the second may overwrite it.
     """
     assert plan.screening is not None
     elites, counters, parts = state.elites, state.counters, []
@@ -82,7 +83,7 @@ def candidates(
                 jnp.asarray(predicted.measures),
                 jnp.asarray(likely),
             )
-            elites, inserted = insert(elites, rows, state.container)
+            elites, inserted = inserts[number > 0](elites, rows, state.container)
             entered = np.asarray(inserted.entered)
             ancestors[np.asarray(inserted.cell)[entered]] = parents[entered, 0]
     children, predicted = jax.tree.map(lambda *rows: np.concatenate(rows), *parts)
@@ -165,8 +166,11 @@ def learn(
 def _described(
     plan: Plan, programs: Programs, genotypes: Genotype, stop: Callable[[], bool]
 ) -> search.screening.Described:
-    """Return the descriptions of genotypes, computed in blocks on all devices."""
-    return search.evaluate_blocks(programs.describe, genotypes, block=plan.block, stop=stop)
+    """Return the descriptions of genotypes, computed on all devices.
+
+    A description is so short that a block of a whole generation costs less than smaller ones.
+    """
+    return search.evaluate_blocks(programs.describe, genotypes, block=plan.batch, stop=stop)
 
 
 def _figures(

@@ -293,7 +293,7 @@ def _told(
     after = Progress(
         generation=number,
         infeasible=before.infeasible + jnp.sum(~feasible, dtype=jnp.int32),
-        elites=credit(elites, children.parents[:, 0], inserted),
+        elites=replace(elites, curiosity=credit(elites, children.parents[:, 0], inserted)),
         counters=before.counters,
         emitters=tell(emitters, before.emitters, outcome(rows, inserted)),
     )

@@ -48,14 +48,14 @@ class Spread(eqx.Module):
 
 
 class Repeats(eqx.Module):
-    """Results of reevaluation, a row for each cell."""
+    """Results of reevaluation, a row for each place of an elite."""
 
     count: Int[Array, "cell"]
     """Reevaluations of the present elite."""
     failed: Int[Array, "cell"]
     """Infeasible reevaluations; no mean includes them."""
     hits: Int[Array, "cell"]
-    """Reevaluations whose descriptors fell into the elite's cell."""
+    """Reevaluations whose descriptors fell into the elite's cell or bins."""
     fitness: Float[Array, "cell"]
     """Mean fitness."""
     squares: Float[Array, "cell"]
@@ -103,30 +103,38 @@ def moved(start: State, changed: Disturbance) -> State:
     return replace(start, positions=start.positions + changed.shift[None], energy=energy)
 
 
-def forget(repeats: Repeats, cells: Int[Array, "row"], entered: Bool[Array, "row"]) -> Repeats:
-    """Clear the rows of cells with new elites."""
-    place = jnp.where(entered, cells, repeats.count.shape[0])
-    return jax.tree.map(lambda x: x.at[place].set(jnp.zeros((), x.dtype), mode="drop"), repeats)
-
-
-def add(
-    repeats: Repeats, done: Bool[Array, "cell"], found: Evaluation, cells: Cells
+def forget(
+    repeats: Repeats,
+    cells: Int[Array, "row"],
+    entered: Bool[Array, "row"],
+    occupied: Bool[Array, "cell"],
 ) -> Repeats:
-    """Add one reevaluation of the elites of some cells (Welford 1962).
+    """Clear the rows of cells with new elites, and of those that are empty."""
+    place = jnp.where(entered, cells, len(occupied))
+    kept = occupied.at[place].set(False, mode="drop")
 
-    `found` has a row for each cell; rows that are not `done` are ignored.
+    def cleared(x: Array) -> Array:
+        return jnp.where(kept.reshape(-1, *[1] * (x.ndim - 1)), x, jnp.zeros((), x.dtype))
+
+    return jax.tree.map(cleared, repeats)
+
+
+def add(repeats: Repeats, elites: Elites, found: Evaluation, cells: Cells) -> Repeats:
+    """Add one reevaluation of every elite (Welford 1962).
+
+    `found` has a row for each place; those of empty places are ignored.
     """
+    done, homes = elites.occupied, cells.of(elites.measures)
     old, feasible = repeats, done & (found.status == 0)
     n = old.count - old.failed + feasible
     share = jnp.where(feasible, 1 / jnp.maximum(n, 1), 0.0)
     step = jnp.where(feasible, found.fitness - old.fitness, 0.0)
     strayed = jnp.where(feasible[:, None], found.measures - old.measures, 0.0)
     mean = old.fitness + share * step
-    cell = jnp.arange(done.shape[0])
     return Repeats(
         count=old.count + done,
         failed=old.failed + (done & ~feasible),
-        hits=old.hits + (feasible & (cells.of(found.measures) == cell)),
+        hits=old.hits + (feasible & (cells.of(found.measures) == homes)),
         fitness=mean,
         squares=old.squares + jnp.where(feasible, step * (found.fitness - mean), 0.0),
         measures=old.measures + share[:, None] * strayed,
@@ -139,8 +147,7 @@ def corrected(elites: Elites, repeats: Repeats, cells: Cells) -> Float[Array, "c
     It places every reevaluated elite by its mean descriptors and keeps the best mean fitness of
     each cell.
     """
-    count = repeats.count.shape[0]
     known = elites.occupied & (repeats.count > repeats.failed)
-    place = jnp.where(known, cells.of(repeats.measures), count)
-    best = jnp.full(count, -jnp.inf).at[place].max(repeats.fitness, mode="drop")
+    place = jnp.where(known, cells.of(repeats.measures), cells.count)
+    best = jnp.full(cells.count, -jnp.inf).at[place].max(repeats.fitness, mode="drop")
     return jnp.where(jnp.isfinite(best), best, jnp.nan)

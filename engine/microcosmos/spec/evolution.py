@@ -118,11 +118,14 @@ class Evolution(Part, Generic[Name, SearchSpec]):
                     "`archive.container.measures` must be recorded, those of plug-ins as a "
                     f"descriptor or the fitness, got {name!r}"
                 )
-        for name in ("reevaluation", "screening"):
-            if getattr(self.search, name, None):
-                raise ValueError(
-                    f"`search.{name}` must be empty with `archive.container`, got settings"
-                )
+        if getattr(self.search, "screening", None):
+            raise ValueError(
+                "`search.screening` must be empty with `archive.container`, got settings"
+            )
+        if self.search.reevaluation and self.search.reevaluation.decides:
+            raise ValueError(
+                "`search.reevaluation.decides` must be false with `archive.container`, got true"
+            )
         allowed = (*STATELESS, "population")
         for emitter in self.emitters:
             if emitter.operator not in allowed:

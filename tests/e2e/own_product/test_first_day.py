@@ -20,6 +20,7 @@ from playwright.sync_api import Page, expect
 from small_runs import TINY
 
 from microcosmos.client import Client, Run
+from server.storage.mark import MARK
 
 SEEDS, MORE = 3, 2
 GENERATIONS = TINY["search"]["generations"]
@@ -188,7 +189,7 @@ def find_nothing_left_behind(product: Installation, run: Run) -> None:
         assert not rows(product, f"{table} WHERE run_id = ?", run.id.replace("-", "")), table
     folder = product.folder / "artifacts"
     files = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
-    assert files == {row[0] for row in rows(product, "artifacts", column="path")}
+    assert files - {MARK} == {row[0] for row in rows(product, "artifacts", column="path")}
     used = "SELECT creature FROM elites UNION SELECT creature FROM initial_creatures "
     used += "UNION SELECT parent FROM parents"
     assert not rows(product, f"creatures WHERE sha256 NOT IN ({used})")

@@ -243,6 +243,41 @@ def test_a_creature_that_is_no_ancestor_is_refused():
         pedigree.split(pedigree.document(grown, [oldest]))
 
 
+@pytest.mark.parametrize(
+    ("part", "value"),
+    [
+        ("parents", ["0" * 64] * 95_000),
+        ("parents", ["0" * 64] * 257),
+        ("operator", "x" * 201),
+        ("generation", 2**53),
+        ("seed", 2**32),
+        ("version", "x" * 201),
+    ],
+)
+def test_what_a_file_says_of_its_origin_has_bounds(part, value):
+    assert refused(one(40), (("provenance", part), value)).field == f"provenance.{part}"
+
+
+def test_a_creature_is_not_its_own_parent():
+    file = one(40)
+    error = refused(file, (("provenance", "parents"), [file["sha256"]]))
+    assert error.field == "provenance.parents"
+    assert "must be other creatures" in error.needed
+
+
+@pytest.mark.parametrize("licence", ["", "x" * 2_000_000])
+def test_a_licence_is_a_line(licence):
+    assert refused(one(40), (("licence",), licence)).field == "licence"
+
+
+def test_names_and_devices_of_a_measurement_have_bounds(file):
+    long = measured(device="x" * 1001)
+    assert refused(file | {"measured": long}).field == "measured.device"
+    measures = measured()["measures"] | {"x" * 201: 1.0}
+    wrong = refused(file | {"measured": measured(measures=measures)}).field
+    assert wrong.startswith("measured.measures")
+
+
 def test_names_of_credit_are_words():
     file = one(40)
     assert creature.parse(file | {"credit": [" Ada "]})["credit"] == ["Ada"]

@@ -107,7 +107,7 @@ def test_body_genes_and_figures_are_arrays(newcomer):
 
 
 NAMES = ["", ".", "..", "/", "a", "a/b", "a/b/../c", "./a", "%", "%2F", "a%2Fb", "nul\0"]
-NAMES += ["fitness", "measures", "1/2 é", " ", "%2E", "x" * 100_000]
+NAMES += ["fitness", "measures", "1/2 é", " ", "%2E", "x" * 200]
 
 
 def test_names_that_could_be_paths_are_names(newcomer):

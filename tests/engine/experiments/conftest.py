@@ -71,6 +71,7 @@ SEVERAL = [
 SPECS["bandit"] = SMALL | {
     "search": SMALL["search"] | {"generations": 6, "emitters": SEVERAL, "bandit": {"window": 3}}
 }
+AGAIN = {"reevaluation": {"every": 3, "samples": 2}}
 SPECS["dominated-novelty"] = SMALL | {
     "archive": {"container": {"kind": "dominated-novelty", "size": 24}}
 }
@@ -78,10 +79,12 @@ SPECS["fronts"] = SMALL | {
     "archive": {
         "descriptors": [{"name": "symmetry", "bins": 3}, {"name": "curvature_mean", "bins": 2}],
         "container": {"kind": "fronts", "size": 3},
-    }
+    },
+    "search": SMALL["search"] | AGAIN,
 }
 SPECS["learned"] = SMALL | {
-    "archive": {"container": {"kind": "learned", "bins": 5, "first": 2, "measures": []}}
+    "archive": {"container": {"kind": "learned", "bins": 5, "first": 2, "measures": []}},
+    "search": SMALL["search"] | AGAIN,
 }
 SCREENED = {"batch": 64, "screening": {"rounds": 2, "candidates": 4}}
 SPECS["screened-bandit"] = SPECS["bandit"] | {"search": SPECS["bandit"]["search"] | SCREENED}

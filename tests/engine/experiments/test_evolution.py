@@ -33,6 +33,18 @@ def test_the_archive_only_improves(course):
         assert values == sorted(values)
 
 
+def test_a_large_archive_is_overwritten_and_ends_with_the_same_bytes(small, finish):
+    axes = [{"name": name, "bins": 65} for name in ("symmetry", "curvature_mean")]
+    large = build(small(archive={"descriptors": axes}))
+    copying = replace(large.programs, overwrite=large.programs.insert)
+    first, before = large.init(), large.init()
+    data = finish(large, first)
+    assert data == finish(replace(large, programs=copying), before)
+    large.save(before)
+    with pytest.raises(RuntimeError, match="deleted"):
+        large.save(first)
+
+
 def test_the_last_report_has_the_variety_of_the_archive_file(course, experiment):
     states, reports, *_ = course
     assert not [report for report in reports[:-1] if "kinds" in report.summary]

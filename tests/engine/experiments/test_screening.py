@@ -27,7 +27,8 @@ def pool(course):
     """The candidates of the last generation."""
     plan, programs = course.experiment.plan, course.experiment.programs
     state = course.states[-2]
-    given = programs.insert, state, divided(plan, state), search.never
+    inserts = programs.insert, programs.overwrite
+    given = inserts, state, divided(plan, state), search.never
     return screening.candidates(plan, programs.screen, *given)
 
 
@@ -98,8 +99,9 @@ def test_numbers_of_genes_have_no_gaps_after_the_choice(course):
     before, after = course.states[-2], course.states[-1]
     plan, programs = course.experiment.plan, course.experiment.programs
     emitter = divided(plan, before)
+    inserts = programs.insert, programs.overwrite
     found, counters = screening.candidates(
-        plan, programs.screen, programs.insert, before, emitter, search.never
+        plan, programs.screen, inserts, before, emitter, search.never
     )
     children, kept = screening.chosen(plan, programs.screen, before, found, counters, emitter)
     network = children.genotypes

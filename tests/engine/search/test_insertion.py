@@ -95,8 +95,10 @@ def test_the_same_creature_again_does_not_enter_and_donation_changes_nothing(cel
     again, inserted = insert(archive, rows, cells)
     assert not inserted.entered.any()
     assert same(archive, again)
-    donated, _ = search.insert_program(donate=True)(nothing(genotypes), rows, cells)
+    before = nothing(genotypes)
+    donated, _ = search.insert_program(donate=True)(before, rows, cells)
     assert same(archive, donated)
+    assert not before.occupied.any()
 
 
 def test_one_of_equal_rows_enters(cells, genotypes):

@@ -147,15 +147,26 @@ def found():
     return make
 
 
+def elites_at(*measures, occupied=(True, True, True, True)):
+    """Elites of one measure each."""
+    none = search.no_elites(CELLS, 1, Vector(jnp.zeros(1)))
+    rows = jnp.asarray(measures, jnp.float32)[:, None]
+    return replace(none, occupied=jnp.asarray(occupied), measures=rows)
+
+
+HOMES = (0.1, 0.3, 0.6, 0.9)
+"""A place in each of four cells."""
+
+
 @pytest.fixture
 def repeated(one_axis, found):
     """A function that adds evaluations, each given as `found` takes it, to no repeats."""
     add = jax.jit(reevaluation.add)
 
-    def total(*evaluations, done=(True, True, True, True)):
-        repeats = reevaluation.no_repeats(CELLS, 1)
+    def total(*evaluations, done=(True, True, True, True), homes=HOMES):
+        repeats, elites = reevaluation.no_repeats(CELLS, 1), elites_at(*homes, occupied=done)
         for given in evaluations:
-            repeats = add(repeats, jnp.asarray(done), found(*given), one_axis(CELLS))
+            repeats = add(repeats, elites, found(*given), one_axis(CELLS))
         return repeats
 
     return total
@@ -182,25 +193,29 @@ def test_infeasible_repeats_are_counted_and_in_no_mean(repeated):
 
 def test_a_hit_is_a_repeat_in_the_elites_own_cell(repeated):
     measures = [0.1, 0.3, 0.6, 0.9], [0.1, 0.1, 0.6, 0.6]
-    assert repeated(*(([1.0] * 4, row) for row in measures)).hits.tolist() == [2, 1, 2, 1]
+    rows = [([1.0] * 4, row) for row in measures]
+    assert repeated(*rows).hits.tolist() == [2, 1, 2, 1]
+    assert repeated(*rows, homes=(0.1, 0.1, 0.9, 0.9)).hits.tolist() == [2, 1, 0, 1]
 
 
-def test_a_new_elite_has_no_repeats(repeated):
+def test_a_new_elite_has_no_repeats_and_an_empty_place_has_none(repeated):
     repeats = repeated(([1.0, 2, 3, 4], [0.1] * 4))
-    entered = jnp.asarray([True, False])
-    repeats = reevaluation.forget(repeats, jnp.asarray([2, 0]), entered)
-    assert repeats.count.tolist() == [1, 1, 0, 1]
-    assert repeats.fitness.tolist() == [1, 2, 0, 4]
+    entered, occupied = jnp.asarray([True, False]), jnp.asarray([True, True, True, False])
+    repeats = reevaluation.forget(repeats, jnp.asarray([2, 0]), entered, occupied)
+    assert repeats.count.tolist() == [1, 1, 0, 0]
+    assert repeats.fitness.tolist() == [1, 2, 0, 0]
+    assert repeats.measures[:, 0].tolist() == [np.float32(0.1), np.float32(0.1), 0, 0]
 
 
 def test_the_corrected_archive_holds_the_best_mean_of_each_cell(repeated, one_axis):
     # The elites of cells 0 and 1 belong in cell 2, where one of them is better.
     values = [5.0, 4.0, 1.0, 9.0], [0.6, 0.6, 0.6, 0.1]
     repeats = repeated(values, done=(True, True, True, False))
-    elites = search.no_elites(CELLS, 1, Vector(jnp.zeros(1)))
-    elites = replace(elites, occupied=jnp.ones(CELLS, bool))
-    corrected = reevaluation.corrected(elites, repeats, one_axis(CELLS))
+    corrected = reevaluation.corrected(elites_at(*HOMES), repeats, one_axis(CELLS))
     np.testing.assert_array_equal(corrected, [np.nan, np.nan, 5.0, np.nan])
+    # Places need not be as many as bins.
+    corrected = reevaluation.corrected(elites_at(*HOMES), repeats, one_axis(2))
+    np.testing.assert_array_equal(corrected, [np.nan, 5.0])
 
 
 PLACE = {"width": 24, "height": 24, "energy": {"packets": 2, "width": 2.0, "placements": 3}}

@@ -38,7 +38,7 @@ def with_scores(elites, *scores):
 def credited(elites, parents, cell, entered):
     entered = jnp.asarray(entered)
     inserted = search.Inserted(jnp.asarray(cell), entered, entered, jnp.zeros(len(entered)))
-    return emitters.credit(elites, jnp.asarray(parents), inserted).curiosity
+    return emitters.credit(elites, jnp.asarray(parents), inserted)
 
 
 def shares_of(elites, select):
@@ -55,6 +55,12 @@ def shares_of(elites, select):
 def test_parents_are_drawn_by_the_chosen_selection(elites, select, won):
     expected = (1 - won) / 3 + won * TOURNAMENTS
     np.testing.assert_allclose(shares_of(elites, select), expected, atol=0.03)
+
+
+def test_equally_fit_elites_are_drawn_equally_often(elites):
+    equal = replace(elites, fitness=elites.fitness.at[ELITES[1]].set(2.0))
+    expected = [1 / 27, 13 / 27, 13 / 27]
+    np.testing.assert_allclose(shares_of(equal, "tournament"), expected, atol=0.03)
 
 
 def test_curiosity_multiplies_the_chances_of_parents(elites):

@@ -217,3 +217,9 @@ def test_fronts_need_a_second_objective_that_is_not_the_fitness():
         assert "`archive.container.measure` must be another measure" in told
         assert f"got {measure!r}" in told
     assert "archive.container.size: " in refusal(**fronts(size=1))
+    assert "`search.reevaluation.decides` must be false with `archive.container`" in refusal(
+        **fronts(), search={"reevaluation": {"decides": True}}
+    )
+    assert "`search.screening` must be empty with `archive.container`" in refusal(
+        **fronts(), search={"screening": {}}
+    )

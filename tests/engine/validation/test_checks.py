@@ -98,6 +98,7 @@ def test_a_check_passes_in_both_precisions(claim, way):
 
 
 @pytest.mark.long
+@pytest.mark.optimised  # They compute for longer than they compile.
 @pytest.mark.parametrize("claim", CHECKS)
 def test_a_check_passes(claim, path):
     assert not CHECKS[claim](path=path).failed
@@ -114,6 +115,7 @@ def test_gradients_agree_with_differences():
 
 
 @pytest.mark.long
+@pytest.mark.optimised
 def test_walls_stand_exactly_halfway():
     assert not flows.check_poiseuille((0.6, 2.0), (0.6,)).failed
 

@@ -15,7 +15,7 @@ pytest.importorskip(
 ROOT = Path(__file__).parents[3]
 KERNELS = ROOT / "engine" / "kernels"
 FLAGS = (
-    "-std=c++17 -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined "
+    "-std=c++17 -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined "
     "-ffp-contract=off -Wno-psabi -fPIC -shared"
 )
 RUN = """

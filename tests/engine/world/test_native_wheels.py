@@ -28,11 +28,12 @@ pytestmark = pytest.mark.long
 
 
 @pytest.fixture(scope="module")
-def wheels(tmp_path_factory):
+def wheels(tmp_path_factory, zig_cache):
     """The wheel of each processor."""
     out = tmp_path_factory.mktemp("wheels")
     command = [sys.executable, ROOT / "engine" / "kernels" / "wheels.py", out]
-    done = subprocess.run(command, stderr=subprocess.PIPE, text=True)
+    shared = os.environ | {"ZIG_GLOBAL_CACHE_DIR": zig_cache}
+    done = subprocess.run(command, stderr=subprocess.PIPE, text=True, env=shared)
     if "Zig cannot be fetched" in done.stderr:
         pytest.skip("Zig cannot be fetched from the package registry")
     assert done.returncode == 0, done.stderr

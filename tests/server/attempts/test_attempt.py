@@ -10,7 +10,7 @@ from fsspec.implementations.local import LocalFileSystem
 from sqlalchemy.exc import OperationalError
 
 from server.attempts import attempt as attempts
-from server.attempts.claim import claimed
+from server.attempts.claim import NothingComputed, claimed
 from server.core import database
 from server.runs import lifecycle
 from server.storage.artifacts import Artifacts
@@ -113,12 +113,20 @@ def test_a_stopping_worker_requeues_the_run_at_no_cost(held, row):
     assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
 
 
-def test_the_third_failure_without_a_checkpoint_is_final(held, row):
+def test_the_third_failure_without_a_checkpoint_is_final(held, row, report):
     for status in ("queued", "queued", "failed"):
-        with held():
+        with held() as attempt:
+            attempt.record(report(1), 1.0)
             raise ArithmeticError("the engine broke")
         assert row().status == status
     assert "ArithmeticError: the engine broke" in row().error
+
+
+def test_an_error_before_the_first_generation_is_left_to_the_supervisor(held, row):
+    with pytest.raises(NothingComputed) as caught, held():
+        raise ArithmeticError("there is no GPU")
+    assert isinstance(caught.value.__cause__, ArithmeticError)
+    assert (row().status, row().error) == ("running", None)
 
 
 def test_a_worker_that_lost_its_run_ends_silently(held, row, update_rows):

@@ -79,7 +79,7 @@ def test_a_lease_is_renewed_by_its_holder(services, run_id, claim_run, row):
     def beat(worker):
         return leases.heartbeat(services.sessions, run_id, worker)
 
-    assert beat("first") == "waiting"
+    assert beat("first") == "over"
     attempt = claim_run("first")
     before = row().heartbeat_at
     assert beat("first") == "held"
@@ -99,23 +99,7 @@ def test_redis_can_be_away_while_a_run_is_recorded(services, attempt, record, ro
     assert row().status == "finished"
 
 
-def test_resuming_a_waiting_run_allows_another_device(services, run_id, claim_run, row):
-    first = claim_run("first")
-    assert not first.other_device
-    first.wait_for_override("it began elsewhere")
-    assert row().status == "paused"
-    assert row().warning.startswith("it began elsewhere Resume the run to continue")
-    act(services, run_id, lifecycle.resume)
-    assert claim_run("second").other_device
-
-
-def test_resuming_an_ordinary_run_allows_no_other_device(services, run_id, claim_run):
-    claim_run("first").pause()
-    act(services, run_id, lifecycle.resume)
-    assert not claim_run("second").other_device
-
-
-@pytest.mark.parametrize("end", [Attempt.pause, lambda held: held.wait_for_override("why")])
+@pytest.mark.parametrize("end", [Attempt.pause, lambda held: held.pause_until_resumed("why")])
 def test_a_cancellation_overrides_a_pause_under_way(services, run_id, row, end, attempt):
     act(services, run_id, lifecycle.cancel)
     end(attempt)

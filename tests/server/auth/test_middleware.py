@@ -76,6 +76,26 @@ def test_a_page_opened_with_the_token_keeps_it_in_a_cookie(serve):
         assert client.get(f"{address}/api/v1/runs").status_code == 200
 
 
+@pytest.mark.parametrize(
+    ("sent", "signed_in"),
+    [
+        ({}, True),
+        ({"Sec-Fetch-Site": "none"}, True),
+        ({"Sec-Fetch-Site": "same-origin"}, True),
+        ({"Sec-Fetch-Site": "cross-site"}, False),
+        ({"Sec-Fetch-Site": "same-site"}, False),
+        ({"Referer": "http://evil.example/runs"}, False),
+    ],
+)
+def test_a_link_of_another_site_signs_nobody_in(serve, sent, signed_in):
+    with serve(token=SecretStr("secret")) as address, httpx.Client() as browser:
+        answer = browser.get(f"{address}/runs?token=secret&view=map", headers=sent)
+        assert answer.headers["location"] == f"{address}/runs?view=map"
+        assert ("set-cookie" in answer.headers) == signed_in
+        status = browser.get(f"{address}/api/v1/runs").status_code
+        assert status == (200 if signed_in else 401)
+
+
 def test_a_cookie_does_not_work_from_other_sites(serve, spec):
     """A browser may send it by itself; a header it does not."""
     with serve(token=SecretStr("secret")) as address:

@@ -196,17 +196,16 @@ def end(record, request):
 
 
 def test_a_finished_run_is_queued_again_and_goes_on_where_it_ended(
-    api, services, run_id, report, flush, end
+    api, services, run_id, report, waiting, end
 ):
     end(4)
-    flush()
     answer = api.post(f"runs/{run_id}/extend", json={"generations": 3})
     assert answer.status_code == 202
     run = answer.json()
     assert (run["status"], run["generation"], run["generations"]) == ("queued", 4, 7)
     assert run["spec"]["search"]["generations"] == 7
     assert run["finished_at"] is None
-    assert services.jobs.runs.get_job_ids() == [str(run_id)]
+    assert waiting() == [str(run_id)]
     attempt = claim(services, run_id, "worker")
     assert (attempt.generation, attempt.restore()) == (4, b"state after 4")
     assert attempt.spec["search"]["generations"] == 7

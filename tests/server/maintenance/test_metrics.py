@@ -37,7 +37,7 @@ def scrape(address):
 def test_runs_queues_and_workers_are_counted(services, run_id, scrape, record):
     before = scrape()
     assert before["runs", 'status="queued"'] == 1
-    assert before["queue_length", 'queue="runs"'] == 1
+    assert before["queue_length", 'queue="renderings"'] == 0
     assert before["evaluations_total", ""] == 0
     assert ("generation_seconds", "") not in before
     record(4, {5: 1.0}, seconds=10.0)

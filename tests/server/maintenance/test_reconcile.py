@@ -3,58 +3,31 @@
 import httpx
 import pytest
 from redis import ConnectionError
-from rq.registry import StartedJobRegistry
 
 from server.attempts.attempt import ClaimLost
-from server.attempts.leases import end_job
+from server.attempts.leases import end_job, fail_job
 from server.maintenance import reconcile as reconciler
 from server.maintenance.reconcile import reconcile
+from server.runs.lifecycle import MAX_ATTEMPTS
 from server.tables import Run, Worker
 from server.workers import registry
 
 pytestmark = pytest.mark.postgresql
 
 
-def enqueued(services):
-    return services.jobs.runs.get_job_ids()
-
-
-def test_redis_may_be_emptied_without_losing_a_run_or_their_order(services, api, spec, flush):
-    ids = [api.post("runs", json={**spec, "seed": i}).json()["id"] for i in range(4)]
-    before = services.jobs.find(ids[0]).enqueued_at
-    reconcile(services)
-    assert services.jobs.find(ids[0]).enqueued_at == before, "a queued run stays as it is"
-    assert enqueued(services) == ids
-    flush()
-    assert enqueued(services) == []
-    reconcile(services)
-    assert enqueued(services) == ids
-
-
-def test_a_server_reconciles_when_it_starts(services, run_id, flush, serve, eventually):
-    flush()
+def test_a_server_reconciles_when_it_starts(run_id, attempt, serve, silence, row, eventually):
+    silence()
     with serve(reconcile_interval=0.05):
-        eventually(lambda: enqueued(services))
-    assert enqueued(services) == [str(run_id)]
+        eventually(lambda: row().status == "queued")
 
 
-def test_the_reconciler_leaves_a_started_run(services, run_id):
-    services.redis.lrem(services.jobs.runs.key, 0, str(run_id))
-    registry = StartedJobRegistry(queue=services.jobs.runs)
-    services.redis.zadd(registry.key, {f"{run_id}:execution": 4e9})
-    reconcile(services)
-    assert enqueued(services) == []
-
-
-def test_a_silent_workers_run_is_queued_again(
-    services, run_id, attempt, flush, row, record, silence
-):
+def test_a_silent_workers_run_is_queued_again(services, attempt, flush, row, record, silence):
     flush()
     reconcile(services)
-    assert (row().status, enqueued(services)) == ("running", [])
+    assert row().status == "running"
     silence()
     reconcile(services)
-    assert (row().status, enqueued(services)) == ("queued", [str(run_id)])
+    assert (row().status, row().worker, row().avoided_worker) == ("queued", None, "worker")
     with pytest.raises(ClaimLost):
         record(1)
 
@@ -92,13 +65,33 @@ def test_a_worker_that_ignores_a_cancellation_loses_the_run(
         attempt.read_request()
 
 
-def test_a_dead_jobs_run_is_enqueued_at_once(services, run_id, attempt, row, flush):
-    flush()
-    end_job(services, run_id, "another", "killed")
+def test_a_dead_jobs_run_is_queued_at_once(services, run_id, attempt, row):
+    fail_job(services, run_id, "another", "killed")
     assert row().status == "running"
-    end_job(services, run_id, "worker", "killed by signal 9")
+    fail_job(services, run_id, "worker", "killed by signal 9")
     assert (row().status, row().error) == ("queued", "killed by signal 9")
-    assert enqueued(services) == [str(run_id)]
+
+
+def test_deaths_before_the_claim_are_counted_and_end_the_run(services, run_id, row, taken):
+    for number in range(1, MAX_ATTEMPTS):
+        assert taken() == str(run_id)
+        fail_job(services, run_id, "worker", "its process ended with status 1")
+        assert (row().status, row().attempts_without_checkpoint) == ("queued", number)
+    assert taken() == str(run_id)
+    fail_job(services, run_id, "worker", "the last reason")
+    assert row().status == "failed"
+    assert row().error == "3 attempts without a new checkpoint; the last one: the last reason"
+
+
+def test_the_death_of_a_job_whose_claim_was_lost_is_not_counted_twice(
+    services, run_id, row, claim_run, silence
+):
+    claim_run()
+    silence()
+    reconcile(services)
+    assert row().attempts_without_checkpoint == 1
+    fail_job(services, run_id, "worker", "its heartbeats killed it")
+    assert (row().status, row().attempts_without_checkpoint) == ("queued", 1)
 
 
 def test_a_job_killed_by_a_stopping_worker_costs_no_attempt(services, run_id, row, claim_run):
@@ -110,19 +103,16 @@ def test_a_job_killed_by_a_stopping_worker_costs_no_attempt(services, run_id, ro
         assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
         with pytest.raises(ClaimLost):
             attempt.read_request()
-    assert enqueued(services) == [str(run_id)]
 
 
-def test_a_run_can_be_submitted_while_redis_is_away(api, services, spec, serve, row, flush):
+def test_a_run_can_be_submitted_while_redis_is_away(spec, serve, taken):
     with serve(redis_url="redis://127.0.0.1:1/0") as address:
         body = {**spec, "seed": 7}
         answer = httpx.post(f"{address}/api/v1/runs", json=body, timeout=30)
         assert httpx.get(f"{address}/readyz", timeout=30).status_code == 503
     assert answer.status_code == 202
     run_id = answer.json()["id"]
-    assert run_id not in enqueued(services)
-    reconcile(services)
-    assert run_id in enqueued(services)
+    assert taken() == run_id
 
 
 def test_an_outage_of_redis_does_not_end_the_reconciler(serve, monkeypatch, eventually):

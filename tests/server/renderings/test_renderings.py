@@ -15,6 +15,7 @@ from microcosmos.archive import creature
 from microcosmos.archive.poses import decode
 from microcosmos.viz.replay_file import REPLAY_VERSION
 from server.attempts.claim import claim
+from server.auth import tokens
 from server.renderings import storage as renderings
 from server.runs.submission import submit
 from server.tables import AUDIT, GIF, MEASUREMENT, REPLAY, Artifact
@@ -49,7 +50,6 @@ def test_a_range_beyond_all_numbers_is_ignored(api, services, known):
     ("kind", "media_type", "made"),
     [
         ("replay", "application/octet-stream", b"a replay"),
-        ("audit", "application/json", b'{"verdict": {"trusted": true}}'),
         ("strip.png", "image/png", b"a picture"),
         ("film.gif", "image/gif", b"a film"),
         ("film.mp4", "video/mp4", b"another film"),
@@ -88,6 +88,29 @@ def test_the_verdict_is_that_of_the_saved_audit(api, services, known):
     renderings.enqueue_again(services, known, AUDIT)
     assert renderings.existing(services, known, AUDIT) is None
     assert verdict() is None
+
+
+def test_a_token_to_read_orders_no_audit_but_waits_for_one(api, services, known):
+    reader = tokens.create(services, "reader", "read")
+    sent = {"Authorization": f"Bearer {reader.secret}"}
+    path = f"creatures/{known}/audit"
+    assert api.get(path, headers=sent).status_code == 204
+    refused = detail(api.post(path, headers=sent), 403)
+    assert refused == "This needs a token of scope `write`; `reader` has `read`."
+    assert services.jobs.audits.count == 0
+    for _ in range(2):
+        assert api.post(path).status_code == 202
+        assert api.get(path, headers=sent).status_code == 202
+    assert services.jobs.audits.count == 1
+    services.jobs.remove(services.jobs.rendering_id(known, AUDIT))
+    renderings.save(services, known, AUDIT, audit(True))
+    found = api.get(path, headers=sent)
+    assert (found.status_code, found.content) == (200, audit(True))
+    assert found.headers["content-type"] == "application/json"
+    unchanged = sent | {"If-None-Match": found.headers["etag"]}
+    assert api.get(path, headers=unchanged).status_code == 304
+    assert api.post(path).status_code == 202
+    assert services.jobs.audits.count == 0, "it was audited"
 
 
 def test_an_audit_that_cannot_be_saved_leaves_the_verdict(api, services, known, monkeypatch):
@@ -244,24 +267,24 @@ def test_a_creature_is_measured_again_on_request_and_repeatedly(api, services, m
     assert api.get(path).status_code == 204
     assert services.jobs.audits.count == 0, "looking orders nothing"
     for _ in range(2):
-        assert api.post(f"creatures/{measured}/measure").status_code == 202
+        assert api.post(f"creatures/{measured}/measurement").status_code == 202
         assert api.get(path).status_code == 202
     (job,) = services.jobs.audits.get_jobs()
     assert job.args == [measured, MEASUREMENT]
     services.jobs.remove(job.id)
     renderings.save(services, measured, MEASUREMENT, b'{"exact": true}')
     assert api.get(path).json() == {"exact": True}
-    api.post(f"creatures/{measured}/measure")
+    api.post(f"creatures/{measured}/measurement")
     assert api.get(path).status_code == 202
 
 
 def test_an_unmeasured_creature_is_not_measured_again(api, known):
-    answer = api.post(f"creatures/{known}/measure")
+    answer = api.post(f"creatures/{known}/measurement")
     assert (answer.status_code, answer.json()["title"]) == (422, "Never measured")
 
 
 def test_a_measurement_that_failed_says_why(api, services, measured):
-    api.post(f"creatures/{measured}/measure")
+    api.post(f"creatures/{measured}/measurement")
     (job,) = services.jobs.audits.get_jobs()
     services.jobs.give_up(job, "Traceback\nValueError: out of memory\n")
     refused = detail(api.get(f"creatures/{measured}/measurement"), 500)

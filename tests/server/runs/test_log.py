@@ -76,7 +76,7 @@ def test_the_log_names_stopped_workers_dead_jobs_and_the_last_attempt(
     claim_run().requeue()
     assert texts()[-2:] == ["Worker stopped after generation 0.", "Queued for another attempt."]
     claim_run()
-    leases.end_job(services, run_id, "worker", "killed by signal 9")
+    leases.fail_job(services, run_id, "worker", "killed by signal 9")
     assert ("error", 2, "Attempt 2 failed: killed by signal 9") in log()
     for _ in range(lifecycle.MAX_ATTEMPTS - 1):
         claim_run().fail("no luck")

@@ -11,14 +11,11 @@ from microcosmos.spec import EXPERIMENTS, targets
 from server.runs.submission import submit
 
 
-def test_a_waiting_run_is_paused_resumed_and_cancelled_at_once(
-    api, services, run_id, claim_run, flush
-):
+def test_a_waiting_run_is_paused_resumed_and_cancelled_at_once(api, run_id, claim_run, waiting):
     assert api.post(f"runs/{run_id}/pause").json()["status"] == "paused"
     assert claim_run() is None
-    flush()
     assert api.post(f"runs/{run_id}/resume").json()["status"] == "queued"
-    assert services.jobs.runs.get_job_ids() == [str(run_id)]
+    assert waiting() == [str(run_id)]
     cancelled = api.post(f"runs/{run_id}/cancel").json()
     assert cancelled["status"] == "cancelled"
     assert cancelled["finished_at"]

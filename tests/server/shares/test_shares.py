@@ -103,7 +103,7 @@ def test_a_share_shows_its_creature_and_no_other(api, through, shared, known, ot
     for path in (f"creatures/{known}/children", f"creatures/{known}/audit", "runs", "workers"):
         assert through(slug, path).status_code == 403, path
     holder = {SHARE_HEADER: slug}
-    assert api.post(f"creatures/{known}/measure", headers=holder).status_code == 403
+    assert api.post(f"creatures/{known}/measurement", headers=holder).status_code == 403
     assert api.get(f"shares/{'A' * 32}").status_code == 404
     assert through("A" * 32, f"creatures/{known}").status_code == 404
 

@@ -13,7 +13,7 @@ from server.tables import Run, Sweep
 VISCOSITIES = {"world.viscosity": [0.05, 0.1]}
 
 
-def test_a_sweep_runs_each_case_with_each_seed_in_order(api, services, six):
+def test_a_sweep_runs_each_case_with_each_seed_in_order(api, waiting, six):
     assert (six["total"], six["status_counts"], six["progress"]) == (6, {"queued": 6}, 0)
     assert [case["values"] for case in six["cases"]] == [
         {"world.viscosity": 0.05},
@@ -26,7 +26,7 @@ def test_a_sweep_runs_each_case_with_each_seed_in_order(api, services, six):
     assert {run["sweep"] for run in found} == {six["id"]}
     ids = [run["id"] for run in found]
     assert [case["runs"] for case in six["cases"]] == [ids[::2], ids[1::2]]
-    assert services.jobs.sweeps.get_job_ids() == ids
+    assert waiting() == ids
     assert api.get(f"sweeps/{six['id']}").json() == six
 
 
@@ -136,14 +136,14 @@ def test_a_write_that_fails_half_way_leaves_nothing(services, post, monkeypatch)
 
 
 @pytest.mark.postgresql
-def test_the_same_key_at_once_gives_one_sweep(api, services, spec):
+def test_the_same_key_at_once_gives_one_sweep(api, waiting, spec):
     headers, asked = {"Idempotency-Key": "a key"}, {"spec": spec, "seeds": 2}
     with ThreadPoolExecutor(4) as pool:
         sent = [pool.submit(api.post, "sweeps", json=asked, headers=headers) for _ in range(4)]
     answers = [one.result() for one in sent]
     assert sorted(answer.status_code for answer in answers) == [200] * 3 + [202]
     assert len({answer.json()["id"] for answer in answers}) == 1
-    assert services.jobs.sweeps.count == 2
+    assert len(waiting()) == 2
     for path, other in (("sweeps", {**asked, "seeds": 3}), ("runs", spec)):
         refused = api.post(path, json=other, headers=headers)
         assert (refused.status_code, refused.json()["title"]) == (422, "Idempotency key reused")

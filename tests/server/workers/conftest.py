@@ -18,12 +18,6 @@ def offer(services):
 
 
 @pytest.fixture
-def reason(api):
-    """Reads why a run waits."""
-    return lambda run: api.get(f"runs/{run}").json()["waiting_reason"]
-
-
-@pytest.fixture
 def mine(spec):
     """A spec with a fitness, a descriptor and a body from plug-ins."""
     axes = [{"name": "mine.sway", "bins": 4}, {"name": "displacement", "bins": 4}]

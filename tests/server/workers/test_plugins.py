@@ -7,9 +7,9 @@ from answers import errors
 from declared import STRICT, A, B, declared
 
 from server.attempts.claim import claim
+from server.schedule.take import take
 from server.workers import plugins, registry
 from server.workers.plugins import KnownPlugins
-from worker.supervisor import runnable_queues
 
 
 def test_plug_ins_of_workers_appear_in_the_schemas(api, services, offer):
@@ -145,31 +145,17 @@ def test_settings_never_make_the_server_fetch_a_url(api, offer, mine):
     assert api.post("runs", json=spec).status_code == 422
 
 
-def test_only_a_worker_with_the_plug_in_claims_the_run(api, services, offer, mine, row):
+def test_only_a_worker_with_the_plug_in_takes_the_run(api, services, offer, mine, spec):
     offer("with", plugins=declared()), offer("without"), offer("other", plugins=declared(B))
-    run = api.post("runs", json={**mine, "task": {"steps": 40}}).json()
+    first = api.post("runs", json={**mine, "task": {"steps": 40}}).json()
+    second = api.post("runs", json=spec).json()["id"]
     with services.sessions.read() as session:
         known = KnownPlugins(services, session)
-        pinned = run["spec"]["body"]["plugin"]["source"]
-        (able,) = known.workers_with(pinned)
+        (able,) = known.workers_with(first["spec"]["body"]["plugin"]["source"])
     names = {"with": A, "other": B}
-    for worker in ("without", next(name for name in names if name != able), "nobody"):
-        assert claim(services, UUID(run["id"]), worker) is None
-        assert api.get(f"runs/{run['id']}").json()["status"] == "queued"
-    assert claim(services, UUID(run["id"]), able)
-
-
-def test_the_job_is_queued_for_its_plug_in_version(api, services, offer, mine, spec):
-    offer("with", plugins=declared())
-    first = api.post("runs", json=mine).json()["id"]
-    second = api.post("runs", json=spec).json()["id"]
-    assert services.jobs.runs.get_job_ids() == [second]
-    assert services.jobs.runs_with_job() == {first, second}
-    jobs = [queue.get_job_ids() for queue in runnable_queues(services, {A})]
-    assert jobs == [[first], [second], []], "who came first is taken first, sweeps last"
-    for versions in (set(), {B}):
-        jobs = [queue.get_job_ids() for queue in runnable_queues(services, versions)]
-        assert jobs == [[second], []]
+    assert take(services, next(name for name in names if name != able)) == UUID(second)
+    assert take(services, "without") is None
+    assert take(services, able) == UUID(first["id"]), "who came first is taken first"
 
 
 def test_a_run_names_the_plug_in_it_waits_for(api, services, offer, mine, reason):

@@ -6,18 +6,9 @@ from uuid import UUID
 import pytest
 
 from server.attempts.claim import claim
-from server.queue.order import in_order
 from server.runs.overview import read_runs
+from server.schedule.order import in_order
 from server.tables import Run
-from server.workers import registry
-
-
-@pytest.fixture
-def alive(services):
-    def alive(name="worker", status="idle", run=None, memory=1 << 40, **usage):
-        registry.report(services.sessions, name, "some device", memory, status, run, **usage)
-
-    return alive
 
 
 @pytest.fixture
@@ -71,7 +62,6 @@ def test_the_queue_lists_waiting_runs_in_order(api, services, spec, submit, reas
     api.post(f"runs/{ids[0]}/resume")
     queue = api.get("queue").json()
     assert (queue["total"], [run["id"] for run in queue["items"]]) == (3, [*ids[2:], ids[0]])
-    assert services.jobs.runs.get_job_ids()[-3:] == [*ids[2:], ids[0]]
     needed = api.post("runs/estimate", json=spec).json()["memory_bytes"]
     assert {run["memory_bytes"] for run in queue["items"]} == {needed}
     first = api.get("queue", params={"limit": 1}).json()
@@ -117,25 +107,15 @@ def test_a_queued_run_names_busy_workers_and_its_position(services, submit, aliv
     assert reason(ids[3]) == "A worker is free; 1 run is before it."
 
 
-def test_a_run_that_a_worker_has_taken_is_about_to_begin(api, spec, submit, alive, reason):
-    ids = submit(2)
-    alive("worker", "busy")
-    assert reason(ids[0]) == "A worker is about to start it."
-    assert reason(ids[1]) == "Waits for a worker: the only one is busy; this run is next."
-    ahead = {"runs_ahead": 1, "workers": 1, "idle_workers": 0}
+def test_runs_that_workers_have_taken_are_not_ahead(api, spec, submit, taken, reason):
+    ids = submit(3)
+    assert [taken(name) for name in ("one", "two")] == ids[:2]
+    assert reason(ids[0]) == "Worker one is about to start it."
+    assert reason(ids[2]) == "Waits for a worker: all 2 are busy; this run is next."
+    ahead = {"runs_ahead": 1, "workers": 2, "idle_workers": 0}
     assert api.post("runs/estimate", json=spec).json()["queue"] == ahead
-    third = api.post("runs", json={**spec, "seed": 2}).json()["id"]
-    busy = "Waits for a worker: the only one is busy; "
-    assert reason(third) == busy + "1 run is before it."
     reasons = {run["id"]: run["waiting_reason"] for run in api.get("queue").json()["items"]}
-    assert reasons == {run: reason(run) for run in (*ids, third)}
-
-
-def test_starting_workers_leave_no_run_ahead(api, spec, alive):
-    alive("one", "busy"), alive("two", "busy")
-    api.post("runs", json=spec)
-    ahead = {"runs_ahead": 0, "workers": 2, "idle_workers": 0}
-    assert api.post("runs/estimate", json=spec).json()["queue"] == ahead
+    assert reasons == {run: reason(run) for run in ids}
 
 
 def test_a_run_that_no_worker_can_hold_says_how_much_it_needs(api, spec, alive, reason):

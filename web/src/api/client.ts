@@ -151,19 +151,20 @@ export const readPoses = (sha: string, headers = {}) =>
 export const readCover = ({ slug, cover }: wire.Share) => readPoses(cover, { [SHARE_HEADER]: slug });
 /** The verdict of the saved audit, null without one; requests no audit. */
 export const readVerdict = (sha: string) => success(client.GET("/creatures/{sha}/verdict", creature(sha)));
+/** What is computed when it is ordered: null meanwhile, `never` if nobody has ordered it. */
+export type OrNever<T> = T | "never" | null;
+export const orderAudit = (sha: string) => success(client.POST("/creatures/{sha}/audit", creature(sha)));
 export const readAudit = (sha: string) =>
-  whenReady<wire.Audit>(client.GET("/creatures/{sha}/audit", creature(sha)));
-
+  orNever<wire.Audit>(client.GET("/creatures/{sha}/audit", creature(sha)));
 /** Evaluate a creature again with the program that measured it. */
-export const startMeasurement = (sha: string) =>
-  success(client.POST("/creatures/{sha}/measure", creature(sha)));
+export const orderMeasurement = (sha: string) =>
+  success(client.POST("/creatures/{sha}/measurement", creature(sha)));
+export const readMeasurement = (sha: string) =>
+  orNever<wire.Measurement>(client.GET("/creatures/{sha}/measurement", creature(sha)));
 
-/** Null while the creature is measured, `never` without a measurement. */
-export async function readMeasurement(sha: string): Promise<wire.Measurement | "never" | null> {
-  const request = client.GET("/creatures/{sha}/measurement", creature(sha));
-  const { status } = (await request).response;
-  if (status === 204) return "never";
-  return whenReady<wire.Measurement>(request);
+async function orNever<T>(request: Parameters<typeof whenReady<T>>[0]): Promise<OrNever<T>> {
+  if ((await request).response.status === 204) return "never";
+  return whenReady<T>(request);
 }
 
 const share = (slug: string) => ({ params: { path: { slug } } });

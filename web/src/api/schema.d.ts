@@ -95,11 +95,15 @@ export interface paths {
         };
         /**
          * Read Audit
-         * @description Return the audit, or 202 while it is computed.
+         * @description Return the audit, or 202 while it is computed, or 204 if nobody has ordered one.
          */
         get: operations["read_audit_api_v1_creatures__sha__audit_get"];
         put?: never;
-        post?: never;
+        /**
+         * Order Audit
+         * @description Have the creature audited, unless it was; read `audit`.
+         */
+        post: operations["order_audit_api_v1_creatures__sha__audit_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -186,26 +190,6 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/creatures/{sha}/measure": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        /**
-         * Measure
-         * @description Have the program that measured it evaluate the creature again; read `measurement`.
-         */
-        post: operations["measure_api_v1_creatures__sha__measure_post"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
     "/api/v1/creatures/{sha}/measurement": {
         parameters: {
             query?: never;
@@ -215,11 +199,15 @@ export interface paths {
         };
         /**
          * Read Measurement
-         * @description Return the measurement; 202 while it is computed, 204 if nobody has ordered one.
+         * @description Return the measurement, or 202 while it is computed, or 204 if nobody has ordered one.
          */
         get: operations["read_measurement_api_v1_creatures__sha__measurement_get"];
         put?: never;
-        post?: never;
+        /**
+         * Order Measurement
+         * @description Have the program that measured it evaluate the creature again; read `measurement`.
+         */
+        post: operations["order_measurement_api_v1_creatures__sha__measurement_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -633,7 +621,7 @@ export interface paths {
         head?: never;
         /**
          * Change Run
-         * @description Change a run's name, tags or note.
+         * @description Change a run's name, tags, note or scheduling.
          */
         patch: operations["change_run_api_v1_runs__run_id__patch"];
         trace?: never;
@@ -1393,7 +1381,11 @@ export interface paths {
         delete: operations["revoke_token_api_v1_tokens__token_id__delete"];
         options?: never;
         head?: never;
-        patch?: never;
+        /**
+         * Change Token
+         * @description Change the quota of a token; omitted limits stay as they are.
+         */
+        patch: operations["change_token_api_v1_tokens__token_id__patch"];
         trace?: never;
     };
     "/api/v1/workers": {
@@ -2171,6 +2163,8 @@ export interface components {
             items: components["schemas"]["QueuedRun"][];
             /** Total */
             total: number;
+            /** Warning */
+            warning: string | null;
         };
         /** QueuedRun */
         QueuedRun: {
@@ -2193,6 +2187,13 @@ export interface components {
             memory_bytes: number | null;
             /** Name */
             name: string | null;
+            /** Owner */
+            owner: string | null;
+            /**
+             * Priority
+             * @enum {string}
+             */
+            priority: "low" | "normal" | "high" | "urgent";
             /** Progress */
             progress: number;
             /**
@@ -2208,6 +2209,18 @@ export interface components {
             /** Waiting Reason */
             waiting_reason: string;
         };
+        /**
+         * Quota
+         * @description Limits on the runs of a token; None: without limit.
+         */
+        Quota: {
+            /** Device Hours */
+            device_hours?: number | null;
+            /** Max Queued */
+            max_queued?: number | null;
+            /** Max Running */
+            max_running?: number | null;
+        };
         /** Readiness */
         Readiness: {
             /**
@@ -2216,10 +2229,20 @@ export interface components {
              */
             database: "ok" | "unreachable";
             /**
+             * Disk
+             * @enum {string}
+             */
+            disk: "ok" | "almost full" | "full";
+            /**
              * Redis
              * @enum {string}
              */
             redis: "ok" | "unreachable";
+            /**
+             * Store
+             * @enum {string}
+             */
+            store: "ok" | "wrong or unreachable";
         };
         /** RedisHealth */
         RedisHealth: {
@@ -2357,13 +2380,31 @@ export interface components {
         };
         /**
          * RunChange
-         * @description New name, tags or note of a run; omitted fields stay as they are.
+         * @description New name, tags, note or scheduling of a run; omitted fields stay as they are.
          */
         RunChange: {
+            /** Device Patience */
+            device_patience?: number | null;
+            /**
+             * Labels
+             * @default []
+             */
+            labels: string[];
+            /**
+             * May Yield
+             * @default false
+             */
+            may_yield: boolean;
             /** Name */
             name?: string | null;
             /** Note */
             note?: string | null;
+            /**
+             * Priority
+             * @default normal
+             * @enum {string}
+             */
+            priority: "low" | "normal" | "high" | "urgent";
             /**
              * Tags
              * @default []
@@ -2417,6 +2458,8 @@ export interface components {
             demonstration: boolean;
             /** Device */
             device: string | null;
+            /** Device Patience */
+            device_patience: number | null;
             /** Error */
             error: string | null;
             /** Eta Seconds */
@@ -2443,12 +2486,21 @@ export interface components {
             id: string;
             /** Infeasible */
             infeasible: number;
+            /** Labels */
+            labels: string[];
+            /** May Yield */
+            may_yield: boolean;
             /** Name */
             name: string | null;
             /** Note */
             note: string | null;
             /** Owner */
             owner: string | null;
+            /**
+             * Priority
+             * @enum {string}
+             */
+            priority: "low" | "normal" | "high" | "urgent";
             /** Progress */
             progress: number;
             /** Purge At */
@@ -2461,7 +2513,7 @@ export interface components {
              */
             queued_at: string;
             /** Requested State */
-            requested_state: ("paused" | "cancelled") | null;
+            requested_state: ("paused" | "cancelled" | "queued") | null;
             /** Sparkline */
             sparkline: number[];
             /** Spec */
@@ -2812,11 +2864,17 @@ export interface components {
         };
         /**
          * TokenCreate
-         * @description Name, scope and end of a new token.
+         * @description Name, scope, end and quota of a new token.
          */
         TokenCreate: {
+            /** Device Hours */
+            device_hours?: number | null;
             /** Expires At */
             expires_at?: string | null;
+            /** Max Queued */
+            max_queued?: number | null;
+            /** Max Running */
+            max_running?: number | null;
             /** Name */
             name: string;
             /**
@@ -2832,6 +2890,8 @@ export interface components {
              * Format: date-time
              */
             created_at: string;
+            /** Device Hours */
+            device_hours?: number | null;
             /** Expires At */
             expires_at: string | null;
             /**
@@ -2841,6 +2901,10 @@ export interface components {
             id: string;
             /** Last Used At */
             last_used_at: string | null;
+            /** Max Queued */
+            max_queued?: number | null;
+            /** Max Running */
+            max_running?: number | null;
             /** Name */
             name: string;
             /** Prefix */
@@ -2854,6 +2918,11 @@ export interface components {
             scope: "read" | "write" | "admin";
             /** Secret */
             secret: string;
+            /**
+             * Used Hours
+             * @default 0
+             */
+            used_hours: number;
         };
         /**
          * TokenRead
@@ -2865,6 +2934,8 @@ export interface components {
              * Format: date-time
              */
             created_at: string;
+            /** Device Hours */
+            device_hours?: number | null;
             /** Expires At */
             expires_at: string | null;
             /**
@@ -2874,6 +2945,10 @@ export interface components {
             id: string;
             /** Last Used At */
             last_used_at: string | null;
+            /** Max Queued */
+            max_queued?: number | null;
+            /** Max Running */
+            max_running?: number | null;
             /** Name */
             name: string;
             /** Prefix */
@@ -2885,6 +2960,11 @@ export interface components {
              * @enum {string}
              */
             scope: "read" | "write" | "admin";
+            /**
+             * Used Hours
+             * @default 0
+             */
+            used_hours: number;
         };
         /**
          * UnloadedRead
@@ -2909,6 +2989,8 @@ export interface components {
             current_run: components["schemas"]["RunBrief"] | null;
             /** Device */
             device: string;
+            /** Device Kinds */
+            device_kinds: string[];
             /**
              * Heartbeat At
              * Format: date-time
@@ -2919,6 +3001,8 @@ export interface components {
              * @enum {string}
              */
             kind: "cpu" | "gpu";
+            /** Labels */
+            labels: string[];
             /** Load */
             load: number | null;
             /** Memory Bytes */
@@ -2929,6 +3013,8 @@ export interface components {
             name: string;
             /** Plugins */
             plugins: components["schemas"]["PluginRead"][];
+            /** Problem */
+            problem: string | null;
             /** Run */
             run: string | null;
             /**
@@ -3126,6 +3212,44 @@ export interface operations {
                     "application/json": components["schemas"]["Rendering"];
                 };
             };
+            /** @description Nobody has ordered it */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    order_audit_api_v1_creatures__sha__audit_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Rendering"];
+                };
+            };
             /** @description A problem (RFC 9457) */
             default: {
                 headers: {
@@ -3281,37 +3405,6 @@ export interface operations {
             };
         };
     };
-    measure_api_v1_creatures__sha__measure_post: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                sha: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            202: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Rendering"];
-                };
-            };
-            /** @description A problem (RFC 9457) */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
     read_measurement_api_v1_creatures__sha__measurement_get: {
         parameters: {
             query?: never;
@@ -3341,12 +3434,43 @@ export interface operations {
                     "application/json": components["schemas"]["Rendering"];
                 };
             };
-            /** @description Nobody has ordered this measurement */
+            /** @description Nobody has ordered it */
             204: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content?: never;
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    order_measurement_api_v1_creatures__sha__measurement_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Rendering"];
+                };
             };
             /** @description A problem (RFC 9457) */
             default: {
@@ -4022,6 +4146,10 @@ export interface operations {
     create_run_api_v1_runs_post: {
         parameters: {
             query?: {
+                priority?: "low" | "normal" | "high" | "urgent";
+                labels?: string[];
+                may_yield?: boolean;
+                device_patience?: number | null;
                 name?: string | null;
             };
             header?: {
@@ -5111,7 +5239,12 @@ export interface operations {
     };
     create_sweep_api_v1_sweeps_post: {
         parameters: {
-            query?: never;
+            query?: {
+                priority?: "low" | "normal" | "high" | "urgent";
+                labels?: string[];
+                may_yield?: boolean;
+                device_patience?: number | null;
+            };
             header?: {
                 "Idempotency-Key"?: string | null;
             };
@@ -5603,6 +5736,41 @@ export interface operations {
             cookie?: never;
         };
         requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TokenRead"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    change_token_api_v1_tokens__token_id__patch: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                token_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Quota"];
+            };
+        };
         responses: {
             /** @description Successful Response */
             200: {

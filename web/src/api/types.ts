@@ -14,7 +14,9 @@ export type Run = With<Wire["RunRead"], { spec: Spec; summary: Values | null }>;
 /** The state of a run; the spec may be missing if it was sent before. */
 export type RunEvent = Omit<Run, "spec"> & { spec?: Spec };
 export type RunPage = With<Wire["RunPage"], { items: Run[] }>;
-export type RunChange = Partial<Pick<Run, "name" | "tags" | "note">>;
+export type RunChange = Partial<
+  Pick<Run, "name" | "tags" | "note" | "priority" | "labels" | "may_yield" | "device_patience">
+>;
 export type RunQuery = NonNullable<operations["list_runs_api_v1_runs_get"]["parameters"]["query"]>;
 export type Sweep = With<Wire["SweepRead"], { spec: Spec; grid: Grid; cases: SweepCase[] }> & Owned;
 /** `owner` is the name of the token; null without one. */

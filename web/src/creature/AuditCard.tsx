@@ -2,13 +2,12 @@
 
 import * as api from "../api/client";
 import type { Audit, AuditRow } from "../api/types";
-import { useFetched } from "../store/fetch";
-import { usePolled } from "../store/polling";
-import { setQuery } from "../store/router";
+import { useRefusal } from "../store/principal";
 import { number } from "../ui/format";
 import { type Column, Table } from "../ui/Table";
 import { TrustBadge } from "../ui/TrustBadge";
 import { CheckCard } from "./CheckCard";
+import { type Check, useCheck } from "./check";
 import { text } from "./text";
 
 /** The address of the card below that of its page. */
@@ -17,33 +16,31 @@ export const AUDIT_HASH = "#audit";
 export interface AuditState {
   /** The verdict, null without an audit; undefined until it is known. */
   trusted: boolean | null | undefined;
-  requested: boolean;
-  audit: Audit | null;
-  note: string | null;
-  error: string | null;
+  check: Check<Audit>;
 }
 
-/** The audit of a creature: read if there is one, made if the address requests it. */
-export function useAudit(sha: string, query: URLSearchParams): AuditState {
-  const saved = useFetched(() => api.readVerdict(sha), [sha]).value?.trusted;
-  const requested = query.has("audit") || typeof saved === "boolean";
-  const polled = usePolled(requested ? () => api.readAudit(sha) : null, [sha, requested]);
-  const { value: audit, note, error } = polled;
-  return { trusted: audit ? audit.verdict.trusted : saved, requested, audit, note, error };
+/** The audit of a creature, and its verdict. */
+export function useAudit(sha: string): AuditState {
+  const check = useCheck(sha, api.readAudit, api.orderAudit);
+  const { result, never, running, error } = check;
+  const none = never || running || error !== null ? null : undefined;
+  return { trusted: result ? result.verdict.trusted : none, check };
 }
 
-export function AuditCard({ trusted, requested, audit, note, error }: AuditState) {
+export function AuditCard({ trusted, check }: AuditState) {
+  const { result: audit, never, running, note, error, start } = check;
+  const mayStart = !useRefusal() && (never || error !== null);
   return (
     <CheckCard
       {...{ note, error }}
       name="audit"
       title={text.audit}
       verdict={typeof trusted === "boolean" && <TrustBadge trusted={trusted} />}
-      button={requested ? null : text.runAudit}
-      onStart={() => setQuery({ audit: "" })}
-      running={requested && !audit ? text.auditing : null}
+      button={mayStart ? text.runAudit : null}
+      onStart={() => void start()}
+      running={running ? text.auditing : null}
     >
-      {!requested && <p class="quiet small">{text.auditAbout}</p>}
+      {never && <p class="quiet small">{text.auditAbout}</p>}
       {audit && (
         <>
           <p class="reasons">{text.auditVerdict(audit.verdict.trusted, audit.verdict.reasons.join("; "))}</p>

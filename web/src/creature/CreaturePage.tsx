@@ -37,7 +37,7 @@ interface Props {
 export function CreaturePage({ id: sha, query }: Props) {
   const { value: creature, error } = useFetched(() => api.readCreature(sha), [sha]);
   useTitle(text.title(shortId(sha)));
-  const audit = useAudit(sha, query);
+  const audit = useAudit(sha);
   const run = query.get("run");
   return (
     <Page crumbs={[["/", text.runs], ...(run ? [[`/runs/${run}`, shortId(run)] as const] : [])]}>

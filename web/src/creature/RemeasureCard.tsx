@@ -1,23 +1,24 @@
 /** Measure a creature again and compare with the numbers of its file. */
 
-import { useState } from "preact/hooks";
 import * as api from "../api/client";
 import { sharedSlug } from "../api/address";
-import { messageOf } from "../api/problem";
 import type { Measurement } from "../api/types";
 import { useRefusal } from "../store/principal";
-import { usePolled } from "../store/polling";
 import { number, words } from "../ui/format";
 import { type Column, Table } from "../ui/Table";
 import { CheckCard } from "./CheckCard";
+import { useCheck } from "./check";
 import { text } from "./text";
 
 export function RemeasureCard({ sha }: { sha: string }) {
-  const { measurement, idle, running, note, error, start } = useMeasurement(sha);
+  const { result, never, running, note, error, start } = useCheck(
+    sha,
+    api.readMeasurement,
+    api.orderMeasurement,
+  );
   const refusal = useRefusal();
-  const result = measurement === "never" ? null : measurement;
   if (sharedSlug && !result) return null; // Visitors of a share cannot start a measurement.
-  const mayStart = !sharedSlug && !refusal && (idle || error !== null);
+  const mayStart = !sharedSlug && !refusal && (never || result || error !== null);
   return (
     <CheckCard
       {...{ note, error }}
@@ -28,7 +29,7 @@ export function RemeasureCard({ sha }: { sha: string }) {
       onStart={() => void start()}
       running={running ? text.measuring : null}
     >
-      {measurement === "never" && <p class="quiet small">{text.measureAbout}</p>}
+      {never && <p class="quiet small">{text.measureAbout}</p>}
       {result && <MeasurementResult {...result} />}
     </CheckCard>
   );
@@ -38,28 +39,6 @@ function Agreement({ exact }: Pick<Measurement, "exact">) {
   return (
     <span class={`badge ${exact ? "finished" : "paused"}`}>{exact ? text.identical : text.differs}</span>
   );
-}
-
-/** The measurement of a creature on this server, and a function that starts one. */
-function useMeasurement(sha: string) {
-  const [requests, setRequests] = useState(0);
-  const [starting, setStarting] = useState(false);
-  const [failed, setFailed] = useState<string | null>(null);
-  const { value, answered, note, error } = usePolled(() => api.readMeasurement(sha), [sha, requests]);
-  const start = async () => {
-    setFailed(null);
-    setStarting(true);
-    try {
-      await api.startMeasurement(sha);
-      setRequests((count) => count + 1);
-    } catch (reason) {
-      setFailed(messageOf(reason));
-    }
-    setStarting(false);
-  };
-  const running = starting || (answered && value === null);
-  const measurement = starting ? null : value;
-  return { measurement, idle: measurement !== null, running, note, error: failed ?? error, start };
 }
 
 const COLUMNS: Column<Measurement["figures"][number]>[] = [

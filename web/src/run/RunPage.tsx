@@ -19,6 +19,7 @@ import { FilesCard } from "./FilesCard";
 import { ForkLink } from "../ui/links";
 import { ForkedFrom, BinNotice, LifecycleButtons } from "./Lifecycle";
 import { LogCard } from "./LogCard";
+import { SchedulingCard } from "./SchedulingCard";
 import { PublishButton } from "../publish/PublishButton";
 import { SpecCard } from "./spec/SpecCard";
 import { text } from "./text";
@@ -108,6 +109,7 @@ function RunSections({ run, query, error, detail }: SectionsProps) {
       <div class="run-columns even">
         <div class="stack">
           <LogCard run={run} query={query} />
+          <SchedulingCard run={run} />
           <FilesCard run={run} about={text.filesAbout(hasArchive(run), dateTime(run.created_at), run)} />
         </div>
         <SpecCard run={run} query={query} />

@@ -10,7 +10,7 @@ import { Card } from "../ui/Page";
 import { Select } from "../ui/Select";
 import { type Column, Table } from "../ui/Table";
 import { copyText } from "../ui/clipboard";
-import { inDays } from "../ui/format";
+import { inDays, number } from "../ui/format";
 import { useSubmit } from "../ui/forms";
 import { text } from "./text";
 
@@ -35,13 +35,30 @@ export function Tokens({ own }: { own: string | null }) {
   );
 }
 
+const LIMITS = ["max_running", "max_queued", "device_hours"] as const;
+type Limits = Partial<Record<(typeof LIMITS)[number], number>>;
+
+/** The limits on the runs of a token, and what they have used. */
+export function limitsOf({ max_running, max_queued, device_hours, used_hours }: Token): string {
+  return [
+    max_running != null && text.atATime(max_running),
+    max_queued != null && text.queuedAtMost(max_queued),
+    text.hoursUsed(number(used_hours, 2), device_hours ?? null),
+  ]
+    .filter((part) => part !== false)
+    .join(", ");
+}
+
 function NewToken({ onMade }: { onMade: (made: CreatedToken) => void }) {
   const [name, setName] = useState("");
   const [scope, setScope] = useState<TokenScope>("write");
   const [days, setDays] = useState("90");
+  const [limits, setLimits] = useState<Limits>({});
   const { busy, error, onSubmit } = useSubmit(async () => {
-    onMade(await createToken({ name: name.trim(), scope, expires_at: endOf(Number(days)) }));
+    const quota = Object.fromEntries(LIMITS.map((limit) => [limit, limits[limit] ?? null]));
+    onMade(await createToken({ name: name.trim(), scope, expires_at: endOf(Number(days)), ...quota }));
     setName("");
+    setLimits({});
   });
   return (
     <form class="new-token row" onSubmit={onSubmit}>
@@ -63,6 +80,7 @@ function NewToken({ onMade }: { onMade: (made: CreatedToken) => void }) {
         onChange={(name) => setScope(name as TokenScope)}
       />
       <Select title={text.validFor} choices={text.terms} value={days} onChange={setDays} />
+      <LimitFields limits={limits} onChange={setLimits} />
       <button class="primary" disabled={busy || !name.trim()}>
         {text.create}
       </button>
@@ -72,6 +90,27 @@ function NewToken({ onMade }: { onMade: (made: CreatedToken) => void }) {
         </p>
       )}
     </form>
+  );
+}
+
+function LimitFields({ limits, onChange }: { limits: Limits; onChange: (limits: Limits) => void }) {
+  return (
+    <>
+      {LIMITS.map((limit) => (
+        <label key={limit} class="over" title={text.limitsHint}>
+          {text.limitNames[limit]}
+          <input
+            type="number"
+            min={0}
+            step={limit === "device_hours" ? "any" : 1}
+            value={limits[limit] ?? ""}
+            onInput={({ currentTarget: { value, valueAsNumber } }) =>
+              onChange({ ...limits, [limit]: value === "" ? undefined : valueAsNumber })
+            }
+          />
+        </label>
+      ))}
+    </>
   );
 }
 
@@ -109,6 +148,7 @@ function TokenTable({ tokens, own, onRevoked }: TableProps) {
     { title: text.created, cell: ({ created_at }) => day(created_at) },
     { title: text.lastUsed, cell: ({ last_used_at }) => (last_used_at ? day(last_used_at) : text.never) },
     { title: text.valid, cell: (token) => tokenStatus(token) },
+    { title: text.limits, cell: (token) => limitsOf(token) },
     {
       title: text.revoke,
       unseen: true,

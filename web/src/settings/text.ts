@@ -38,6 +38,17 @@ export const text = {
   created: "Created",
   lastUsed: "Last used",
   valid: "Valid",
+  limits: "Limits",
+  limitsHint: "Limits of its runs; empty is without limit",
+  limitNames: {
+    max_running: "Runs at a time",
+    max_queued: "Queued runs",
+    device_hours: "Device hours in 30 days",
+  },
+  atATime: (runs: number) => `${runs} at a time`,
+  queuedAtMost: (runs: number) => `${runs} queued`,
+  hoursUsed: (used: string, limit: number | null) =>
+    limit === null ? `${used} h used` : `${used} of ${limit} h`,
   revoke: "Revoke",
   you: "(you)",
   never: "Never",

@@ -1,6 +1,6 @@
 import { afterEach, describe, expect, it, vi } from "vitest";
 import type { Token } from "../api/types";
-import { endOf, isExpired, tokenStatus } from "./Tokens";
+import { endOf, isExpired, limitsOf, tokenStatus } from "./Tokens";
 
 const NOW = Date.parse("2026-06-15T12:00:00Z");
 
@@ -13,6 +13,7 @@ const token = (changes: Partial<Token>): Token => ({
   expires_at: null,
   revoked_at: null,
   last_used_at: null,
+  used_hours: 0,
   ...changes,
 });
 
@@ -25,6 +26,17 @@ describe("a token", () => {
   ])("with %o has its status", (changes, status, expired) => {
     expect(tokenStatus(token(changes), NOW)).toBe(status);
     expect(isExpired(token(changes), NOW)).toBe(expired);
+  });
+
+  it.each([
+    [{}, "0 h used"],
+    [{ max_running: 2, used_hours: 1.25 }, "2 at a time, 1.3 h used"],
+    [
+      { max_running: 0, max_queued: 9, device_hours: 40, used_hours: 12 },
+      "0 at a time, 9 queued, 12 of 40 h",
+    ],
+  ])("with %o has its limits", (changes, limits) => {
+    expect(limitsOf(token(changes))).toBe(limits);
   });
 
   it("is valid for the selected number of days, or without limit", () => {

@@ -26,13 +26,14 @@ export async function remove(id: string, title: string): Promise<boolean> {
   return removed;
 }
 
-/** Change name, tags or note at once; revert the change if the server refuses it. */
+/** Change name, tags, note or scheduling at once; revert the change if the server refuses it. */
 export async function editRun(id: string, change: RunChange): Promise<void> {
   const before = currentState().runs.get(id);
   update((state) => applyEdit(state, id, change));
   if ((await apply(api.changeRun(id, change))) || !before) return;
-  const { name, tags, note } = before;
-  update((state) => applyEdit(state, id, { name, tags, note }));
+  const { name, tags, note, priority, labels, may_yield, device_patience } = before;
+  const known = { name, tags, note, priority, labels, may_yield, device_patience };
+  update((state) => applyEdit(state, id, known));
 }
 
 export function addTag({ id, tags }: Run, tag: string): void {

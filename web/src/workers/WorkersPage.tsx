@@ -53,9 +53,15 @@ function WorkerCard({ worker }: { worker: Worker }) {
       <header class="card-head">
         <h2>{name}</h2>
         <span class="spring" />
-        <span class={`badge ${status === "busy" ? "running" : ""}`}>{status}</span>
+        {worker.problem ? (
+          <span class="badge failed">{text.takesNoRun}</span>
+        ) : (
+          <span class={`badge ${status === "busy" ? "running" : ""}`}>{status}</span>
+        )}
       </header>
       <p class="quiet small">{device}</p>
+      {worker.labels.length > 0 && <p class="quiet small">{text.labels(worker.labels)}</p>}
+      {worker.problem && <p class="banner wrong">{worker.problem}.</p>}
       <Meter title={kind === "gpu" ? text.gpu : text.load} share={load} reading={busy} />
       <Meter
         title={kind === "gpu" ? text.gpuMemory : text.memory}
@@ -120,9 +126,10 @@ function PluginList({ worker: { plugins, unloaded } }: { worker: Worker }) {
 }
 
 /** The run of a worker; events update its progress before the list of workers does. */
-function CurrentRun({ worker: { current_run, status } }: { worker: Worker }) {
+function CurrentRun({ worker: { current_run, status, problem } }: { worker: Worker }) {
   const live = useStore((state) => (current_run ? state.runs.get(current_run.id) : undefined));
   if (!current_run) {
+    if (problem) return null;
     return <p class="quiet">{status === "busy" ? text.preparing : text.waiting}</p>;
   }
   const run = { ...current_run, ...(live && { generation: live.generation, progress: live.progress }) };
@@ -147,16 +154,19 @@ function RunLink({ run }: { run: Parameters<typeof labelOf>[0] & { id: string } 
   );
 }
 
-function QueueCard({ queue: { total, items } }: { queue: Queue }) {
+function QueueCard({ queue: { total, items, warning } }: { queue: Queue }) {
   return (
     <Card id="queue" kind="queue" title={text.queue}>
-      {total === 0 && <p class="quiet">{text.queueEmpty}</p>}
+      {warning && <p class="banner warning">{warning}.</p>}
+      <p class="quiet small">{total === 0 ? text.queueEmpty : text.queueOrder}</p>
       {total > 0 && (
         <ol>
           {items.map((run) => (
             <li key={run.id}>
               <RunLink run={run} />
               <span class="quiet small">
+                {run.priority !== "normal" && text.urgency(run.priority)}
+                {run.owner && text.ownedBy(run.owner)}
                 {run.memory_bytes !== null && `${bytes(run.memory_bytes)}, `}
                 {text.waitingFor(duration(secondsSince(run.queued_at)))}
               </span>

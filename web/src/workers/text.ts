@@ -13,6 +13,7 @@ export const text = {
   memory: "Memory",
   since: (busy: boolean, duration: string) => `${busy ? "Busy" : "Idle"} for ${duration}`,
   plugins: (count: number) => `${count} ${count === 1 ? "plug-in" : "plug-ins"}`,
+  takesNoRun: "takes no run",
   notLoaded: (module: string, reason: string) => `${module} is not loaded: ${reason}`,
   preparing: "Preparing a run.",
   waiting: "Waiting for a run.",
@@ -21,6 +22,11 @@ export const text = {
   generation: (generation: string, generations: string) => `Generation ${generation} of ${generations}`,
   queue: "Queue",
   queueEmpty: "The queue is empty.",
+  queueOrder:
+    "Interrupted runs go first, then urgent ones. Then owners take turns, counted from their running runs; whoever used less device time in the last week goes first.",
+  labels: (labels: string[]) => `Labels: ${labels.join(", ")}`,
+  urgency: (priority: string) => `${priority}, `,
+  ownedBy: (owner: string) => `${owner}, `,
   waitingFor: (duration: string) => `waiting for ${duration}`,
   more: (count: string) => `and ${count} more`,
 };

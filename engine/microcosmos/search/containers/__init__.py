@@ -2,12 +2,15 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from operator import attrgetter
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
+from ...genomes import Genotype
 from ..cells import Axis, Cells, Grid, Voronoi
 from ..insertion import Elites, Inserted, insert_into_cells
 from .fronts import Fronts, crowding_distance, front
@@ -39,10 +42,30 @@ def insert_program(
 ) -> Callable[..., tuple[Elites, Inserted]]:
     """Compile `insert`, with these options of the compiler.
 
-    With `donate` it overwrites the old archive, which must not be used.
+    With `donate` it overwrites the genotypes of the old archive, most of its bytes; they must
+    not be used afterwards.
     """
-    given = (0,) if donate else ()
-    return jax.jit(insert, donate_argnums=given, compiler_options=dict(options or {}))
+    of = attrgetter("genotypes")
+
+    def inserted(
+        genotypes: Genotype, archive: Elites, candidates: Elites, container: Container
+    ) -> tuple[Elites, Inserted]:
+        whole = eqx.tree_at(of, archive, genotypes, is_leaf=lambda x: x is None)
+        return insert(whole, candidates, container)
+
+    program = jax.jit(
+        inserted,
+        donate_argnums=(0,) if donate else (),
+        compiler_options=dict(options or {}),
+    )
+
+    def run(
+        archive: Elites, candidates: Elites, container: Container
+    ) -> tuple[Elites, Inserted]:
+        rest = eqx.tree_at(of, archive, None)
+        return program(archive.genotypes, rest, candidates, container)
+
+    return run
 
 
 def cells_of(container: Container) -> Cells:

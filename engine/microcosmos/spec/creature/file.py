@@ -16,9 +16,11 @@ from .genomes import Network
 from .identity import Identity
 
 Room = Annotated[int, Field(ge=8, le=8192)]
-Figures = Annotated[dict[str, float], Field(max_length=1000)]
 Name = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=200)]
+Label = Annotated[str, StringConstraints(max_length=200)]
+Figures = Annotated[dict[Label, float], Field(max_length=1000)]
 Credit = Annotated[tuple[Name, ...], Field(max_length=50)]
+Parents = Annotated[tuple[Digest, ...], Field(max_length=256)]
 
 
 class CreatureError(ValueError):
@@ -38,8 +40,8 @@ class Measured(Part):
     block: int = Field(ge=1, le=4096)
     room: tuple[Room, Room] | None = None
     """`max_nodes` and `max_connections` of the evaluated arrays; None without a network."""
-    device: str
-    plugins: PluginVersions = Field(default={})
+    device: str = Field(max_length=1000)
+    plugins: PluginVersions = Field(default={}, max_length=100)
     """Versions of the plug-ins among the measures."""
 
     @model_validator(mode="after")
@@ -53,11 +55,11 @@ class Measured(Part):
 class Provenance(Part):
     """The origin of a creature in a run."""
 
-    parents: tuple[Digest, ...]
-    operator: str
-    generation: int = Field(ge=0)
-    seed: int = Field(ge=0)
-    version: str
+    parents: Parents
+    operator: Label
+    generation: int = Field(ge=0, lt=2**53)
+    seed: int = Field(ge=0, lt=2**32)
+    version: Label
 
 
 class CreatureFile(Part):
@@ -67,9 +69,17 @@ class CreatureFile(Part):
     sha256: Digest
     measured: Measured | None = None
     provenance: Provenance | None = None
-    licence: str = LICENCE
+    licence: Name = LICENCE
     credit: Credit = ()
     """Names to show with the creature."""
+
+    @model_validator(mode="after")
+    def refuse_its_own_parent(self) -> Self:
+        if self.provenance and self.sha256 in self.provenance.parents:
+            raise ValueError(
+                f"`provenance.parents` must be other creatures; got its own name {self.sha256}"
+            )
+        return self
 
     @model_validator(mode="after")
     def refuse_other_measures(self) -> Self:

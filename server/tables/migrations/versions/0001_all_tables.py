@@ -1,6 +1,7 @@
 """All tables."""
 
 from typing import Any
+from uuid import uuid4
 
 import sqlalchemy as sa
 from alembic import op
@@ -32,6 +33,7 @@ def _to_run() -> sa.ForeignKey:
 
 def upgrade() -> None:
     for create in (
+        _installation,
         _creatures,
         _workers,
         _runs,
@@ -42,6 +44,11 @@ def upgrade() -> None:
         _shares,
     ):
         create()
+
+
+def _installation() -> None:
+    table = op.create_table("installation", sa.Column("id", sa.Uuid(), primary_key=True))
+    op.bulk_insert(table, [{"id": uuid4()}])
 
 
 def _creatures() -> None:
@@ -91,7 +98,8 @@ def _workers() -> None:
         sa.Column("load", sa.Double()),
         sa.Column("run_id", sa.Uuid()),
         *_required(MOMENT, "since", "heartbeat_at"),
-        *_required(sa.JSON(), "plugins", "unloaded"),
+        *_required(sa.JSON(), "plugins", "unloaded", "device_kinds", "labels"),
+        sa.Column("problem", sa.Text()),
     )
 
 
@@ -102,31 +110,20 @@ def _runs() -> None:
         *_required(sa.String(length=64), "experiment", "version"),
         sa.Column("spec", JSON_OR_NULL, nullable=False),
         *_optional(JSON_OR_NULL, "plugin_versions", "summary"),
-        sa.Column("demonstration", sa.Boolean(), nullable=False),
+        *_required(sa.Boolean(), "demonstration", "interrupted", "may_yield"),
         sa.Column("name", sa.String(length=200)),
-        sa.Column("tags", sa.JSON(), nullable=False),
+        *_required(sa.JSON(), "tags", "labels"),
         *_optional(sa.Text(), "note", "device", "error", "warning"),
-        sa.Column("status", sa.String(length=16), nullable=False),
-        *_optional(sa.String(length=16), "requested_state", "device_override"),
-        *_optional(
-            MOMENT,
-            "requested_at",
-            "started_at",
-            "finished_at",
-            "heartbeat_at",
-            "deleted_at",
-            "purge_at",
-        ),
+        *_required(sa.String(length=16), "status", "priority"),
+        sa.Column("requested_state", sa.String(length=16)),
+        sa.Column("memory_bytes", sa.BigInteger()),
+        sa.Column("device_patience", sa.Double()),
+        *_optional(MOMENT, "requested_at", "released_at", "started_at", "finished_at"),
+        *_optional(MOMENT, "heartbeat_at", "deleted_at", "purge_at"),
         *_required(MOMENT, "created_at", "queued_at"),
-        *_required(
-            sa.Integer(),
-            "attempt",
-            "attempts_without_checkpoint",
-            "generations",
-            "generation",
-            "checkpoint_generation",
-        ),
-        sa.Column("worker", sa.String(length=255)),
+        *_required(sa.Integer(), "attempt", "attempts_without_checkpoint"),
+        *_required(sa.Integer(), "generations", "generation", "checkpoint_generation"),
+        *_optional(sa.String(length=255), "worker", "avoided_worker"),
         *_required(sa.BigInteger(), "evaluations", "infeasible"),
         sa.Column("seconds", sa.Double(), nullable=False),
         *_optional(sa.Double(), "qd_score", "coverage", "best"),
@@ -134,8 +131,9 @@ def _runs() -> None:
         *_optional(sa.Uuid(), "sweep", "forked_from", "owner"),
         *_optional(sa.Integer(), "sweep_index", "n_initial"),
         sa.CheckConstraint(
-            "requested_state IN ('paused', 'cancelled')", name="requested_state"
+            "requested_state IN ('paused', 'cancelled', 'queued')", name="requested_state"
         ),
+        sa.CheckConstraint("priority IN ('low', 'normal', 'high', 'urgent')", name="priority"),
         sa.CheckConstraint(
             "status IN ('queued', 'running', 'paused', 'finished', 'failed', 'cancelled')",
             name="status",
@@ -189,6 +187,8 @@ def _tokens() -> None:
         *_required(sa.String(length=16), "prefix", "scope"),
         sa.Column("created_at", MOMENT, nullable=False),
         *_optional(MOMENT, "expires_at", "revoked_at", "last_used_at"),
+        *_optional(sa.Integer(), "max_queued", "max_running"),
+        sa.Column("device_hours", sa.Double()),
         sa.CheckConstraint("scope IN ('read', 'write', 'admin')", name="scope"),
         sa.UniqueConstraint("secret_sha256"),
     )
@@ -199,6 +199,12 @@ def _tokens() -> None:
         unique=True,
         sqlite_where=sa.text("revoked_at IS NULL"),
         postgresql_where=sa.text("revoked_at IS NULL"),
+    )
+    op.create_table(
+        "device_use",
+        sa.Column("owner", sa.Uuid(), primary_key=True),
+        sa.Column("day", sa.Date(), primary_key=True),
+        sa.Column("seconds", sa.Double(), nullable=False),
     )
 
 

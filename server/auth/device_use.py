@@ -1,0 +1,25 @@
+"""The device time that the runs of each owner have used."""
+
+from datetime import timedelta
+from uuid import UUID
+
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session
+
+from ..core.database import insert_or_update, now
+from ..tables import NOBODY, DeviceUse
+
+
+def count_device_time(session: Session, owner: UUID | None, seconds: float) -> None:
+    """Add device time to what an owner used today."""
+    row = {"owner": owner or NOBODY, "day": now(session).date(), "seconds": seconds}
+    added = {"seconds": DeviceUse.seconds + seconds}
+    insert_or_update(session, DeviceUse, [row], ("owner", "day"), added)
+
+
+def device_seconds(session: Session, days: int) -> dict[UUID | None, float]:
+    """Return the device time of each owner in the last days, today among them."""
+    first = (now(session) - timedelta(days=days - 1)).date()
+    total = select(DeviceUse.owner, func.sum(DeviceUse.seconds)).where(DeviceUse.day >= first)
+    found = session.execute(total.group_by(DeviceUse.owner))
+    return {None if owner == NOBODY else owner: seconds for owner, seconds in found}

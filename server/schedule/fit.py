@@ -1,0 +1,106 @@
+"""Whether a worker can carry out a run, and why no live one can."""
+
+from collections.abc import Callable, Sequence
+from datetime import datetime, timedelta
+from typing import Any, NamedTuple
+
+from microcosmos.sizes import size
+
+from ..tables import Run, Worker
+from ..workers import plugins
+
+
+class Requirement(NamedTuple):
+    """Something that a run asks of its worker."""
+
+    met: Callable[[Any, Worker, datetime], bool]
+    """Takes a run, or its columns as in `order.COLUMNS`, a worker, and the time."""
+    explain: Callable[[Run, Sequence[Worker]], str]
+    """Returns a sentence about a run that none of these workers meets."""
+
+
+def fits(run: Any, worker: Worker, moment: datetime) -> bool:
+    """Return whether a worker can carry out a run now."""
+    return all(one.met(run, worker, moment) for one in REQUIREMENTS)
+
+
+def fitting(
+    run: Run, workers: Sequence[Worker], moment: datetime
+) -> tuple[Sequence[Worker], str | None]:
+    """Return the workers that can carry out a run; if there are none, why."""
+    for one in REQUIREMENTS:
+        left = [worker for worker in workers if one.met(run, worker, moment)]
+        if not left:
+            return [], one.explain(run, workers)
+        workers = left
+    return workers, None
+
+
+def patience_ends(run: Any) -> datetime | None:
+    """Return when another kind of device may go on with a run; None: never by itself."""
+    if run.device_patience is None:
+        return None
+    waits_since = max(filter(None, (run.queued_at, run.released_at)))
+    return waits_since + timedelta(seconds=run.device_patience)
+
+
+def any_device(run: Any, moment: datetime) -> bool:
+    """Return whether a run may continue on another kind of device than before."""
+    end = patience_ends(run)
+    return end is not None and moment >= end
+
+
+def _has_plugins(run: Any, worker: Worker, _: datetime) -> bool:
+    return plugins.has_versions(worker, run.plugin_versions)
+
+
+def _has_labels(run: Any, worker: Worker, _: datetime) -> bool:
+    return set(run.labels) <= set(worker.labels)
+
+
+def _has_memory(run: Any, worker: Worker, _: datetime) -> bool:
+    return run.memory_bytes is None or run.memory_bytes <= worker.memory_bytes
+
+
+def _repeats_bits(run: Any, worker: Worker, moment: datetime) -> bool:
+    begun = run.checkpoint_generation > 0 and run.device is not None
+    return not begun or run.device in worker.device_kinds or any_device(run, moment)
+
+
+def _explain_plugins(run: Run, workers: Sequence[Worker]) -> str:
+    return plugins.explain_missing(workers, run.spec)
+
+
+def _explain_labels(run: Run, workers: Sequence[Worker]) -> str:
+    offered = sorted({label for worker in workers for label in worker.labels})
+    have = ", ".join(offered) or "none"
+    return f"Waits for a worker with {_labels(run.labels)}; labels of live workers: {have}."
+
+
+def _labels(labels: Sequence[str]) -> str:
+    return f"the label{'s' if len(labels) > 1 else ''} {', '.join(sorted(labels))}"
+
+
+def _explain_memory(run: Run, workers: Sequence[Worker]) -> str:
+    largest = max(worker.memory_bytes for worker in workers)
+    which = f"the largest worker with {_labels(run.labels)}" if run.labels else ""
+    which = which or "the largest live worker"
+    return f"Needs {size(run.memory_bytes or 0)}; {which} has {size(largest)}."
+
+
+def _explain_device(run: Run, _: Sequence[Worker]) -> str:
+    end = patience_ends(run)
+    after = f"after {end:%Y-%m-%d %H:%M} UTC" if end else "once its owner allows it"
+    return (
+        "Waits for a worker whose device repeats its bits, of the kind "
+        f"{run.device}: none is alive. Another kind continues it {after}."
+    )
+
+
+REQUIREMENTS = (
+    Requirement(_has_plugins, _explain_plugins),
+    Requirement(_has_labels, _explain_labels),
+    Requirement(_has_memory, _explain_memory),
+    Requirement(_repeats_bits, _explain_device),
+)
+"""In the order in which they are explained."""

@@ -1,0 +1,52 @@
+"""The mark of an installation in its store.
+
+A worker whose settings or mount lead to another store must take no run: it would miss all
+checkpoints there, and write new ones where nobody looks.
+"""
+
+from sqlalchemy import select
+
+from ..core.database import Sessions
+from ..tables import Artifact, InstallationId
+from .artifacts import Artifacts
+
+MARK = "installation"
+"""Name of the file in the store; it contains the installation's id."""
+
+
+def leave(sessions: Sessions, artifacts: Artifacts) -> None:
+    """Mark a store in which nothing is recorded yet; the server does it when it starts."""
+    with sessions.read() as session:
+        own = session.scalars(select(InstallationId.id)).one()
+        used = session.scalars(select(Artifact.path).limit(1)).one_or_none()
+    if used is None and _found(artifacts) is None:
+        artifacts.write(MARK, str(own).encode())
+
+
+def fault(sessions: Sessions, artifacts: Artifacts) -> str | None:
+    """Return why this is not the installation's store; None if it is."""
+    with sessions.read() as session:
+        own = str(session.scalars(select(InstallationId.id)).one())
+    place = f"The store {artifacts.root}"
+    try:
+        found = _found(artifacts)
+    except Exception as error:  # Each kind of store has errors of its own.
+        return f"{place} cannot be read: {type(error).__name__}: {error}"
+    if found == own:
+        return None
+    what = (
+        "has no file"
+        if found is None
+        else f"belongs to installation {found[:36]}: see its file"
+    )
+    return (
+        f"{place} {what} `{MARK}`. Check MICROCOSMOS_ARTIFACTS_URL and the folder's mount; if "
+        f"this is the right store, write {own} into that file"
+    )
+
+
+def _found(artifacts: Artifacts) -> str | None:
+    try:
+        return artifacts.read(MARK).decode(errors="replace").strip()
+    except FileNotFoundError:
+        return None

@@ -1,0 +1,275 @@
+"""A drill for a group: many hosts, many queued runs, and everything around them fails.
+
+Hosts are worker processes with settings of their own. What must hold is read from the record
+alone: the log, the curves and the archives.
+"""
+
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, closing, contextmanager
+from datetime import datetime
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import psycopg
+import redis
+import rich
+from databases import POSTGRES, Missing, service_settings
+from drive import ROOT, SHORT, Installation, kill_job, running, wait_until
+from small_spec import SMALL_SCENE
+
+FAKETIME = sorted(Path("/usr/lib").glob("*/faketime/libfaketime.so.1"))
+
+
+class Drill(NamedTuple):
+    """The size of a drill."""
+
+    hosts: int
+    queued: int
+    """Runs, with those that finish."""
+    finishing: int
+    different: int
+    """Number of specs among them; runs of one end alike."""
+    generations: int
+    outage: float
+    """Seconds without the database, and of errors of the store."""
+
+
+SMALL, FULL = Drill(4, 10, 4, 1, 12, 2.0), Drill(20, 500, 40, 4, 40, 60.0)
+
+
+def spec(seed: int, generations: int) -> dict[str, Any]:
+    search = {"generations": generations, "batch": 16, "block": 8}
+    return SMALL_SCENE | {"seed": seed, "search": search}
+
+
+class Hosts:
+    """The workers of an installation, each as if it had a machine of its own."""
+
+    def __init__(self, product: Installation):
+        (server,) = product.named("server.main")
+        self.environment = server.environ() | {"WORKERS": "1"}
+        self.processes: list[subprocess.Popen[bytes]] = []
+
+    def start(self, **settings: str) -> subprocess.Popen[bytes]:
+        command = [sys.executable, "-m", "worker.supervisor"]
+        environment = self.environment | settings
+        log = Path(environment["MICROCOSMOS_DATA"]) / f"host-{len(self.processes)}.log"
+        with log.open("ab") as output:
+            started = subprocess.Popen(command, cwd=ROOT, env=environment, stderr=output)
+        self.processes.append(started)
+        return started
+
+    @property
+    def alive(self) -> list[subprocess.Popen[bytes]]:
+        return [one for one in self.processes if one.poll() is None]
+
+    def end(self) -> None:
+        for one in self.alive:
+            one.kill()
+        for one in self.processes:
+            one.wait()
+
+    def restart_each(self) -> None:
+        """Stop one host after the other as for an upgrade, and start another in its place."""
+        for one in self.alive:
+            one.send_signal(signal.SIGTERM)
+            one.wait(60)
+            self.start()
+
+
+@contextmanager
+def no_database(product: Installation) -> Iterator[None]:
+    """Refuse connections (PostgreSQL) or keep every writer out (SQLite)."""
+    url = product.environment.get("MICROCOSMOS_DATABASE_URL")
+    if url is None:
+        file = product.folder / "microcosmos.sqlite"
+        with closing(sqlite3.connect(file, timeout=30, isolation_level=None)) as connection:
+            connection.execute("BEGIN IMMEDIATE")
+            yield
+        return
+    name = url.rpartition("/")[2]
+    with psycopg.connect(f"{POSTGRES}/postgres", autocommit=True) as admin:
+        admin.execute(f"ALTER DATABASE {name} ALLOW_CONNECTIONS false")
+        admin.execute(
+            "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = %s", [name]
+        )
+        try:
+            yield
+        finally:
+            admin.execute(f"ALTER DATABASE {name} ALLOW_CONNECTIONS true")
+
+
+@contextmanager
+def no_store(product: Installation) -> Iterator[None]:
+    """Make every read and write of files fail."""
+    store = product.folder / "artifacts"
+    away = store.rename(store.with_name("away"))
+    store.write_text("not a folder")
+    try:
+        yield
+    finally:
+        store.unlink()
+        away.rename(store)
+
+
+def flush(product: Installation) -> None:
+    (server,) = product.named("server.main")
+    with redis.Redis.from_url(server.environ()["MICROCOSMOS_REDIS_URL"]) as client:
+        client.flushdb()
+
+
+def disturb(product: Installation, hosts: Hosts, size: Drill) -> None:
+    """Do everything that goes wrong in a bad night, one thing after another."""
+    kill_job(product, "")
+    say("jobs killed")
+    hosts.alive[0].kill()
+    hosts.start()
+    say("a host killed")
+    hosts.restart_each()
+    say("hosts restarted one after another")
+    flush(product)
+    say("Redis emptied")
+    with no_store(product):
+        time.sleep(size.outage)
+    say(f"{size.outage:g} s without the store")
+    with no_database(product):
+        time.sleep(size.outage)
+    say(f"{size.outage:g} s without the database")
+
+
+def say(what: str) -> None:
+    rich.print(f"  {what}, {load()}")
+
+
+def load() -> str:
+    return f"load {os.getloadavg()[0]:.1f}"
+
+
+def queue_others(product: Installation, size: Drill) -> None:
+    """Queue runs that nobody may take: no worker has their label."""
+    for seed in range(size.queued - size.finishing):
+        document = spec(1000 + seed, size.generations)
+        answer = product.http.post(
+            "/api/v1/runs", json=document, params={"labels": "nowhere", "priority": "high"}
+        )
+        answer.raise_for_status()
+
+
+def drill(product: Installation, size: Drill) -> list[str]:
+    """Carry out a drill, and return what is wrong in its record."""
+    hosts = Hosts(product)
+    try:
+        hosts.start()
+        expected = {}
+        for seed in range(size.different):
+            run = product.submit(spec(seed, size.generations))
+            product.wait(run, "finished", seconds=300)
+            expected[seed] = product.results(run)
+        queue_others(product, size)
+        runs = [
+            (
+                product.submit(spec(number % size.different, size.generations)),
+                number % size.different,
+            )
+            for number in range(size.finishing)
+        ]
+        empty = product.folder / "no mount"
+        empty.mkdir()
+        hosts.start(JAX_PLATFORMS="cuda")  # There is none.
+        hosts.start(MICROCOSMOS_ARTIFACTS_URL=str(empty))
+        wrong_clock = {"LD_PRELOAD": str(FAKETIME[0]), "FAKETIME": "+1h"} if FAKETIME else {}
+        hosts.start(**wrong_clock)
+        for _ in range(size.hosts - 4):
+            hosts.start()
+        wait_until(lambda: is_under_way(product), 300, "runs are computed", every=0.3)
+        disturb(product, hosts, size)
+        for run, _ in runs:
+            product.wait(run, "finished", seconds=3600)
+        if not FAKETIME:
+            rich.print("  NOT SHOWN: a host with a wrong clock: no libfaketime on this machine")
+        return [*faults(product, runs, expected), *left(product, size)]
+    finally:
+        hosts.end()
+
+
+def is_under_way(product: Installation) -> bool:
+    found = product.get("runs", status="running", limit=200)["items"]
+    return any(one["generation"] >= 2 for one in found)
+
+
+def left(product: Installation, size: Drill) -> list[str]:
+    """Return what is wrong with the runs that nobody may take."""
+    queue = product.get("queue", limit=200)
+    reasons = {one["waiting_reason"].partition(";")[0] for one in queue["items"]}
+    waiting = size.queued - size.finishing
+    if queue["total"] == waiting and reasons == {"Waits for a worker with the label nowhere"}:
+        return []
+    return [f"{queue['total']} of {waiting} runs wait, for {reasons}"]
+
+
+def faults(
+    product: Installation, runs: list[tuple[str, int]], expected: dict[int, Any]
+) -> list[str]:
+    """Return what is wrong with the record of runs."""
+    found, again = [], []
+    for run, seed in runs:
+        record = product.get(f"runs/{run}")
+        curves = product.get(f"runs/{run}/generations")["generation"]
+        log = product.get(f"runs/{run}/log")["entries"]
+        attempts = [one["attempt"] for one in log]
+        if curves != list(range(1, record["generations"] + 1)):
+            found.append(f"{run}: generations {curves}")
+        if attempts != sorted(attempts):
+            found.append(f"{run}: attempts {attempts}")
+        if product.results(run) != expected[seed]:
+            found.append(f"{run}: it differs from the undisturbed one")
+        if record["error"] or any("Failed" in one["text"] for one in log):
+            found.append(f"{run}: it has failed: {record['error']}")
+        again += resumptions(log)
+    attempts = [product.get(f"runs/{run}")["attempt"] for run, _ in runs]
+    median = sorted(again)[len(again) // 2] if again else 0.0
+    rich.print(
+        f"  {len(runs)} runs, {sum(attempts)} attempts; {len(again)} resumed after a median of "
+        f"{median:.1f} s, at most {max(again, default=0.0):.1f} s; {load()}"
+    )
+    return found
+
+
+def resumptions(log: list[dict[str, Any]]) -> Iterator[float]:
+    """Yield the seconds from the end of an attempt to the beginning of the next."""
+    ended: float | None = None
+    for entry in log:
+        at = datetime.fromisoformat(entry["at"]).timestamp()
+        if entry["text"].startswith("Attempt ") and " begins " in entry["text"]:
+            if ended is not None:
+                yield at - ended
+            ended = None
+        elif " failed" in entry["text"] or entry["text"].startswith("Worker stopped"):
+            ended = at
+
+
+def group(_: Installation) -> bool:
+    """Tell whether a group's runs survive a bad night, on both stacks."""
+    good = []
+    with ExitStack() as stack:
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        try:
+            elsewhere = stack.enter_context(service_settings())
+        except Missing as missing:
+            rich.print(f"NOT SHOWN: {missing}")
+            return False
+        for name, services in (("SQLite", {}), ("PostgreSQL and a Redis server", elsewhere)):
+            rich.print(f"group drill on {name}: {FULL}")
+            settings = SHORT | {"MICROCOSMOS_LEASE": "20", "WORKERS": "0"} | services
+            with running(folder / name, settings) as product:
+                wrong = drill(product, FULL)
+            print(*wrong, sep="\n")
+            good.append(not wrong)
+    return all(good)
