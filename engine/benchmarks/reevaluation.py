@@ -77,7 +77,7 @@ def scores(
     occupied = np.asarray(state.elites.occupied)
     score = float(np.asarray(state.elites.fitness)[occupied].sum())
     again = replace(state, generation=NEVER + 1)
-    again = reevaluation.evaluate(test.plan, test.repeats, again, never)
+    again = reevaluation.evaluate(test.plan, test.repeats, test.devices, again, never)
     corrected, coverage, hits = reevaluation.figures(test.repeats, again)
     shares = (100 * occupied.mean(), corrected, 100 * coverage, 100 * hits)
     return (state.generation, score, *shares)

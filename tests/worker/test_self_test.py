@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from worker.self_test import EXPECTED, fault
+from microcosmos.doctor.self_test import EXPECTED, fault
 
 
 def self_tested(needed):

@@ -3,6 +3,7 @@
 import json
 import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -22,15 +23,29 @@ def evolve(
     checkpoint_seconds: float = 60.0,
     other_device: bool = False,
     initial: Sequence[Mapping[str, Any]] = (),
+    over: Callable[[Experiment], AbstractContextManager[Experiment]] = nullcontext,
 ) -> bool:
     """Continue a run until it is done or `stop()` is true; return whether it is done.
 
     The archive file is the checkpoint: a run resumed from it ends with the same bytes as an
     uninterrupted one. The best creature is written beside it. `initial` are the creature files
-    that `search.initial` names; a resumed run needs none. Raises `ValueError` where the file is
-    of another spec or, without `other_device`, of another kind of device.
+    that `search.initial` names; a resumed run needs none. `over` may give the run other
+    devices, as `partial(cluster.over, url="tls://host:8786")` does. Raises `ValueError` where
+    the file is of another spec or, without `other_device`, of another kind of device.
     """
-    experiment = build(spec, initial) if initial else build(spec)
+    built = build(spec, initial) if initial else build(spec)
+    with over(built) as experiment:
+        return _carry_out(experiment, archive, stop, tell, checkpoint_seconds, other_device)
+
+
+def _carry_out(
+    experiment: Experiment,
+    archive: Path,
+    stop: Callable[[], bool],
+    tell: Callable[[Report], None],
+    checkpoint_seconds: float,
+    other_device: bool,
+) -> bool:
     if archive.exists():
         state = experiment.restore(archive.read_bytes(), other_device=other_device)
     else:

@@ -2,6 +2,7 @@
 
 from . import (
     archive,
+    cluster,
     creature,
     doctor,
     draw,

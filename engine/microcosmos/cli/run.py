@@ -3,6 +3,7 @@
 import json
 import signal
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -22,6 +23,7 @@ from ..archive.file import read_table
 from ..doctor.machine import memory_bytes
 from ..spec import Archive, Refinement, Spec, estimate
 from .app import CACHE, CreaturePath, OtherDevice, Set, app, console, fail, failing
+from .cluster import Certificate
 from .initial import From, with_initial
 from .modules import Modules, load_modules
 from .specs import changed, presets, read_spec, with_generations
@@ -45,6 +47,11 @@ def evolve(
     ] = 60.0,
     other_device: OtherDevice = False,
     begin_from: From = None,
+    cluster: Annotated[
+        str | None,
+        Option(help="Compute with the helpers of a scheduler too, like tls://host:8786."),
+    ] = None,
+    certificate: Certificate = None,
     module: Modules = None,
 ) -> None:
     """Carry out a run. If the archive file exists, continue it."""
@@ -59,7 +66,9 @@ def evolve(
 
     chosen, initial = with_initial(chosen, begin_from or (), path)
     console.print(f"{evaluations:,} evaluations on {device_kind()} into {path}")
-    run_with_progress(chosen, path, checkpoint_seconds, other_device, initial)
+    run_with_progress(
+        chosen, path, checkpoint_seconds, other_device, initial, cluster, certificate
+    )
     best = path.with_suffix(".best.json")
     console.print(f"Done: {path}" + (f"; the best creature: {best}" if best.exists() else ""))
 
@@ -124,6 +133,8 @@ def run_with_progress(
     checkpoint_seconds: float,
     other_device: bool,
     initial: Sequence[Mapping[str, Any]] = (),
+    cluster: str | None = None,
+    certificate: Path | None = None,
 ) -> None:
     """Carry out the run with a progress bar; exit with status 130 if a signal stops it."""
     from .. import experiments
@@ -159,12 +170,22 @@ def run_with_progress(
                 checkpoint_seconds=checkpoint_seconds,
                 other_device=other_device,
                 initial=initial,
+                **_over(cluster, certificate),
             )
         except experiments.OtherDevice as error:
             raise ValueError(f"{error} To continue here anyway, add --other-device.") from error
     if not done:
         console.print(f"Stopped. The same command goes on from {archive}.")
         raise typer.Exit(130)
+
+
+def _over(cluster: str | None, certificate: Path | None) -> dict[str, Any]:
+    """Return the option that puts a run on a cluster, if one is named."""
+    if cluster is None:
+        return {}
+    from ..cluster import over
+
+    return {"over": partial(over, url=cluster, certificate=certificate)}
 
 
 def _summary(report: Any) -> str:
@@ -180,6 +201,9 @@ def _summary(report: Any) -> str:
         f"best {report.best:.2f}"
     )
     found = report.summary or {}
+    if "cluster: efficiency" in found:
+        busy = 100 * found["cluster: efficiency"]
+        text = f"{text}  {found['cluster: devices']} devices, {busy:.0f} % busy"
     if "corrected_qd_score" not in found:
         return text
     return (

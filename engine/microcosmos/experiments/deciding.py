@@ -121,6 +121,7 @@ def disturb(
 def decide(
     plan: Plan,
     programs: Programs,
+    devices: search.Devices,
     state: State,
     genotypes: Genotype,
     first: search.Evaluation,
@@ -143,9 +144,7 @@ def decide(
             break
         changed = programs.disturb(genotypes, jnp.asarray(sample))
         given = jax.tree.map(lambda x, rows=asked: np.asarray(x)[rows], (genotypes, changed))
-        found = search.evaluate_blocks(
-            programs.evaluate_block, given, block=plan.block, stop=stop
-        )
+        found = devices.evaluate(programs.evaluate_block, given, block=plan.block, stop=stop)
         if plan.feasible:
             found = search.judged(found)
         means = means.with_sample(asked, found)

@@ -5,9 +5,8 @@ arXiv:1504.04909, 2015); an emitter with its own population only records in it.
 """
 
 import json
-import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import jax
@@ -38,10 +37,23 @@ class Evolution:
     """Programs that reevaluate elites; None: elites are evaluated once."""
     decide: deciding.Programs | None = None
     """Programs of means that decide; None: offspring compete by their first evaluation."""
+    devices: search.Devices = field(default_factory=search.LocalDevices)
 
     @property
     def device(self) -> str:
         return self.plan.device
+
+    def block_programs(self) -> dict[str, Callable[..., Any]]:
+        """Return the programs that `devices` evaluate blocks with, by name."""
+        found: dict[str, Callable[..., Any]] = {"offspring": self.programs.evaluate_block}
+        if self.repeats:
+            found["reevaluation"] = self.repeats.evaluate_block
+        if self.decide:
+            found["deciding"] = self.decide.evaluate_block
+        for number, lesson in enumerate(self.programs.lessons):
+            if lesson:
+                found[f"slopes {number}"] = lesson.slopes
+        return found
 
     def init(self) -> State:
         """Raise `ValueError` if files of initial creatures are missing."""
@@ -57,26 +69,24 @@ class Evolution:
     def advance(
         self, state: State, stop: Callable[[], bool] = search.never
     ) -> tuple[State, Report]:
-        offspring = next_offspring(self.plan, self.programs, state, stop)
+        offspring = next_offspring(self.plan, self.programs, self.devices, state, stop)
         program, genotypes = self.programs.evaluate_block, offspring.children.genotypes
-        evaluation = search.evaluate_blocks(
-            program, genotypes, block=self.plan.block, stop=stop
-        )
+        evaluation = self.devices.evaluate(program, genotypes, block=self.plan.block, stop=stop)
         if self.plan.feasible:
             evaluation = search.judged(evaluation)
         decided = deciding.undecided(evaluation)
         if self.decide:
             decided = deciding.decide(
-                self.plan, self.decide, state, genotypes, evaluation, stop
+                self.plan, self.decide, self.devices, state, genotypes, evaluation, stop
             )
-        seconds = (time.monotonic() - offspring.began) * jax.local_device_count()
+        seconds = self.devices.seconds() - offspring.began
         after, elites, clipped, cells = self._inserted(state, offspring, decided)
         after = replace(after, device_seconds=state.device_seconds + seconds)
         after = self._learned(state, after, genotypes, decided.mean, cells)
         after = replace(after, ended=_ended(self.plan, after))
         corrected = (np.nan, np.nan, np.nan)
         if self.repeats and reevaluation.due(self.plan, after):
-            after = reevaluation.evaluate(self.plan, self.repeats, after, stop)
+            after = reevaluation.evaluate(self.plan, self.repeats, self.devices, after, stop)
             corrected = reevaluation.figures(self.repeats, after)
             # Reevaluations count, so they may use up the budget.
             after = replace(after, ended=after.ended or _ended(self.plan, after))
@@ -85,7 +95,7 @@ class Evolution:
         after = fronts.measured(after)
         seconds = after.device_seconds - state.device_seconds
         summary = _summary(self.plan, after, seconds, np.asarray(decided.mean.status))
-        summary |= offspring.results.summary()
+        summary |= offspring.results.summary() | self.devices.summary()
         return after, _report(after, elites, emptied(state, after.elites), summary)
 
     def _inserted(

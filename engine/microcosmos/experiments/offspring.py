@@ -4,7 +4,6 @@ A search with initial creatures evaluates those first, a batch at a time. Their 
 the rest of the last such batch.
 """
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import zip_longest
@@ -90,7 +89,7 @@ class Offspring:
     counters: neat.Counters
     results: LessonResults
     began: float
-    """Time at the start of lessons and evaluation, by the monotonic clock."""
+    """Device seconds at the start of lessons and evaluation."""
     names: np.ndarray
     """Names of the creatures that parents were drawn from, by cell."""
     from_archive: bool
@@ -107,18 +106,22 @@ class Offspring:
 
 
 def next_offspring(
-    plan: Plan, programs: Programs, state: State, stop: Callable[[], bool]
+    plan: Plan,
+    programs: Programs,
+    devices: search.Devices,
+    state: State,
+    stop: Callable[[], bool],
 ) -> Offspring:
     """Return the next generation's children."""
     first, initial = state.generation * plan.batch, state.initial
     emitter = divided(plan, state)
     if initial is None or first >= len(initial.creature):
         if programs.screen and state.screened and state.screened.model.ready:
-            return _screened(plan, programs, programs.screen, state, emitter, stop)
+            return _screened(plan, programs, programs.screen, devices, state, emitter, stop)
         names = state.creatures
-        return _emitted(plan, programs, state, state.elites, names, emitter, stop)
+        return _emitted(plan, programs, devices, state, state.elites, names, emitter, stop)
     found, names = _initial_archive(plan, state, initial)
-    offspring = _emitted(plan, programs, state, found, names, emitter, stop)
+    offspring = _emitted(plan, programs, devices, state, found, names, emitter, stop)
     offspring = replace(offspring, from_archive=False)
     places = np.arange(first, min(first + plan.batch, len(initial.creature)))
     return _with_initial(plan, state, offspring, initial, places)
@@ -138,6 +141,7 @@ def divided(plan: Plan, state: State) -> np.ndarray:
 def _emitted(
     plan: Plan,
     programs: Programs,
+    devices: search.Devices,
     state: State,
     elites: search.Elites,
     names: np.ndarray,
@@ -147,10 +151,10 @@ def _emitted(
     children, emitters, counters = programs.emit(
         state.emitters, elites, state.counters, jnp.asarray(state.generation), emitter
     )
-    children, began = jax.device_get(children), time.monotonic()
+    children, began = jax.device_get(children), devices.seconds()
     slots = tuple(emitter.slots for emitter in plan.emitters)
     children, emitters, results = _teach(
-        programs.lessons, slots, children, emitters, block=plan.block, stop=stop
+        programs.lessons, devices, slots, children, emitters, block=plan.block, stop=stop
     )
     return Offspring(children, emitters, counters, results, began, names, True, emitter)
 
@@ -159,11 +163,12 @@ def _screened(
     plan: Plan,
     programs: Programs,
     given: screening.Programs,
+    devices: search.Devices,
     state: State,
     emitter: np.ndarray,
     stop: Callable[[], bool],
 ) -> Offspring:
-    began = time.monotonic()
+    began = devices.seconds()
     inserts = programs.insert, programs.overwrite
     pool, counters = screening.candidates(plan, given, inserts, state, emitter, stop)
     children, counters = screening.chosen(plan, given, state, pool, counters, emitter)
@@ -219,6 +224,7 @@ def _with_initial(
 
 def _teach(
     lessons: tuple[Lessons | None, ...],
+    devices: search.Devices,
     slots: tuple[int, ...],
     children: search.Children,
     states: tuple[Any, ...],
@@ -233,9 +239,7 @@ def _teach(
             assert lesson is not None
             asked = jax.device_get(lesson.to_differentiate(state, offspring))
             number = len(jax.tree.leaves(asked)[0])
-            found = search.evaluate_blocks(
-                lesson.slopes, asked, block=min(block, number), stop=stop
-            )
+            found = devices.evaluate(lesson.slopes, asked, block=min(block, number), stop=stop)
             offspring, state = lesson.learn(state, offspring, found)
             results = results.with_lesson(found)
         parts.append(jax.device_get(offspring))

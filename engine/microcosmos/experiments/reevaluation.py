@@ -1,6 +1,5 @@
 """Reevaluation of elites, and figures of the corrected archive."""
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -50,10 +49,16 @@ def due(plan: Plan, state: State) -> bool:
     return last or state.generation % plan.reevaluation.every == 0
 
 
-def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bool]) -> State:
+def evaluate(
+    plan: Plan,
+    programs: Programs,
+    devices: search.Devices,
+    state: State,
+    stop: Callable[[], bool],
+) -> State:
     """Return the state with every elite reevaluated; raises `Stopped` as `advance` does."""
     assert plan.reevaluation is not None
-    began = time.monotonic()
+    began = devices.seconds()
     cells, repeats = np.flatnonzero(state.elites.occupied), state.repeats
     bins = search.cells_of(state.container)
     genotypes = jax.tree.map(lambda x: np.asarray(x)[cells], state.elites.genotypes)
@@ -66,14 +71,13 @@ def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bo
     for sample in range(plan.reevaluation.samples):
         changed = programs.disturb(jnp.asarray(state.generation), jnp.asarray(sample))
         changed = jax.tree.map(lambda x: np.asarray(x)[cells], changed)
-        found = search.evaluate_blocks(
+        found = devices.evaluate(
             programs.evaluate_block, (genotypes, changed), block=plan.block, stop=stop
         )
         if plan.feasible:
             found = search.judged(found)
         everywhere = jax.tree.map(in_all_cells, found)
         repeats = programs.add(repeats, state.elites, everywhere, bins)
-    seconds = (time.monotonic() - began) * jax.local_device_count()
     # A run with more generations would not reevaluate here.
     early = not state.ended and state.generation % plan.reevaluation.every != 0
     before = state.repeats if early else None
@@ -82,7 +86,7 @@ def evaluate(plan: Plan, programs: Programs, state: State, stop: Callable[[], bo
         evaluations=state.evaluations + plan.reevaluation.samples * len(cells),
         repeats=repeats,
         unrepeated=before,
-        device_seconds=state.device_seconds + seconds,
+        device_seconds=state.device_seconds + devices.seconds() - began,
     )
 
 

@@ -2,7 +2,17 @@
 
 from . import cvt, emitters, folding, gradients, reevaluation, screening
 from .ask_tell import Found, Search
-from .blocks import Stopped, block_program, evaluate_blocks, mapped, never
+from .blocks import (
+    Devices,
+    LocalDevices,
+    Stopped,
+    block_program,
+    blocks_of,
+    evaluate_blocks,
+    joined,
+    mapped,
+    never,
+)
 from .cells import Axis, Cells, Grid, Voronoi, places, voronoi
 from .containers import (
     Container,

@@ -4,9 +4,10 @@ Rollouts are chaotic, and a program of another shape rounds differently; so this
 evaluates every creature, whatever its batch, slot, neighbours or device.
 """
 
+import time
 from collections import deque
-from collections.abc import Callable
-from typing import Any, TypeVar
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, Protocol, TypeVar
 
 import jax
 import numpy as np
@@ -57,15 +58,73 @@ def evaluate_blocks(
     devices = jax.local_devices()
     in_flight: deque[Found] = deque()
     finished: list[Found] = []
-    count = len(jax.tree.leaves(items)[0])
-    for number, start in enumerate(range(0, count, block)):
+    for number, part in enumerate(blocks_of(items, block)):
         if stop():
             raise Stopped
         if len(in_flight) == len(devices):
             finished.append(jax.device_get(in_flight.popleft()))
-        rows = np.arange(start, start + block)
-        rows = np.where(rows < count, rows, start)
-        part = jax.tree.map(lambda x, rows=rows: x[rows], items)
         in_flight.append(program(jax.device_put(part, devices[number % len(devices)])))
     finished += [jax.device_get(one) for one in in_flight]
-    return jax.tree.map(lambda *parts: np.concatenate(parts)[:count], *finished)
+    return joined(finished, items)
+
+
+def blocks_of(items: PyTree[np.ndarray], block: int) -> Iterator[PyTree[np.ndarray]]:
+    """Yield the blocks of items; the last is padded with its first item."""
+    count = _count(items)
+    for start in range(0, count, block):
+        rows = np.arange(start, start + block)
+        rows = np.where(rows < count, rows, start)
+        yield jax.tree.map(lambda x, rows=rows: x[rows], items)
+
+
+def joined(found: Sequence[Found], items: PyTree[np.ndarray]) -> Found:
+    """Return the results of the items from those of their blocks."""
+    count = _count(items)
+    return jax.tree.map(lambda *parts: np.concatenate(parts)[:count], *found)
+
+
+def _count(items: PyTree[np.ndarray]) -> int:
+    return len(jax.tree.leaves(items)[0])
+
+
+class Devices(Protocol):
+    """What evaluates the blocks of a run: this process's devices, or those of many hosts."""
+
+    def evaluate(
+        self,
+        program: Callable[[PyTree], Found],
+        items: PyTree[np.ndarray],
+        *,
+        block: int,
+        stop: Callable[[], bool] = never,
+    ) -> Found:
+        """Evaluate items as `evaluate_blocks` does, to the same bits."""
+        ...
+
+    def seconds(self) -> float:
+        """Return a clock of device seconds; only its differences mean something."""
+        ...
+
+    def summary(self) -> dict[str, float]:
+        """Return figures for the report of a generation, since the last call."""
+        ...
+
+
+class LocalDevices:
+    """The devices of this process; they count as busy while a generation is evaluated."""
+
+    def evaluate(
+        self,
+        program: Callable[[PyTree], Found],
+        items: PyTree[np.ndarray],
+        *,
+        block: int,
+        stop: Callable[[], bool] = never,
+    ) -> Found:
+        return evaluate_blocks(program, items, block=block, stop=stop)
+
+    def seconds(self) -> float:
+        return time.monotonic() * jax.local_device_count()
+
+    def summary(self) -> dict[str, float]:
+        return {}

@@ -38,9 +38,12 @@ def test_recorded_outcomes_alone_decide_every_division(course):
 
 def test_children_are_counted_for_the_emitter_that_made_them(course):
     """`random` is the only one of the three whose children have no parents."""
-    random, plan = search.OPERATORS.index("random"), course.experiment.plan
+    random, experiment = search.OPERATORS.index("random"), course.experiment
+    plan = experiment.plan
     for state in course.states[1:-1]:
-        offspring = next_offspring(plan, course.experiment.programs, state, search.never)
+        offspring = next_offspring(
+            plan, experiment.programs, experiment.devices, state, search.never
+        )
         of = divided(plan, state)
         operator = np.asarray(offspring.children.operator)
         assert ((operator == random) == (of == 1)).all()
@@ -62,7 +65,9 @@ def test_reports_show_the_division(course):
 def test_the_order_in_which_children_arrive_changes_no_outcome(course):
     experiment = course.experiment
     state = course.states[2]
-    offspring = next_offspring(experiment.plan, experiment.programs, state, search.never)
+    offspring = next_offspring(
+        experiment.plan, experiment.programs, experiment.devices, state, search.never
+    )
     found = search.evaluate_blocks(
         experiment.programs.evaluate_block, offspring.children.genotypes, block=8
     )

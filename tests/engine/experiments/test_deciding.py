@@ -20,6 +20,7 @@ from microcosmos.genomes import Vector
 from microcosmos.search import Stopped
 from microcosmos.spec import Reevaluation, parse
 
+HERE = search.LocalDevices()
 DECIDES = {"decides": True, "samples": 4, "max_samples": 12, "max_error": 0.02}
 INFEASIBLE = 99.0
 """Amplitude of creatures whose second sample is infeasible."""
@@ -78,7 +79,7 @@ def generation(plan, programs):
         first = measured(plan, rows[:, 0] + luck, rows[:, 1])
         decided = deciding.undecided(first)
         if decides:
-            arguments = (plan, programs, state, genotypes, first, search.never)
+            arguments = (plan, programs, HERE, state, genotypes, first, search.never)
             decided = deciding.decide(*arguments)
         mean = decided.mean
         candidates = search.candidates(
@@ -199,7 +200,7 @@ def test_it_stops_between_blocks(plan, programs):
     rows = np.array([(1.0, 0.5, 0.0)], np.float32)
     first, state = measured(plan, rows[:, 0], rows[:, 1]), start(plan)
     with pytest.raises(Stopped):
-        deciding.decide(plan, programs, state, creatures(plan, rows), first, lambda: True)
+        deciding.decide(plan, programs, HERE, state, creatures(plan, rows), first, lambda: True)
 
 
 def test_a_run_records_the_mean_and_the_first_evaluation(course_of):

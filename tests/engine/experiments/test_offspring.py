@@ -184,7 +184,7 @@ def test_strategies_do_not_learn_from_what_is_not_theirs(small, finish, forked_f
     before = fork.init()
     after, _ = fork.advance(before)
     assert str(after.emitters[0]) == str(before.emitters[0]), "it neither emitted nor learned"
-    offspring = next_offspring(fork.plan, fork.programs, before, never)
+    offspring = next_offspring(fork.plan, fork.programs, fork.devices, before, never)
     assert OPERATORS[offspring.children.operator[0]] == "fork"
     first, initial = offspring.children.genotypes, fork.plan.initial.genotypes
     np.testing.assert_array_equal(first.values[0], initial.values[0])

@@ -1,0 +1,141 @@
+"""Join a cluster with all devices of this machine: one helper process for each."""
+
+import logging
+import os
+import platform
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ..device import cores
+from ..doctor.devices import PATIENCE, probed
+
+POLL_SECONDS = 0.2
+LIVED_SECONDS = 60.0
+"""A helper that lived shorter has failed to start."""
+ATTEMPTS = 5
+"""Failures to start, one after another, after which a helper stays away."""
+
+log = logging.getLogger(__name__)
+
+
+@dataclass
+class Process:
+    """The process of one device."""
+
+    name: str
+    command: Sequence[str]
+    environment: dict[str, str]
+    core: int | None
+    failures: int = 0
+    started: float = 0.0
+    running: subprocess.Popen | None = field(default=None, repr=False)
+
+    def start(self) -> None:
+        self.started = time.monotonic()
+        self.running = subprocess.Popen(
+            self.command, stdin=subprocess.PIPE, env=os.environ | self.environment
+        )
+        if self.core is not None and hasattr(os, "sched_setaffinity"):
+            os.sched_setaffinity(self.running.pid, {self.core})
+
+    def has_given_up(self) -> bool:
+        """Start the process again if it has died; return whether there is no hope."""
+        if self.running is None or self.running.poll() is None:
+            return self.running is None
+        short = time.monotonic() - self.started < LIVED_SECONDS
+        self.failures = self.failures + 1 if short else 0
+        if self.failures >= ATTEMPTS:
+            log.error("%s does not start: it stays away", self.name)
+            self.running = None
+            return True
+        time.sleep(min(2.0**self.failures, 30.0))
+        log.warning("%s has ended with %s: it starts again", self.name, self.running.returncode)
+        self.start()
+        return False
+
+
+def join(url: str, options: Sequence[str], cache: Path, processes: int | None = None) -> bool:
+    """Run one helper a device until a signal; return False if none could go on.
+
+    `options` are those of `helper`. A GPU is a device, and without any each core is. Raises
+    `RuntimeError` if JAX fails.
+    """
+    started = [
+        Process(
+            name, [*_command(url, name), *options, "--cache", str(cache)], environment, core
+        )
+        for name, environment, core in _devices(cache, processes)
+    ]
+    stopped: list[int] = []
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda number, _: stopped.append(number))
+    for process in started:
+        process.start()
+    try:
+        while not stopped:
+            if all([process.has_given_up() for process in started]):
+                return False
+            time.sleep(POLL_SECONDS)
+        return True
+    finally:
+        _end([one.running for one in started if one.running])
+
+
+def _command(url: str, name: str) -> list[str]:
+    return [sys.executable, "-m", "microcosmos.cluster.helper", url, name]
+
+
+def _devices(
+    cache: Path, processes: int | None
+) -> Iterator[tuple[str, dict[str, str], int | None]]:
+    """Yield a name, an environment and a core for each helper."""
+    cache.mkdir(parents=True, exist_ok=True)
+    found = probed(cache, PATIENCE)["devices"]
+    on_gpu = found[0]["platform"] != "cpu"
+    host, here = platform.node(), os.getpid()
+    if not on_gpu:
+        usable = sorted(getattr(os, "sched_getaffinity", lambda _: range(cores()))(0))
+        for number in range(processes or len(usable)):
+            name = f"{host} core {number} ({here})"
+            yield name, {}, usable[number % len(usable)]
+        return
+    given = os.environ.get("CUDA_VISIBLE_DEVICES")
+    visible = given.split(",") if given else [str(one["id"]) for one in found]
+    for number in visible[: processes or len(visible)]:
+        yield f"{host} GPU {number} ({here})", {"CUDA_VISIBLE_DEVICES": number}, None
+
+
+def _end(running: Sequence[subprocess.Popen], patience: float = 10.0) -> None:
+    for process in running:
+        process.terminate()
+    until = time.monotonic() + patience
+    for process in running:
+        try:
+            process.wait(max(0.0, until - time.monotonic()))
+        except subprocess.TimeoutExpired:
+            process.kill()
+
+
+SBATCH = """\
+#!/bin/bash
+# Helpers of a Microcosmos cluster: one task a node, and in it one process a GPU or core.
+# They may start at any time and end at any time: a run goes on without them.
+#SBATCH --job-name=microcosmos-helpers
+#SBATCH --nodes=2
+#SBATCH --ntasks-per-node=1
+#SBATCH --exclusive
+#SBATCH --time=24:00:00
+#SBATCH --signal=TERM@60
+{comment}#SBATCH --gpus-per-node=1
+srun {command}
+"""
+
+
+def sbatch(command: str, gpus: bool) -> str:
+    """Return the text of a SLURM batch file that starts a command on two nodes."""
+    return SBATCH.format(command=command, comment="" if gpus else "#")
