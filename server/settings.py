@@ -51,6 +51,11 @@ class Settings(BaseSettings):
     """Submit a small run in a new data folder."""
     labels: str = ""
     """Labels of the workers of this machine, separated by commas: runs can ask for them."""
+    cluster: str = ""
+    """Scheduler of helpers that compute for this machine's workers too, like tls://host:8786.
+    Only workers read it."""
+    cluster_certificate: Path | None = None
+    """File of `microcosmos cluster certificate`, which tls:// needs."""
     checkpoint_interval: float = Field(default=60.0, ge=0.0)
     """Seconds between two checkpoints of a run."""
     lease: float = Field(default=20.0, gt=0.0)

@@ -8,6 +8,8 @@ Processes share the tests by file, and those of one product by folder: pytest-xd
 groups (`--dist loadgroup`) are not there with pytest 9.2.
 """
 
+import os
+import time
 from collections import Counter
 
 import pytest
@@ -20,6 +22,9 @@ SHARING = (
     "tests/engine/bodies/growth",
 )
 """Folders whose tests share running products, finished runs or grown bodies."""
+
+DEADLINE = "MICROCOSMOS_TEST_DEADLINE"
+"""Variable with the time, in seconds since 1970, after which no long test begins."""
 
 WALK = "tests/e2e/test_walk.py"
 """The one test in a browser that is not long."""
@@ -34,6 +39,14 @@ def is_long(item: pytest.Item) -> bool:
     values = getattr(item, "callspec", None)
     repeated = values and values.params.get("database") == "postgresql"
     return bool(repeated and not item.get_closest_marker("postgresql"))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Skip, and name, long tests that a slow machine would begin after the deadline."""
+    deadline = float(os.environ.get(DEADLINE, "inf"))
+    if time.time() > deadline and item.get_closest_marker("long"):
+        pytest.skip(f"no time is left for {item.nodeid}")
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -1,16 +1,19 @@
 """Compute a run: drive the engine's experiment from the last checkpoint."""
 
 import time
-from contextlib import suppress
+from contextlib import AbstractContextManager, nullcontext, suppress
 
 from pydantic import ValidationError
 
 from microcosmos.build import build
+from microcosmos.cluster import over
 from microcosmos.device import prepare
-from microcosmos.experiments import OtherDevice, Stopped
+from microcosmos.experiments import Experiment, OtherDevice, Stopped
+from microcosmos.experiments.evolution import Evolution
 from microcosmos.plugins import Broken, Missing
 from microcosmos.spec import field_path, parse
 from server.attempts.attempt import Attempt
+from server.settings import Settings
 
 from .plugins import load
 
@@ -47,12 +50,21 @@ def compute(attempt: Attempt) -> None:
         attempt.pause_until_resumed(str(error), device=error.recorded)
         return
     attempt.record_device(experiment.device)
-    with suppress(Stopped):
-        while not (experiment.done(state) or attempt.interrupted()):
+    with on_cluster(experiment, attempt.services.settings) as computing, suppress(Stopped):
+        while not (computing.done(state) or attempt.interrupted()):
             started = time.monotonic()
-            state, report = experiment.advance(state, stop=attempt.interrupted)
+            state, report = computing.advance(state, stop=attempt.interrupted)
             attempt.record(report, time.monotonic() - started)
             if attempt.checkpoint_due():
                 attempt.checkpoint(report.generation, experiment.save(state))
     done, generation = experiment.done(state), state.generation
     attempt.end(done, generation, lambda: experiment.save(state))
+
+
+def on_cluster(
+    experiment: Experiment, settings: Settings
+) -> AbstractContextManager[Experiment]:
+    """Let the helpers of the worker's cluster, if it has one, compute a search too."""
+    if not settings.cluster or not isinstance(experiment, Evolution):
+        return nullcontext(experiment)
+    return over(experiment, settings.cluster, settings.cluster_certificate)

@@ -27,7 +27,14 @@ STOP_CHECK_SECONDS = 0.5
 TRUST_SECONDS = 86_400.0
 """Time for which workers that start on the same device believe an earlier self-test."""
 BOOT = Path("/proc/sys/kernel/random/boot_id")
-VARIABLES = ("MICROCOSMOS_KERNEL", "XLA_FLAGS", "JAX_PLATFORMS", "CUDA_VISIBLE_DEVICES")
+VARIABLES = (
+    "MICROCOSMOS_KERNEL",
+    "XLA_FLAGS",
+    "JAX_PLATFORMS",
+    "CUDA_VISIBLE_DEVICES",
+    "MICROCOSMOS_CLUSTER",
+    "MICROCOSMOS_CLUSTER_CERTIFICATE",
+)
 """Variables on which the result of a self-test depends, beside the device's own."""
 SOFTWARE = ("microcosmos", "microcosmos-kernels", "jax", "jaxlib")
 

@@ -10,6 +10,7 @@ import signal
 import sys
 
 from server.core.processes import die_with_parent
+from server.settings import Settings
 
 
 def main(needed: str, parent: str | None = None) -> None:
@@ -25,9 +26,20 @@ def main(needed: str, parent: str | None = None) -> None:
     found = jax.local_devices()[0].platform
     if needed == "gpu" and found == "cpu":
         sys.exit("JAX sees no GPU, and this worker had one")
-    if wrong := self_test.fault_here():
+    if wrong := self_test.fault_here() or cluster_fault(Settings()):
         sys.exit(wrong)
     print(json.dumps([device.device_kind(), device.device_kind(portable=False)]))
+
+
+def cluster_fault(settings: Settings) -> str | None:
+    """Return what is wrong with the address of the worker's cluster, if it has one."""
+    from microcosmos.cluster import security
+
+    try:
+        settings.cluster and security(settings.cluster, settings.cluster_certificate)
+    except (ValueError, ImportError) as error:
+        return f"MICROCOSMOS_CLUSTER: {error}"
+    return None
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@ RETRY_SECONDS = 2.0
 PATIENCE = "30s"
 """Time in which the scheduler has to answer."""
 
-log = logging.getLogger(__name__)
+log = logging.getLogger("microcosmos.cluster.helper")  # Its own name is `__main__`.
 
 
 def main() -> None:
