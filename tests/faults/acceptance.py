@@ -19,6 +19,7 @@ from typing import Any
 
 import malformed_hdf5
 import rich
+from cluster import cluster
 from databases import Missing, service_settings
 from drive import Installation, interrupt, kill_job, pause_and_resume, running, stop_worker
 from group import group
@@ -129,6 +130,7 @@ PARTS = {
     "searches": searches,
     "databases": databases,
     "group": group,
+    "cluster": cluster,
     "foraging": forage,
     "slopes": compare_slopes,
     "page": leave_open,

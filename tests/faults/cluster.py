@@ -1,4 +1,4 @@
-"""A drill for a cluster: helpers die, hang, join and leave, the scheduler too; the bytes stay."""
+"""A drill for a cluster: helpers die, hang, join and leave; the bytes stay."""
 
 import json
 import os
@@ -6,14 +6,14 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
 import rich
-from drive import QUICK, ROOT, free_port, wait_until
+from databases import Missing, service_settings
+from drive import QUICK, ROOT, SHORT, Installation, free_port, running, wait_until
 from small_spec import SMALL_SCENE
 
 HERE = Path(__file__).parent
@@ -37,6 +37,7 @@ class Cluster:
         self.spec = folder / "spec.json"
         self.spec.write_text(json.dumps(spec(generations)))
         self.processes: list[subprocess.Popen[bytes]] = []
+        self.helpers: dict[str, subprocess.Popen[bytes]] = {}
 
     def start(self, name: str, *command: str, **settings: str) -> subprocess.Popen[bytes]:
         """Start `python COMMAND`; its output is in NAME.txt."""
@@ -61,8 +62,9 @@ class Cluster:
 
     def join(self, name: str, **settings: str) -> subprocess.Popen[bytes]:
         command = ("-m", "microcosmos.cluster.helper", self.url, name, "--module", str(GATE))
-        started = self.start(name, *command, **settings)
+        started = self.start(name, *command, GATE_SECONDS="0.02", **settings)
         wait_until(lambda: "has joined" in self.output(name), 240, f"{name} joins")
+        self.helpers[name] = started
         return started
 
     def run(self, name: str, *url: str) -> subprocess.Popen[bytes]:
@@ -91,15 +93,12 @@ class Cluster:
             raise AssertionError(f"{name} ended with {status}: {self.output(name)[-2000:]}")
         return sha256(self.archive(name).read_bytes()).hexdigest()
 
-    @contextmanager
-    def held(self, name: str = "all") -> Iterator[None]:
+    def hold(self, name: str = "all") -> None:
         """Keep a helper, or all, in the middle of the blocks that they compute."""
-        file = self.gate / f"hold-{name}"
-        file.touch()
-        try:
-            yield
-        finally:
-            file.unlink()
+        (self.gate / f"hold-{name}").touch()
+
+    def release(self, name: str = "all") -> None:
+        (self.gate / f"hold-{name}").unlink()
 
     def wait_held(self, name: str) -> None:
         wait_until((self.gate / f"held-{name}").exists, 240, f"{name} is in a block")
@@ -107,11 +106,14 @@ class Cluster:
     def used(self, name: str) -> bool:
         return (self.gate / f"used-{name}").exists()
 
+    def leave(self, name: str) -> None:
+        process = self.helpers.pop(name)
+        process.terminate()
+        process.wait(60)
+
     def end(self) -> None:
         for one in self.processes:
-            if one.poll() is None:
-                one.send_signal(signal.SIGCONT)
-                one.kill()
+            one.kill()
             one.wait()
 
 
@@ -125,48 +127,86 @@ def disturbed(cluster: Cluster) -> str:
     scheduler, first = cluster.schedule(), cluster.join("first")
     run = cluster.run("disturbed", cluster.url)
     cluster.wait_for("disturbed", 1)
-    with cluster.held("first"):
-        cluster.wait_held("first")
-        # These join while a generation waits; the late block goes to the second too.
-        cluster.join("other-flags", XLA_FLAGS="--xla_cpu_enable_fast_math=true")
-        second = cluster.join("second")
-        cluster.wait_for("disturbed", len(cluster.reports("disturbed")) + 1)
-        first.kill()
-    third = cluster.join("third")
-    with cluster.held("second"):
-        cluster.wait_held("second")
-        second.send_signal(signal.SIGSTOP)
+    cluster.hold("first")
+    cluster.wait_held("first")
+    # These join while a generation waits; the late block goes to the second too.
+    cluster.join("other-flags", XLA_FLAGS="--xla_cpu_enable_fast_math=true")
+    second = cluster.join("second")
     cluster.wait_for("disturbed", len(cluster.reports("disturbed")) + 1)
-    with cluster.held():
-        cluster.wait_held("third")
-        scheduler.kill()
-        scheduler.wait()
-        cluster.folder.joinpath("scheduler.txt").unlink()
+    cluster.hold("second")
+    first.kill()
+    cluster.wait_held("second")
+    third = cluster.join("third")
+    cluster.wait_for("disturbed", len(cluster.reports("disturbed")) + 1)
+    second.send_signal(signal.SIGSTOP)
+    cluster.release("second")
+    cluster.hold()
+    cluster.wait_held("third")
+    scheduler.kill()
+    scheduler.wait()
+    (cluster.folder / "scheduler.txt").unlink()
+    cluster.release()
     cluster.schedule()
     second.send_signal(signal.SIGCONT)
     found = cluster.finish("disturbed", run)
-    assert cluster.used("third") and third.poll() is None
+    assert cluster.used("third")
+    assert third.poll() is None
     assert not cluster.used("other-flags"), "another kind of device has computed"
     assert "gets no blocks" in cluster.output("disturbed")
-    assert first.poll() == -signal.SIGKILL
     return found
 
 
-def main() -> None:
-    """The drill at full size, for `make acceptance PARTS=cluster`."""
-    with tempfile.TemporaryDirectory() as place:
-        cluster = Cluster(Path(place) / "cluster", generations=40)
+def with_helpers(made: Cluster, expected: str) -> list[str]:
+    """Compute with one helper, two and three; return what is wrong."""
+    wrong = []
+    for count in (1, 2, 3):
+        made.join(f"helper {count}")
+        name = f"with {count}"
+        found = made.finish(name, made.run(name, made.url))
+        devices = max(report["cluster: devices"] for report in made.reports(name))
+        if (found, devices) != (expected, count):
+            wrong.append(f"{devices} helpers instead of {count} computed {found}")
+    return wrong
+
+
+def through_the_queue(made: Cluster, services: dict[str, str]) -> list[str]:
+    """Compute two runs at the same time, by workers that share the helpers."""
+    gate = {"GATE": str(made.gate), "GATE_NAME": "worker", "MICROCOSMOS_MODULES": str(GATE)}
+    settings = SHORT | services | gate | {"WORKERS": "2", "MICROCOSMOS_CLUSTER": made.url}
+    specs = [json.loads(made.spec.read_bytes()) | {"seed": seed} for seed in (1, 2)]
+    with running(made.folder / "data", settings) as product:
+        wait_until(lambda: any(one["plugins"] for one in product.get("workers")), 120, "gate")
+        runs = [product.submit(one) for one in specs]
+        found = []
+        for run in runs:
+            product.wait(run, "finished", seconds=600)
+            found.append(sha256(product.archive(run)).hexdigest())
+        summary = product.get(f"runs/{runs[0]}/generations")["summary"]
+    wrong = [] if max(summary["cluster: devices"]) > 2 else ["the workers had no helpers"]
+    for number, (one, digest) in enumerate(zip(specs, found, strict=True)):
+        made.spec.write_text(json.dumps(one))
+        if made.finish(name := f"alone {number}", made.run(name)) != digest:
+            wrong.append(f"run {number} of the queue ends with other bytes than alone")
+    return wrong
+
+
+def cluster(_: Installation) -> bool:
+    """Tell whether a run over many hosts survives what happens to them."""
+    wrong = []
+    with tempfile.TemporaryDirectory() as place, ExitStack() as stack:
+        made = Cluster(Path(place) / "cluster", generations=200)
+        stack.callback(made.end)
+        expected = undisturbed(made)
+        if disturbed(made) != expected:
+            wrong.append("a disturbed run ends with other bytes")
+        for name in ("second", "third"):
+            made.leave(name)
+        wrong += with_helpers(made, expected)
         try:
-            expected = undisturbed(cluster)
-            assert disturbed(cluster) == expected
-            rich.print("kill -9, SIGSTOP, joining, a scheduler killed, other flags: same bytes")
-            joined = [name for name in ("second", "third")]
-            for name in ("fourth", "fifth"):
-                cluster.join(name)
-                joined.append(name)
-            found = cluster.finish("again", cluster.run("again", cluster.url))
-            assert found == expected
-            devices = [report["cluster: devices"] for report in cluster.reports("again")]
-            rich.print(f"{max(devices)} helpers ({', '.join(joined)}): same bytes")
-        finally:
-            cluster.end()
+            services = stack.enter_context(service_settings())
+        except Missing as missing:
+            rich.print(f"on SQLite: {missing}")
+            services = {}
+        wrong += through_the_queue(made, services)
+    print(*wrong or ["cluster: every archive has the bytes of one process"], sep="\n")
+    return not wrong

@@ -1,6 +1,6 @@
 """A plug-in measure that waits where a test says so: in the middle of a block.
 
-It waits while GATE/hold-all or GATE/hold-NAME is there, with NAME of the variable GATE_NAME, and
+It waits while GATE/hold-all or GATE/hold-NAME is there, where GATE_NAME holds the name, and
 makes GATE/held-NAME meanwhile. GATE/used-NAME says that it computed at all.
 """
 

@@ -8,7 +8,7 @@ pytestmark = pytest.mark.long
 
 @pytest.fixture
 def cluster(tmp_path):
-    made = Cluster(tmp_path / "cluster", generations=12)
+    made = Cluster(tmp_path / "cluster", generations=40)
     yield made
     made.end()
 

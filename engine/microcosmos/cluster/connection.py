@@ -88,7 +88,8 @@ class Connection:
     def _watch(self, client: Any) -> None:
         """List helpers until the run ends or the connection is lost."""
         while client.status == "running" and not self._ended.wait(POLL_SECONDS):
-            found = client.scheduler_info(n_workers=-1)["workers"]
+            # `scheduler_info` is for a moment empty whenever a worker leaves.
+            found = client.sync(client.scheduler.identity, n_workers=-1)["workers"]
             for address, worker in found.items():
                 if address not in self._asked:
                     self._ask(client, Helper(client, address, str(worker["id"]), self._run))
