@@ -35,8 +35,10 @@ def cluster_fault(settings: Settings) -> str | None:
     """Return what is wrong with the address of the worker's cluster, if it has one."""
     from microcosmos.cluster import security
 
+    if not settings.cluster:
+        return None
     try:
-        settings.cluster and security(settings.cluster, settings.cluster_certificate)
+        security(settings.cluster, settings.cluster_certificate)
     except (ValueError, ImportError) as error:
         return f"MICROCOSMOS_CLUSTER: {error}"
     return None
