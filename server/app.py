@@ -95,7 +95,7 @@ def mark_store(services: Services) -> None:
     """Mark a new store; with a wrong one people can still read what the database has."""
     try:
         mark.leave(services.sessions, services.artifacts)
-    except Exception as error:  # Each kind of store has errors of its own.
+    except OSError as error:
         log.error("The store cannot be marked: %s", error)
     if fault := mark.fault(services.sessions, services.artifacts):
         log.error("%s", fault)

@@ -25,7 +25,7 @@ class Settings(BaseSettings):
     redis_prefix: str = "microcosmos:"
     """Prefix of queues and streams, so that two installations can share a Redis."""
     artifacts_url: str = ""
-    """fsspec URL of the store of files. Empty: a folder in the data folder."""
+    """The store of files: a folder, or `s3://bucket/prefix`. Empty: in the data folder."""
     max_bytes: Annotated[int, Field(gt=0)] | None = None
     """Limit on the memory of a run, in addition to that of the workers."""
     min_free_bytes: Annotated[int, Field(ge=0)] = 2_000_000_000
@@ -75,6 +75,23 @@ class Settings(BaseSettings):
                 f"(`openssl rand -hex 32` prints some); got {len(token)}"
             )
         return token
+
+    @field_validator("artifacts_url")
+    @classmethod
+    def refuse_other_stores(cls, url: str) -> str:
+        kind, separator, rest = url.partition("://")
+        bucket = rest.partition("/")[0]
+        if separator and (kind not in ("file", "s3") or (kind == "s3" and not bucket)):
+            raise ValueError(
+                f"`artifacts_url` must be a folder or s3://BUCKET/PREFIX; got {kind}://…"
+            )
+        if kind == "s3" and set("@:?") & set(rest):
+            raise ValueError(
+                "`artifacts_url` must be s3://BUCKET/PREFIX alone: the server's address goes "
+                "into AWS_ENDPOINT_URL, credentials into AWS_ACCESS_KEY_ID and "
+                "AWS_SECRET_ACCESS_KEY"
+            )
+        return url
 
     @property
     def database(self) -> str:

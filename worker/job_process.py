@@ -3,7 +3,6 @@
 import os
 import signal
 import sys
-from contextlib import suppress
 from uuid import UUID
 
 from server.attempts.claim import NothingComputed, claimed
@@ -21,15 +20,16 @@ def main(run_id: str, worker: str, parent: str) -> None:
     die_with_parent(int(parent), signal.SIGKILL)
     process_setup.handle_signals()
     claiming = claimed(connect(Settings()), UUID(run_id), worker, process_setup.stop_requested)
-    with suppress(NothingComputed), claiming as attempt:
-        if attempt:
-            # Imported here, so that errors of the engine or its device are recorded.
-            from .evolution import carry_out
+    try:
+        with claiming as attempt:
+            if attempt:
+                # Imported here, so that errors of the engine or its device are recorded.
+                from .evolution import carry_out
 
-            os.nice(NICE)  # After the imports, for which the page waits.
-            carry_out(attempt)
-        return
-    sys.exit(1)  # The supervisor finds out whose fault it is.
+                os.nice(NICE)  # After the imports, for which the page waits.
+                carry_out(attempt)
+    except NothingComputed:
+        sys.exit(1)  # The supervisor finds out whose fault it is.
 
 
 if __name__ == "__main__":
