@@ -64,6 +64,9 @@ class Settings(BaseSettings):
     """Seconds after which the job of a worker that ignores a cancellation is killed."""
     bin_seconds: float = Field(default=86_400.0, ge=0.0)
     """Seconds in which a deleted run can be restored."""
+    log_format: Literal["plain", "json"] = "plain"
+    log_bytes: Annotated[int, Field(gt=0)] = 20_000_000
+    """Length at which `make run` rotates a log."""
     reconcile_interval: float = Field(default=5.0, gt=0.0)
 
     @field_validator("token")

@@ -16,6 +16,7 @@ from starlette.exceptions import HTTPException
 from microcosmos.spec import field_path
 from microcosmos.spec.creature import CreatureError
 
+from . import logs
 from .schemas import Wire
 
 log = logging.getLogger(__name__)
@@ -108,7 +109,7 @@ def problem_of(error: Exception) -> Problem:
             detail = f"{name} does not answer; try again."
             return Problem(title="Unavailable", status=503, detail=detail)
         case _:
-            detail = "The server failed; its log says why."
+            detail = f"The server failed; its log says why at request {logs.request_id()}."
             return Problem(title="Internal server error", status=500, detail=detail)
 
 
