@@ -1,5 +1,6 @@
 """Settings from the environment."""
 
+from math import inf
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -64,6 +65,16 @@ class Settings(BaseSettings):
     """Seconds after which the job of a worker that ignores a cancellation is killed."""
     bin_seconds: float = Field(default=86_400.0, ge=0.0)
     """Seconds in which a deleted run can be restored."""
+    keep_checkpoints: float = Field(default=inf, ge=0.0)
+    """Days for which an ended run keeps checkpoints beside its last one."""
+    keep_renderings: float = Field(default=90.0, ge=0.0)
+    """Days for which replays, pictures and films are kept; a request makes them again."""
+    keep_logs: float = Field(default=inf, ge=0.0)
+    """Days for which the log of an ended run is kept."""
+    keep_device_use: float = Field(default=inf, ge=31.0)
+    """Days for which the device time of owners is kept; quotas need 30."""
+    keep_events: float = Field(default=1.0, ge=0.0)
+    """Days for which the event stream keeps events."""
     log_format: Literal["plain", "json"] = "plain"
     log_bytes: Annotated[int, Field(gt=0)] = 20_000_000
     """Length at which `make run` rotates a log."""

@@ -7,7 +7,7 @@ import os
 import shutil
 from pathlib import Path
 
-KEPT = 4
+OLDER_PARTS = 4
 """Number of older parts of each log: `server.log.1` is the newest."""
 
 
@@ -19,7 +19,7 @@ def rotate(folder: Path, limit: int) -> None:
 
 
 def _rotate(log: Path) -> None:
-    parts = [log.with_name(f"{log.name}.{number}") for number in range(1, KEPT + 1)]
+    parts = [log.with_name(f"{log.name}.{number}") for number in range(1, OLDER_PARTS + 1)]
     for older, newer in zip(reversed(parts), reversed(parts[:-1]), strict=False):
         if newer.exists():
             newer.replace(older)

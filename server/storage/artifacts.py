@@ -64,13 +64,18 @@ class Artifacts:
         with _outages():
             return self.files.cat_file(self._full(path), start=start, end=stop)
 
-    def read_verified(self, path: str, sha256: str) -> bytes | None:
-        """Return the content, or None if the file is missing or has changed."""
+    def find(self, path: str) -> bytes | None:
+        """Return the content; None if the file is missing."""
         try:
-            data = self.read(path)
+            return self.read(path)
         except FileNotFoundError:
             return None
-        return data if hashlib.sha256(data).hexdigest() == sha256 else None
+
+    def read_verified(self, path: str, sha256: str) -> bytes | None:
+        """Return the content, or None if the file is missing or has changed."""
+        data = self.find(path)
+        intact = data is not None and hashlib.sha256(data).hexdigest() == sha256
+        return data if intact else None
 
     def stream(self, path: str, start: int, stop: int) -> Iterator[bytes]:
         """Return the bytes from `start` up to `stop` in pieces; read the first at once."""

@@ -51,7 +51,5 @@ def _beside(artifacts: Artifacts) -> str:
 
 
 def _found(artifacts: Artifacts) -> str | None:
-    try:
-        return artifacts.read(MARK).decode(errors="replace").strip()
-    except FileNotFoundError:
-        return None
+    content = artifacts.find(MARK)
+    return None if content is None else content.decode(errors="replace").strip()

@@ -17,7 +17,7 @@ import pytest
 from server.auth import tokens
 from server.core import logs
 from server.core.logs import Json, Plain, redacted
-from server.local.log_rotation import KEPT, rotate
+from server.local.log_rotation import OLDER_PARTS, rotate
 from server.local.redis_embedded import free_port
 from server.settings import Settings
 
@@ -147,17 +147,17 @@ def test_a_long_log_is_rotated_under_its_writer(tmp_path):
     with log.open("ab") as output:
         writer = subprocess.Popen([sys.executable, "-c", WRITER], stdout=output, **pipes)
     with writer:
-        for part in range(KEPT + 3):
+        for part in range(OLDER_PARTS + 3):
             writer.stdin.write(f"{1000 * part}\n")
             writer.stdin.flush()
             assert writer.stderr.readline() == "written\n"
-            if part < KEPT + 2:
+            if part < OLDER_PARTS + 2:
                 rotate(tmp_path, 10_999)
             rotate(tmp_path, 1 << 20)
-    names = ["server.log", *(f"server.log.{number}" for number in range(1, KEPT + 1))]
+    names = ["server.log", *(f"server.log.{number}" for number in range(1, OLDER_PARTS + 1))]
     assert sorted(path.name for path in tmp_path.iterdir()) == [*names, "short.log"]
     for age, name in enumerate(names):
-        first = 1000 * (KEPT + 2 - age)
+        first = 1000 * (OLDER_PARTS + 2 - age)
         lines = (tmp_path / name).read_text().splitlines()
         assert lines == [f"line {number:05d}" for number in range(first, first + 1000)]
 
