@@ -19,6 +19,7 @@ from .auth.middleware import PrincipalMiddleware
 from .auth.tokens import watch
 from .core import api, errors, static_files
 from .core.processes import on_stop_signal
+from .core.request_id import RequestId
 from .core.security_headers import SecurityHeaders, redact_request_log
 from .creatures import routes as creatures
 from .creatures.sandbox import sandbox
@@ -80,6 +81,7 @@ def create_app(services: Services) -> FastAPI:
     )
     app.add_middleware(SecurityHeaders, share_header=SHARE_HEADER)
     app.add_middleware(CountRequests, metrics=app.state.metrics)
+    app.add_middleware(RequestId)
     router = APIRouter(prefix="/api/v1", responses=api.PROBLEMS)
     for package in ROUTES:
         router.include_router(package.router)
@@ -95,7 +97,7 @@ def mark_store(services: Services) -> None:
     """Mark a new store; with a wrong one people can still read what the database has."""
     try:
         mark.leave(services.sessions, services.artifacts)
-    except Exception as error:  # Each kind of store has errors of its own.
+    except OSError as error:
         log.error("The store cannot be marked: %s", error)
     if fault := mark.fault(services.sessions, services.artifacts):
         log.error("%s", fault)

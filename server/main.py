@@ -5,6 +5,7 @@ import sys
 import uvicorn
 
 from .auth import bootstrap
+from .core import logs
 from .services.services import connect
 from .settings import Settings, create_private
 from .tables import migrations
@@ -15,6 +16,7 @@ SHUTDOWN_SECONDS = 5
 def main() -> None:
     settings = Settings()
     create_private(settings.data)
+    logs.set_up(settings)
     if settings.needs_token:
         services = connect(settings)
         try:
@@ -31,6 +33,7 @@ def main() -> None:
         host=settings.host,
         port=settings.port,
         timeout_graceful_shutdown=SHUTDOWN_SECONDS,
+        log_config=None,
     )
 
 

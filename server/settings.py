@@ -1,5 +1,6 @@
 """Settings from the environment."""
 
+from math import inf
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -25,7 +26,7 @@ class Settings(BaseSettings):
     redis_prefix: str = "microcosmos:"
     """Prefix of queues and streams, so that two installations can share a Redis."""
     artifacts_url: str = ""
-    """fsspec URL of the store of files. Empty: a folder in the data folder."""
+    """The store of files: a folder, or `s3://bucket/prefix`. Empty: in the data folder."""
     max_bytes: Annotated[int, Field(gt=0)] | None = None
     """Limit on the memory of a run, in addition to that of the workers."""
     min_free_bytes: Annotated[int, Field(ge=0)] = 2_000_000_000
@@ -64,6 +65,19 @@ class Settings(BaseSettings):
     """Seconds after which the job of a worker that ignores a cancellation is killed."""
     bin_seconds: float = Field(default=86_400.0, ge=0.0)
     """Seconds in which a deleted run can be restored."""
+    keep_checkpoints: float = Field(default=inf, ge=0.0)
+    """Days for which an ended run keeps checkpoints beside its last one."""
+    keep_renderings: float = Field(default=90.0, ge=0.0)
+    """Days for which replays, pictures and films are kept; a request makes them again."""
+    keep_logs: float = Field(default=inf, ge=0.0)
+    """Days for which the log of an ended run is kept."""
+    keep_device_use: float = Field(default=inf, ge=31.0)
+    """Days for which the device time of owners is kept; quotas need 30."""
+    keep_events: float = Field(default=1.0, ge=0.0)
+    """Days for which the event stream keeps events."""
+    log_format: Literal["plain", "json"] = "plain"
+    log_bytes: Annotated[int, Field(gt=0)] = 20_000_000
+    """Length at which `make run` rotates a log."""
     reconcile_interval: float = Field(default=5.0, gt=0.0)
 
     @field_validator("token")
@@ -75,6 +89,23 @@ class Settings(BaseSettings):
                 f"(`openssl rand -hex 32` prints some); got {len(token)}"
             )
         return token
+
+    @field_validator("artifacts_url")
+    @classmethod
+    def refuse_other_stores(cls, url: str) -> str:
+        kind, separator, rest = url.partition("://")
+        bucket = rest.partition("/")[0]
+        if separator and (kind not in ("file", "s3") or (kind == "s3" and not bucket)):
+            raise ValueError(
+                f"`artifacts_url` must be a folder or s3://BUCKET/PREFIX; got {kind}://…"
+            )
+        if kind == "s3" and set("@:?") & set(rest):
+            raise ValueError(
+                "`artifacts_url` must be s3://BUCKET/PREFIX alone: the server's address goes "
+                "into AWS_ENDPOINT_URL, credentials into AWS_ACCESS_KEY_ID and "
+                "AWS_SECRET_ACCESS_KEY"
+            )
+        return url
 
     @property
     def database(self) -> str:

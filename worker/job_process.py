@@ -3,10 +3,10 @@
 import os
 import signal
 import sys
-from contextlib import suppress
 from uuid import UUID
 
 from server.attempts.claim import NothingComputed, claimed
+from server.core import logs
 from server.core.processes import die_with_parent
 from server.services.services import connect
 from server.settings import Settings
@@ -19,19 +19,23 @@ NICE = 10
 
 def main(run_id: str, worker: str, parent: str) -> None:
     die_with_parent(int(parent), signal.SIGKILL)
+    settings = Settings()
+    logs.set_up(settings)
+    logs.bind(run=run_id, worker=worker)
     process_setup.handle_signals()
-    claiming = claimed(connect(Settings()), UUID(run_id), worker, process_setup.stop_requested)
-    with suppress(NothingComputed), claiming as attempt:
-        if attempt:
-            # Imported here, so that errors of the engine or its device are recorded.
-            from .evolution import carry_out
+    claiming = claimed(connect(settings), UUID(run_id), worker, process_setup.stop_requested)
+    try:
+        with claiming as attempt:
+            if attempt:
+                logs.bind(attempt=attempt.number)
+                # Imported here, so that errors of the engine or its device are recorded.
+                from .evolution import carry_out
 
-            os.nice(NICE)  # After the imports, for which the page waits.
-            carry_out(attempt)
-        return
-    sys.exit(1)  # The supervisor finds out whose fault it is.
+                os.nice(NICE)  # After the imports, for which the page waits.
+                carry_out(attempt)
+    except NothingComputed:
+        sys.exit(1)  # The supervisor finds out whose fault it is.
 
 
 if __name__ == "__main__":
-    process_setup.log_to_stderr()
     main(*sys.argv[1:])

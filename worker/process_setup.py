@@ -1,6 +1,5 @@
-"""Set up a process of a worker: logging, and signals that request it to stop."""
+"""Set up a process of a worker: signals that request it to stop."""
 
-import logging
 import signal
 from collections.abc import Callable
 from types import FrameType
@@ -23,9 +22,3 @@ def handle_signals(then: Callable[[], None] = lambda: None, *, interrupt: bool =
 
     signal.signal(signal.SIGTERM, note)
     signal.signal(signal.SIGINT, note if interrupt else signal.SIG_IGN)
-
-
-def log_to_stderr() -> None:
-    """Log with times, without JAX's search for devices."""
-    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(name)s: %(message)s")
-    logging.getLogger("jax").setLevel(logging.WARNING)

@@ -13,13 +13,14 @@ from rq import Queue
 from rq.serializers import JSONSerializer
 from rq.worker import SimpleWorker
 
+from server.core import logs
 from server.queue.jobs import Jobs
 from server.services.services import connect
 from server.settings import Settings
 
 from . import loop
 from .jobs import prepare_once
-from .process_setup import handle_signals, log_to_stderr
+from .process_setup import handle_signals
 from .readiness import StoreCheck
 
 WORKER_TTL = 120
@@ -44,19 +45,21 @@ def serve_queue(name: str) -> None:
     """Make the renderings of a queue until asked to stop."""
     # Renderings need little of a GPU that belongs to a worker.
     os.environ.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")
+    settings = Settings()
+    logs.set_up(settings)
     handle_signals(interrupt=True)
     if name == "renderer":
         prepare_once()
-    services = connect(Settings())
+    services = connect(settings)
     queue = services.jobs.audits if name == "auditor" else services.jobs.renderings
     with loop.logging_outages():
         retry_interrupted(services.jobs, queue)
     unique = f"{name}-{socket.gethostname()}-{uuid4().hex[:8]}"
+    logs.bind(worker=unique)
     worker = SimpleWorker([queue], unique, serializer=JSONSerializer, worker_ttl=WORKER_TTL)
     loop.serve(worker, may_work=StoreCheck(services).is_good)
     services.close()
 
 
 if __name__ == "__main__":
-    log_to_stderr()
     serve_queue(*sys.argv[1:] or ["renderer"])

@@ -13,6 +13,7 @@ from uuid import UUID
 from sqlalchemy.exc import SQLAlchemyError
 
 from server.attempts.leases import Progress, end_job, fail_job, progress
+from server.core import logs
 from server.schedule.take import take
 from server.services import services
 from server.services.services import Services
@@ -23,7 +24,7 @@ from .heartbeats import HEARTBEATS_PER_LEASE, Heartbeats
 from .job_output import JobOutput
 from .loop import PAUSE_SECONDS, logging_outages
 from .plugins import PluginWatcher
-from .process_setup import handle_signals, log_to_stderr, stop_requested
+from .process_setup import handle_signals, stop_requested
 from .readiness import Readiness
 
 IDLE_SECONDS = 1.0
@@ -75,6 +76,7 @@ class Supervisor:
     def carry_out(self, run_id: UUID) -> None:
         """Compute a run in a process, and return it to the queue if the process dies."""
         self.error, before = None, progress(self.services, run_id)
+        logs.bind(run=str(run_id))
         try:
             if not stop_requested():
                 self.start(str(run_id))
@@ -85,6 +87,7 @@ class Supervisor:
                     self.end(run_id, before)
             finally:
                 self.heartbeats.release()
+                logs.bind(run=None)
 
     def end(self, run_id: UUID, before: Progress | None) -> None:
         """End the attempt of a job, and count its death unless this host is broken."""
@@ -159,6 +162,7 @@ def supervise(settings: Settings, index: int) -> None:
     """Run the worker of this number on this machine until it has to stop."""
     shared = services.connect(settings)
     name = f"{socket.gethostname()}-{os.getpid()}"
+    logs.bind(worker=name)
     found = device.find(index, max(1, settings.workers))
     if found.threads:
         device.pin(found.threads)
@@ -181,5 +185,6 @@ def supervise(settings: Settings, index: int) -> None:
 
 
 if __name__ == "__main__":
-    log_to_stderr()
-    supervise(Settings(), int(sys.argv[1]) if len(sys.argv) > 1 else 0)
+    found = Settings()
+    logs.set_up(found)
+    supervise(found, int(sys.argv[1]) if len(sys.argv) > 1 else 0)

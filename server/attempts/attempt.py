@@ -9,21 +9,22 @@ from dataclasses import dataclass, field
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import case
 from sqlalchemy.orm import Session
 
 from microcosmos.archive.report import Report
 from microcosmos.sizes import size
 
 from ..auth.device_use import count_device_time
-from ..core.database import clock, retried
+from ..core.database import retried
+from ..core.errors import StoreUnavailable
 from ..creatures import initial
 from ..runs import log
 from ..runs.announce import announce
 from ..runs.lifecycle import change, fail_attempt, stop_attempt
 from ..services.services import Services
-from ..storage import space
+from ..storage import mark, space
 from ..storage.artifacts import checkpoint_path
+from ..storage.patience import patiently
 from ..tables import (
     CANCELLED,
     FAILED,
@@ -35,6 +36,7 @@ from ..tables import (
 )
 from . import recording
 from .checkpoints import add_checkpoint, fall_back, newest_intact
+from .ending import ended, paused
 
 logger = logging.getLogger(__name__)
 
@@ -65,7 +67,7 @@ class Attempt:
     stop_requested: Callable[[], bool] = lambda: False
     """Returns True once the worker has to stop."""
     outage_seconds: float = 0.0
-    """Seconds that a write waits while the database is away."""
+    """Seconds that it waits while the database or the store is away."""
     requested_state: str | None = None
     """The state in which a person, or an urgent run, wants the run: see `Run`."""
     recorded: bool = False
@@ -93,10 +95,14 @@ class Attempt:
 
         Older checkpoints stand in for damaged ones, and what was recorded after them is
         deleted. Raise `CheckpointUnavailable`, and delete nothing, if a file is missing or all
-        are damaged: then the store may be the wrong one, and a person has to decide. Call it
-        before anything is recorded.
+        are damaged: then the store may be the wrong one, and a person has to decide. Raise
+        `StoreUnavailable` if one cannot be read for long. Call it before anything is recorded.
         """
-        data, intact, damaged = newest_intact(self.services, self.run_id)
+        data, intact, damaged = patiently(
+            lambda: newest_intact(self.services, self.run_id),
+            self.outage_seconds,
+            self.interrupted,
+        )
         if intact and damaged:
             text = (
                 f"The checkpoint of generation {self.generation} is damaged; "
@@ -148,11 +154,14 @@ class Attempt:
     def checkpoint_due(self) -> bool:
         return time.monotonic() - self.saved_at >= self.services.settings.checkpoint_interval
 
-    def checkpoint(self, generation: int, data: bytes) -> bool:
-        """Save a recorded generation. If that fails, warn on the run and return False."""
+    def checkpoint(self, generation: int, data: bytes, patience: float = 0.0) -> bool:
+        """Save a recorded generation. If that fails, warn on the run and return False.
+
+        `patience` is the time, in seconds, to wait for a store that does not answer.
+        """
         self.saved_at = time.monotonic()
         try:
-            self.save(generation, data)
+            patiently(lambda: self.save(generation, data), patience, self.interrupted)
         except OSError as error:
             logger.warning("No checkpoint of generation %s: %s", generation, error)
             self.warn(
@@ -170,7 +179,7 @@ class Attempt:
 
         Raise `OSError` if it cannot be written; the previous one stays.
         """
-        path = checkpoint_path(self.run_id, generation, data)
+        path = checkpoint_path(self.run_id, self.number, generation, data)
         stored = self.services.artifacts.write(path, data)
         with self._current() as (session, run):
             if generation > run.generation:
@@ -178,7 +187,7 @@ class Attempt:
                     "`generation` of a checkpoint must be recorded, that is at most "
                     f"{run.generation}; got {generation}"
                 )
-            superfluous = add_checkpoint(session, self.run_id, generation, stored)
+            add_checkpoint(session, self.run_id, generation, stored)
             if generation > run.checkpoint_generation:
                 run.checkpoint_generation = generation
                 run.attempts_without_checkpoint = 0
@@ -186,11 +195,6 @@ class Attempt:
             text = f"Checkpoint of generation {generation} written, {size(stored.size)}."
             log.note(session, run, text, kind=log.SAVED)
         self.generation = generation
-        for path in superfluous:
-            try:
-                self.services.artifacts.delete(path)
-            except OSError as error:  # The new checkpoint is valid all the same.
-                logger.warning("a superfluous file stays: %s", error)
 
     def end(self, done: bool, generation: int, save: Callable[[], bytes]) -> None:
         """Checkpoint the last whole generation and end the attempt.
@@ -198,7 +202,9 @@ class Attempt:
         If the last checkpoint cannot be written, the run pauses: resuming it computes again
         what was not saved.
         """
-        saved = generation == self.generation or self.checkpoint(generation, save())
+        saved = generation == self.generation or self.checkpoint(
+            generation, save(), self.outage_seconds
+        )
         if done and saved:
             self.finish()
         elif self.requested_state == CANCELLED:
@@ -213,22 +219,36 @@ class Attempt:
         self._update(text, "warning", log.UNSAVED, warning=text)
 
     def finish(self) -> None:
-        self._update(None, **_ended(FINISHED), error=None)
+        self._update(None, **ended(FINISHED), error=None)
 
     def cancel(self) -> None:
-        self._update(None, **_ended(CANCELLED))
+        self._update(None, **ended(CANCELLED))
 
     def refuse(self, text: str) -> None:
         """Fail at once: every other attempt would fail, too."""
-        self._update(text, "error", **_ended(FAILED), error=text)
+        self._update(text, "error", **ended(FAILED), error=text)
 
     def pause(self) -> None:
-        self._update(f"Stopped after generation {self.generation}.", **_paused())
+        self._update(f"Stopped after generation {self.generation}.", **paused())
 
     def pause_until_resumed(self, reason: str, **values: Any) -> None:
         """Pause until a person adds the missing plug-in or file and resumes the run."""
         text = f"{reason.rstrip('.')}. Then resume the run."
-        self._update(text, "warning", **_paused(), warning=text, **values)
+        self._update(text, "warning", **paused(), warning=text, **values)
+
+    def leave_unread(self, error: StoreUnavailable) -> None:
+        """End an attempt whose checkpoint cannot be read; it does not count.
+
+        The run returns to the queue while the whole store is away: no worker takes it then. It
+        pauses if only its own file cannot be read.
+        """
+        services = self.services
+        if self.interrupted() or mark.fault(services.sessions, services.artifacts):
+            self.requeue()
+        else:
+            self.pause_until_resumed(
+                f"Its checkpoint cannot be read ({error}). Repair the store"
+            )
 
     @retried
     def requeue(self) -> None:
@@ -271,24 +291,3 @@ class Attempt:
             if run is None:
                 raise ClaimLost(f"run {self.run_id}, attempt {self.number}")
             yield session, run
-
-
-def _ended(status: str) -> dict[str, Any]:
-    return {
-        "status": status,
-        "finished_at": clock(),
-        "requested_state": None,
-        "requested_at": None,
-    }
-
-
-def _paused() -> dict[str, Any]:
-    """Return the values of a paused run, or of a cancelled one if that was requested."""
-    return {
-        "status": case((Run.requested_state == CANCELLED, CANCELLED), else_=PAUSED),
-        "finished_at": case((Run.requested_state == CANCELLED, clock()), else_=None),
-        "worker": None,
-        "released_at": clock(),
-        "requested_state": None,
-        "requested_at": None,
-    }

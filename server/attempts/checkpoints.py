@@ -11,6 +11,7 @@ from ..creatures.storage import creatures_of, mark_garbage
 from ..runs.curves import corrected_at
 from ..services.services import Services
 from ..storage.artifacts import StoredFile, superfluous
+from ..storage.garbage import discard
 from ..tables import CHECKPOINT, Artifact, Elite, Generation, Result, Run
 
 
@@ -20,7 +21,7 @@ class CheckpointUnavailable(Exception):
     def __init__(self, services: Services, row: Artifact, problem: str):
         super().__init__(
             f"The checkpoint of generation {row.generation} {problem}: no intact file "
-            f"`{row.path}` in {services.artifacts.root}. Check "
+            f"`{row.path}` in {services.artifacts.location}. Check "
             "MICROCOSMOS_ARTIFACTS_URL and the folder's mount, or restore the file"
         )
 
@@ -57,13 +58,11 @@ def newest_intact(
     return None, None, []
 
 
-def add_checkpoint(
-    session: Session, run_id: UUID, generation: int, stored: StoredFile
-) -> list[str]:
-    """Make a written file the newest checkpoint; return the paths of superfluous files."""
+def add_checkpoint(session: Session, run_id: UUID, generation: int, stored: StoredFile) -> None:
+    """Make a written file the newest checkpoint, and discard superfluous ones."""
     last = last_checkpoint(session, run_id)
     if last and last.path == stored.path:
-        return []
+        return
     row = Artifact(
         path=stored.path,
         kind=CHECKPOINT,
@@ -79,7 +78,7 @@ def add_checkpoint(
     numbers = superfluous([one.number for one in kept if one.number is not None])
     gone = [one.path for one in kept if one.number in numbers]
     session.execute(delete(Artifact).where(Artifact.path.in_(gone)))
-    return gone
+    discard(session, gone)
 
 
 def fall_back(session: Session, run: Run, intact: Artifact, damaged: Sequence[str]) -> None:

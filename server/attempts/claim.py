@@ -9,6 +9,7 @@ from uuid import UUID
 from sqlalchemy import func, or_
 
 from ..core.database import clock, now
+from ..core.errors import StoreUnavailable
 from ..runs import log
 from ..runs.announce import announce
 from ..runs.lifecycle import change, fail_attempt
@@ -20,7 +21,7 @@ from .checkpoints import CheckpointUnavailable, rewind
 from .leases import lease_expired
 
 OUTAGE_SECONDS = 600.0
-"""Seconds that a computed generation waits while the database is away."""
+"""Seconds that a run waits while the database or the store is away."""
 
 logger = logging.getLogger(__name__)
 
@@ -75,7 +76,7 @@ def claim(services: Services, run_id: UUID, worker: str) -> Attempt | None:
 def claimed(
     services: Services, run_id: UUID, worker: str, stop_requested: Callable[[], bool]
 ) -> Iterator[Attempt | None]:
-    """Yield an attempt that waits while the database is away, or None if it cannot be claimed.
+    """Yield an attempt that waits for the database and the store; None if it has no claim.
 
     An error inside is recorded on the run. An attempt that has lost its claim ends silently.
     Raise `NothingComputed` for an error before the first generation: its host may be broken.
@@ -93,6 +94,10 @@ def claimed(
         logger.error("Run %s: %s", run_id, error)
         with suppress(ClaimLost):
             attempt.pause_until_resumed(str(error))
+    except StoreUnavailable as error:
+        logger.error("Run %s: %s", run_id, error)
+        with suppress(ClaimLost):
+            attempt.leave_unread(error)
     except Exception as error:
         logger.exception("Run %s failed", run_id)
         if not attempt.recorded:

@@ -1,9 +1,9 @@
 """The device time that the runs of each owner have used."""
 
-from datetime import timedelta
+from datetime import datetime, timedelta
 from uuid import UUID
 
-from sqlalchemy import func, select
+from sqlalchemy import delete, func, select
 from sqlalchemy.orm import Session
 
 from ..core.database import insert_or_update, now
@@ -15,6 +15,12 @@ def count_device_time(session: Session, owner: UUID | None, seconds: float) -> N
     row = {"owner": owner or NOBODY, "day": now(session).date(), "seconds": seconds}
     added = {"seconds": DeviceUse.seconds + seconds}
     insert_or_update(session, DeviceUse, [row], ("owner", "day"), added)
+
+
+def forget_device_time(session: Session, before: datetime) -> int:
+    """Delete what was used on days before; return the number of rows."""
+    old = delete(DeviceUse).where(DeviceUse.day < before.date()).returning(DeviceUse.day)
+    return len(session.scalars(old).all())
 
 
 def device_seconds(session: Session, days: int) -> dict[UUID | None, float]:

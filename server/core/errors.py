@@ -16,6 +16,7 @@ from starlette.exceptions import HTTPException
 from microcosmos.spec import field_path
 from microcosmos.spec.creature import CreatureError
 
+from . import logs
 from .schemas import Wire
 
 log = logging.getLogger(__name__)
@@ -24,6 +25,10 @@ MAX_ERRORS = 50
 RETRY_AFTER = {"Retry-After": "2"}
 MEDIA_TYPE = "application/problem+json"
 FIELD_IN_MESSAGE = re.compile(r"`([a-z_0-9.]+)` (?:must|needs|was)")
+
+
+class StoreUnavailable(OSError):
+    """The store of files cannot be read or written now; what it holds is not in doubt."""
 
 
 class FieldError(Wire):
@@ -66,7 +71,7 @@ class ProblemError(Exception):
 
 HANDLED = (
     *(ProblemError, ValidationError, RequestValidationError, CreatureError, HTTPException),
-    *(OperationalError, TimeoutError, RedisError, Exception),
+    *(OperationalError, TimeoutError, RedisError, StoreUnavailable, Exception),
 )
 
 
@@ -98,14 +103,24 @@ def problem_of(error: Exception) -> Problem:
             return invalid_input([FieldError(message=str(error), **named)])
         case HTTPException():
             return Problem(title=error.detail, status=error.status_code, detail=error.detail)
-        case OperationalError() | TimeoutError() | RedisError():
-            name = "Redis" if isinstance(error, RedisError) else "The database"
+        case OperationalError() | TimeoutError() | RedisError() | StoreUnavailable():
+            name = _service(error)
             log.error("%s did not answer: %s", name, error)
             detail = f"{name} does not answer; try again."
             return Problem(title="Unavailable", status=503, detail=detail)
         case _:
-            detail = "The server failed; its log says why."
+            detail = f"The server failed; its log says why at request {logs.request_id()}."
             return Problem(title="Internal server error", status=500, detail=detail)
+
+
+def _service(error: Exception) -> str:
+    match error:
+        case RedisError():
+            return "Redis"
+        case StoreUnavailable():
+            return "The store of files"
+        case _:
+            return "The database"
 
 
 def invalid_fields(*errors: FieldError) -> ProblemError:

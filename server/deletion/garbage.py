@@ -1,17 +1,17 @@
 """Collect garbage: delete creatures of deleted runs that nothing uses."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 
 from sqlalchemy import delete, select, union
 from sqlalchemy.orm import Session
 
 from ..core.database import insert_missing
+from ..storage.garbage import discard
 from ..tables import (
     Artifact,
     Creature,
     Elite,
     GarbageCreature,
-    GarbageFile,
     InitialCreature,
     Parent,
     Result,
@@ -70,8 +70,3 @@ def collect(session: Session) -> bool:
     rows = [{"run_id": run_id, "creature": parent} for run_id, parent in sorted(parents)]
     insert_missing(session, GarbageCreature, rows)
     return True
-
-
-def discard(session: Session, paths: Sequence[str]) -> None:
-    """Mark files for deletion after this transaction."""
-    insert_missing(session, GarbageFile, [{"path": path} for path in paths])

@@ -16,11 +16,12 @@ from ..core.database import clock
 from ..creatures.storage import creatures_of, mark_garbage
 from ..runs.lifecycle import change
 from ..services.services import Services
+from ..storage import garbage as files
 from ..storage.artifacts import run_folder
+from ..storage.garbage import discard
 from ..tables import (
     Artifact,
     Elite,
-    GarbageFile,
     Generation,
     Idempotency,
     InitialCreature,
@@ -29,7 +30,7 @@ from ..tables import (
     Run,
     Share,
 )
-from .garbage import collect, discard
+from .garbage import collect
 
 STEPS = 200
 """Limit on the transactions in one pass, since the reconciler has other work too."""
@@ -74,21 +75,7 @@ def collect_creatures(services: Services) -> bool:
 
 
 def remove_files(services: Services) -> bool:
-    """Delete a few marked files; return False if none were deleted."""
-    with services.sessions.read() as session:
-        paths = list(session.scalars(select(GarbageFile.path).limit(ROWS_PER_TRANSACTION)))
-        known = select(Artifact.path).where(Artifact.path.in_(paths))
-        recreated = set(session.scalars(known))
-    removed = sorted(recreated)
-    for path in sorted({*paths} - recreated):
-        try:
-            services.artifacts.delete(path)
-            removed.append(path)
-        except OSError as error:
-            log.warning("will remove %s again: %s", path, error)
-    with services.sessions.write.begin() as session:
-        session.execute(delete(GarbageFile).where(GarbageFile.path.in_(removed)))
-    return bool(removed)
+    return files.remove_files(services.sessions, services.artifacts)
 
 
 def _delete_some(session: Session, run_id: UUID, table: Any) -> bool:
@@ -111,9 +98,9 @@ def _delete_run(session: Session, run_id: UUID) -> None:
         run_id,
         select(InitialCreature.creature).where(InitialCreature.run_id == run_id),
     )
-    files = delete(Artifact).where(Artifact.run_id == run_id).returning(Artifact.path)
+    rows = delete(Artifact).where(Artifact.run_id == run_id).returning(Artifact.path)
     folder = run_folder(run_id)
-    elsewhere = [path for path in session.scalars(files) if not path.startswith(folder)]
+    elsewhere = [path for path in session.scalars(rows) if not path.startswith(folder)]
     discard(session, [folder, *elsewhere])
     for table in (InitialCreature, Idempotency, Share):
         session.execute(delete(table).where(table.run_id == run_id))

@@ -4,6 +4,7 @@ import os
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from socket import AF_INET, AF_INET6, SO_REUSEADDR, SOL_SOCKET, socket
 from stat import S_IRWXO
@@ -22,7 +23,7 @@ from ..runs.submission import submit
 from ..services import services
 from ..settings import Settings, create_private
 from ..tables import Run, migrations
-from . import redis_embedded
+from . import log_rotation, redis_embedded
 from .process_tree import Child, Tree, say
 
 
@@ -144,6 +145,13 @@ def start_redis(data: DataFolder, tree: Tree) -> Settings:
     return data.settings.model_copy(update={"redis_url": redis.url})
 
 
+def rotate_logs(data: DataFolder) -> None:
+    try:
+        log_rotation.rotate(data.folder / "logs", data.settings.log_bytes)
+    except OSError as error:  # The disk may be full.
+        say("logs", f"they grow, since they cannot be copied: {error}")
+
+
 def main() -> None:
     """Run until Ctrl-C; all processes end with this one."""
     try:
@@ -156,6 +164,7 @@ def main() -> None:
     try:
         data = lock_data_folder(settings)
         refuse_port_in_use(settings.host, settings.port)
+        tree.upkeep = partial(rotate_logs, data)
         say("starting", address)
         start(data, tree)
         tree.watch(lambda: answers(settings.port, "/healthz", settings.host))

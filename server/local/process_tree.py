@@ -16,6 +16,8 @@ STABLE_SECONDS = 60.0
 GRACE = 25.0
 """Seconds that processes have to end; workers checkpoint meanwhile."""
 POLL_SECONDS = 0.05
+UPKEEP_SECONDS = 5.0
+"""Seconds between two calls of a tree's upkeep."""
 
 Start = Callable[[], Popen[bytes]]
 
@@ -66,6 +68,7 @@ class Tree:
     def __init__(self) -> None:
         self.services: list[Child] = []
         self.children: list[Child] = []
+        self.upkeep: Callable[[], None] = lambda: None
         self._requests = 0
 
     def handle_signals(self) -> None:
@@ -84,9 +87,13 @@ class Tree:
 
     def watch(self, enough: Callable[[], bool] = lambda: False) -> None:
         """Restart dead processes until it is enough or a signal requests to stop."""
+        due = 0.0
         while not (self.stop_requested or enough()):
             for child in (*self.services, *self.children):
                 child.restart_if_dead()
+            if time.monotonic() >= due:
+                self.upkeep()
+                due = time.monotonic() + UPKEEP_SECONDS
             time.sleep(POLL_SECONDS)
 
     def end(self) -> None:

@@ -46,6 +46,7 @@ class DiskHealth(Wire):
     """None where the store is not a folder of this machine, as `total_bytes`."""
     total_bytes: int | None
     file_system: str | None
+    """`s3` for an object store, which has no disk."""
     writable: bool
     write_seconds: float | None
     """Seconds that 4096 bytes took to reach the disk."""
@@ -103,18 +104,18 @@ def disk(services: Services) -> DiskHealth:
         store.write(path, PROBE)
         seconds = time.monotonic() - started
         store.delete(path)
-    except Exception as failed:  # Each kind of store has errors of its own.
-        error = f"{type(failed).__name__}: {failed}"
+    except OSError as failed:
+        error = str(failed)
     with suppress(SQLAlchemyError):  # The report says so elsewhere.
         error = error or mark.fault(services.sessions, store)
     folder = Path(store.root) if store.local else None
     there = folder and next(one for one in (folder, *folder.parents) if one.exists())
     usage = there and shutil.disk_usage(there)
     return DiskHealth(
-        location=str(store.root),
+        location=store.location,
         free_bytes=usage.free if usage else None,
         total_bytes=usage.total if usage else None,
-        file_system=_file_system(there) if there else None,
+        file_system=_file_system(there) if there else "s3",
         writable=error is None,
         write_seconds=seconds,
         error=error,

@@ -4,6 +4,7 @@ The server runs it every few seconds.
 """
 
 import logging
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import Event, Thread
@@ -16,6 +17,7 @@ from ..attempts import leases
 from ..attempts.preemption import make_room
 from ..core.database import ago
 from ..deletion.purge import purge
+from ..deletion.retention import expire
 from ..runs.announce import announce
 from ..runs.lifecycle import end_attempt, fail_attempt, release
 from ..runs.log import note
@@ -24,6 +26,8 @@ from ..tables import CANCELLED, QUEUED, RUNNING, Run, Sweep, Worker
 
 SILENT_SECONDS = 3600.0
 """Seconds of silence after which a worker is deleted."""
+EXPIRE_SECONDS = 3600.0
+"""Seconds between two searches for what the settings no longer keep."""
 
 log = logging.getLogger(__name__)
 
@@ -34,9 +38,13 @@ def reconciling(services: Services) -> Iterator[None]:
     ended = Event()
 
     def repeat() -> None:
+        expire_at = 0.0
         while True:
             try:
                 reconcile(services)
+                if time.monotonic() >= expire_at:
+                    expire(services)
+                    expire_at = time.monotonic() + EXPIRE_SECONDS
             except (RedisError, SQLAlchemyError) as error:
                 log.warning("will reconcile again: %s", error)
             except Exception:  # Without this thread nothing would requeue lost runs.

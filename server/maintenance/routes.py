@@ -35,8 +35,9 @@ class Readiness(Wire):
     database: Answer
     redis: Answer
     store: Literal["ok", "wrong or unreachable"]
-    disk: Literal["ok", "almost full", "full"]
-    """`almost full` is a warning: the server is ready all the same."""
+    disk: Literal["ok", "almost full", "full", "none"]
+    """`almost full` is a warning: the server is ready all the same. `none`: files are in an
+    object store and rows in PostgreSQL, whose disks this machine does not see."""
 
 
 @router.get("/health", dependencies=[MAY_ADMINISTER])
@@ -53,6 +54,8 @@ def alive() -> Health:
 @outside.get("/readyz", responses={503: {"model": Readiness}}, dependencies=[PUBLIC])
 def ready(services: ServicesDep, session: SessionDep, response: Response) -> Readiness:
     found = Readiness(database="ok", redis="ok", store="ok", disk="ok")
+    if not any(space.folders(services.settings, services.artifacts)):
+        found.disk = "none"
     if space.shortage(services.settings, services.artifacts):
         full = space.is_full(services.settings, services.artifacts)
         found.disk = "full" if full else "almost full"

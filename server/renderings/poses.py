@@ -54,4 +54,4 @@ def from_replay(artifacts: Artifacts, replay: Artifact, creature: str) -> bytes:
 
 
 def _part(artifacts: Artifacts, replay: Artifact, start: int, stop: int) -> bytes:
-    return b"".join(artifacts.stream(replay.path, start, stop))
+    return artifacts.read(replay.path, start, stop)

@@ -17,6 +17,7 @@ from ..creatures import storage as creatures
 from ..queue.jobs import FAILURE_SECONDS
 from ..services.services import Services
 from ..storage.artifacts import rendering_path
+from ..storage.garbage import discard
 from ..tables import AUDIT, GIF, MP4, PREVIEW, REPLAY, STRIP, Artifact, Creature
 
 ENGINE_ERROR = re.compile(r"^[\w.]*(?:CreatureError|Missing|Broken): ")
@@ -107,7 +108,8 @@ def save(services: Services, creature: str, kind: str, data: bytes) -> None:
 
 def _delete(session: Session, creature: str, kind: str, trusted: bool | None = None) -> None:
     """Delete a rendering; `trusted` is the verdict of the audit that replaces an audit."""
-    session.execute(delete(Artifact).where(_matches(creature, kind)))
+    gone = delete(Artifact).where(_matches(creature, kind)).returning(Artifact.path)
+    discard(session, list(session.scalars(gone)))
     if kind == AUDIT:
         audited = update(Creature).where(Creature.sha256 == creature)
         session.execute(audited.values(trusted=trusted))

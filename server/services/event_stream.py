@@ -28,3 +28,9 @@ class Events:
         except RedisError as error:
             # SQL holds the content of the event, and pages fetch it when Redis is back.
             log.warning("no event %s of run %s: %s", kind, run_id, error)
+
+    def forget(self, seconds: float) -> None:
+        """Delete events that are older; a client that missed them fetches everything."""
+        now: Any = self.redis.time()
+        oldest = int(1000 * (now[0] - seconds))
+        self.redis.xtrim(self.stream, minid=f"{max(0, oldest)}", approximate=False)

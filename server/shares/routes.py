@@ -21,6 +21,7 @@ from ..renderings import responses
 from ..renderings import storage as renderings
 from ..renderings.schemas import Rendering
 from ..services.services import Services, ServicesDep, SessionDep
+from ..storage.garbage import discard
 from ..tables import PREVIEW, Share
 from . import access, archive_files, publishing
 from .page import public_address
@@ -151,10 +152,8 @@ def revoke(slug: OwnSlug, request: Request, services: ServicesDep) -> ShareRead:
         stored = archive_files.find(session, share)
         if stored:
             session.delete(stored)
-        read = share_read(request, session, share)
-    if stored:
-        services.artifacts.delete(stored.path)
-    return read
+            discard(session, [stored.path])
+        return share_read(request, session, share)
 
 
 def share_read(request: Request, session: Session, share: Share) -> ShareRead:

@@ -1,18 +1,31 @@
-"""Files behind fsspec: checkpoints, renderings, shared archives; each complete or absent."""
+"""Files in a folder or in S3: checkpoints, renderings, shared archives; complete or absent."""
 
 import hashlib
 import os
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from uuid import UUID, uuid4
 
 import fsspec
-from fsspec.implementations.local import LocalFileSystem
 
-CHUNK = 1 << 20
+from ..core.errors import StoreUnavailable
+
+CHUNK = 4 << 20
 KEEP_LAST, KEEP_EVERY = 3, 10
+S3 = {
+    "skip_instance_cache": True,
+    "use_listings_cache": False,  # Other machines write, too.
+    "config_kwargs": {
+        "connect_timeout": 5,
+        "read_timeout": 20,
+        "retries": {"mode": "standard", "total_max_attempts": 3},
+    },
+}
+"""Options of s3fs. Address and credentials come from the usual variables of AWS."""
+S3_TRIES = 2
+"""Number of times that s3fs reads an answer which breaks off."""
 
 
 @dataclass(frozen=True)
@@ -25,82 +38,103 @@ class StoredFile:
 
 
 class Artifacts:
-    """A store of files by relative path."""
+    """A store of files by relative path, in a folder or at `s3://bucket/prefix`.
+
+    Raise `FileNotFoundError` for a missing file, `StoreUnavailable` if the store does not
+    answer, and other `OSError`s if a folder cannot be written to.
+    """
 
     def __init__(self, url: str):
-        self.files, self.root = fsspec.core.url_to_fs(url)
+        self.local = not url.startswith("s3://")
+        self.files, self.root = fsspec.core.url_to_fs(url, **({} if self.local else S3))
+        self.location = self.root if self.local else f"s3://{self.root}"
+        if not self.local:
+            self.files.retries = S3_TRIES
 
     def write(self, path: str, data: bytes) -> StoredFile:
-        """Write to a temporary file, then rename: after an `OSError` the old file stays.
+        """Write a file whole or not at all: after an `OSError` the earlier one stays."""
+        if self.local:
+            self._write_to_disk(self._full(path), data)
+        else:
+            with _outages():
+                self.files.pipe_file(self._full(path), data)
+        return StoredFile(path, len(data), hashlib.sha256(data).hexdigest())
 
-        On a local disk, file and folder have reached the disk when this returns.
-        """
-        target = self._full(path)
+    def read(self, path: str, start: int | None = None, stop: int | None = None) -> bytes:
+        with _outages():
+            return self.files.cat_file(self._full(path), start=start, end=stop)
+
+    def find(self, path: str) -> bytes | None:
+        """Return the content; None if the file is missing."""
+        try:
+            return self.read(path)
+        except FileNotFoundError:
+            return None
+
+    def read_verified(self, path: str, sha256: str) -> bytes | None:
+        """Return the content, or None if the file is missing or has changed."""
+        data = self.find(path)
+        intact = data is not None and hashlib.sha256(data).hexdigest() == sha256
+        return data if intact else None
+
+    def stream(self, path: str, start: int, stop: int) -> Iterator[bytes]:
+        """Return the bytes from `start` up to `stop` in pieces; read the first at once."""
+        first = self.read(path, start, min(stop, start + CHUNK)) if start < stop else b""
+
+        def pieces() -> Iterator[bytes]:
+            yield first
+            for at in range(start + CHUNK, stop, CHUNK):
+                yield self.read(path, at, min(stop, at + CHUNK))
+
+        return pieces()
+
+    def delete(self, path: str) -> None:
+        """Delete a file, or a folder if the path ends with a slash; it may be gone."""
+        with suppress(FileNotFoundError), _outages():
+            if path.endswith("/"):
+                self.files.rm(self._full(path), recursive=True)
+            else:
+                self.files.rm_file(self._full(path))
+
+    def _write_to_disk(self, target: str, data: bytes) -> None:
+        """Write beside it, then rename; return when file and folder have reached the disk."""
         temporary = f"{target}.{uuid4().hex}.part"
         self.files.makedirs(self.files._parent(target), exist_ok=True)
         try:
             with self.files.open(temporary, "wb") as file:
                 file.write(data)
                 file.flush()
-                if self.local:
-                    os.fsync(file.fileno())
-            self._rename(temporary, target)
+                os.fsync(file.fileno())
+            Path(temporary).replace(target)
         except BaseException:
             with suppress(OSError):
                 self.files.rm_file(temporary)
             raise
-        return StoredFile(path, len(data), hashlib.sha256(data).hexdigest())
-
-    def read(self, path: str) -> bytes:
-        return self.files.cat_file(self._full(path))
-
-    def read_verified(self, path: str, sha256: str) -> bytes | None:
-        """Return the content, or None if the file is missing or has changed."""
-        try:
-            data = self.read(path)
-        except FileNotFoundError:
-            return None
-        return data if hashlib.sha256(data).hexdigest() == sha256 else None
-
-    def stream(self, path: str, start: int, stop: int) -> Iterator[bytes]:
-        """Yield the bytes from `start` up to `stop` in pieces."""
-        with self.files.open(self._full(path), "rb") as file:
-            file.seek(start)
-            while start < stop and (piece := file.read(min(CHUNK, stop - start))):
-                start += len(piece)
-                yield piece
-
-    def delete(self, path: str) -> None:
-        """Delete a file, or a folder if the path ends with a slash; it may be gone."""
-        with suppress(FileNotFoundError):
-            if path.endswith("/"):
-                self.files.rm(self._full(path), recursive=True)
-            else:
-                self.files.rm_file(self._full(path))
-
-    def _rename(self, temporary: str, target: str) -> None:
-        if not self.local:
-            self.files.mv(temporary, target)
-            return
-        Path(temporary).replace(target)
         folder = os.open(Path(target).parent, os.O_RDONLY)
         try:
             os.fsync(folder)
         finally:
             os.close(folder)
 
-    @property
-    def local(self) -> bool:
-        return isinstance(self.files, LocalFileSystem)
-
     def _full(self, path: str) -> str:
         return f"{self.root}/{path}"
 
 
-def checkpoint_path(run_id: UUID, generation: int, data: bytes) -> str:
-    """Return a path with a hash of the content: two attempts never write to one file."""
+@contextmanager
+def _outages() -> Iterator[None]:
+    """Raise `StoreUnavailable` for all errors of a store but that of a missing file."""
+    try:
+        yield
+    except (FileNotFoundError, StoreUnavailable):
+        raise
+    except Exception as error:  # Libraries of S3 have errors of their own.
+        raise StoreUnavailable(f"{type(error).__name__}: {error}") from error
+
+
+def checkpoint_path(run_id: UUID, attempt: int, generation: int, data: bytes) -> str:
+    """Return a path that is used once: no two attempts ever write to one file."""
     name = hashlib.sha256(data).hexdigest()[:16]
-    return f"{run_folder(run_id)}{generation:08d}-{name}.h5"
+    return f"{run_folder(run_id)}{generation:08d}-{attempt}-{name}.h5"
 
 
 def run_folder(run_id: UUID) -> str:
@@ -109,7 +143,8 @@ def run_folder(run_id: UUID) -> str:
 
 
 def rendering_path(creature: str, kind: str) -> str:
-    return f"replays/{creature[:2]}/{creature}.{kind}"
+    """Return a path that is used once, so that deleting an earlier rendering hits no other."""
+    return f"replays/{creature[:2]}/{creature}-{uuid4().hex[:8]}.{kind}"
 
 
 def superfluous(numbers: list[int]) -> list[int]:

@@ -7,6 +7,7 @@ checkpoints there, and write new ones where nobody looks.
 from sqlalchemy import select
 
 from ..core.database import Sessions
+from ..core.errors import StoreUnavailable
 from ..tables import Artifact, InstallationId
 from .artifacts import Artifacts
 
@@ -27,11 +28,11 @@ def fault(sessions: Sessions, artifacts: Artifacts) -> str | None:
     """Return why this is not the installation's store; None if it is."""
     with sessions.read() as session:
         own = str(session.scalars(select(InstallationId.id)).one())
-    place = f"The store {artifacts.root}"
+    place = f"The store {artifacts.location}"
     try:
         found = _found(artifacts)
-    except Exception as error:  # Each kind of store has errors of its own.
-        return f"{place} cannot be read: {type(error).__name__}: {error}"
+    except StoreUnavailable as error:
+        return f"{place} cannot be read: {error}"
     if found == own:
         return None
     what = (
@@ -40,13 +41,15 @@ def fault(sessions: Sessions, artifacts: Artifacts) -> str | None:
         else f"belongs to installation {found[:36]}: see its file"
     )
     return (
-        f"{place} {what} `{MARK}`. Check MICROCOSMOS_ARTIFACTS_URL and the folder's mount; if "
-        f"this is the right store, write {own} into that file"
+        f"{place} {what} `{MARK}`. Check MICROCOSMOS_ARTIFACTS_URL and {_beside(artifacts)}; "
+        f"if this is the right store, write {own} into that file"
     )
 
 
+def _beside(artifacts: Artifacts) -> str:
+    return "the folder's mount" if artifacts.local else "AWS_ENDPOINT_URL"
+
+
 def _found(artifacts: Artifacts) -> str | None:
-    try:
-        return artifacts.read(MARK).decode(errors="replace").strip()
-    except FileNotFoundError:
-        return None
+    content = artifacts.find(MARK)
+    return None if content is None else content.decode(errors="replace").strip()

@@ -19,7 +19,10 @@ def file(
     headers: dict[str, str],
     media_type: str = "application/octet-stream",
 ) -> Response:
-    """Return an artifact, 304 if the client has it, or 206 with one range of it."""
+    """Return an artifact, 304 if the client has it, or 206 with one range of it.
+
+    Raise what `Artifacts` raises if its first piece cannot be read.
+    """
     etag = f'"{artifact.sha256}"'
     headers = {"ETag": etag, "Accept-Ranges": "bytes", **headers}
     known = [tag.strip() for tag in request.headers.get("if-none-match", "").split(",")]

@@ -1,5 +1,6 @@
 """The table of the installation itself."""
 
+from datetime import datetime
 from uuid import UUID
 
 from sqlalchemy.orm import Mapped, mapped_column
@@ -13,3 +14,5 @@ class InstallationId(Base):
     __tablename__ = "installation"
 
     id: Mapped[UUID] = mapped_column(primary_key=True)
+    keep_files_until: Mapped[datetime | None]
+    """Until then the server deletes no file: a backup is being made."""

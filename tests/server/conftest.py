@@ -14,6 +14,7 @@ import pytest
 import reports
 from databases import Missing, own_postgresql, own_redis
 from installation import Installation, empty_redis, running
+from object_store import CREDENTIALS, Proxy, own_object_store
 from queueing import alive, reason, taken, waiting  # noqa: F401  (fixtures)
 from sqlalchemy import event, func, select, update
 
@@ -44,6 +45,21 @@ def redis_url(tmp_path_factory) -> Iterator[str]:
         return
     with own_redis(tmp_path_factory.mktemp("redis")) as url:
         yield url
+
+
+@pytest.fixture(scope="session")
+def _object_store() -> Iterator[Proxy]:
+    with own_object_store() as proxy:
+        yield proxy
+
+
+@pytest.fixture
+def object_store(_object_store, monkeypatch) -> Iterator[Proxy]:
+    """An S3 server behind a proxy that can fail, in the environment as that of all stores."""
+    for name, value in (CREDENTIALS | {"AWS_ENDPOINT_URL": _object_store.url}).items():
+        monkeypatch.setenv(name, value)
+    yield _object_store
+    _object_store.failing, _object_store.failures = None, 0
 
 
 @pytest.fixture(scope="session")

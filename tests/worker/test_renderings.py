@@ -75,7 +75,8 @@ def test_films_and_pictures_are_drawn_from_the_stored_replay(
 
 def test_a_damaged_replay_is_made_again_for_a_film(services, known, asked):
     renderings.save(services, known, REPLAY, replay())
-    path = renderings.rendering_path(known, REPLAY)
+    with services.sessions.read() as session:
+        path = renderings.find(session, known, REPLAY).path
     services.artifacts.write(path, b"damaged")
     assert make(services, known, GIF).startswith(b"GIF89a")
     assert asked == [("record", known)]

@@ -107,12 +107,14 @@ def disk(report: Mapping[str, Any], dialect: str) -> Iterator[Finding]:
             yield ok("disk", found)
     if not report["writable"]:
         advice = f"let the server write to it (chown, chmod {where}), or set MICROCOSMOS_DATA"
+        if report["file_system"] == "s3":
+            advice = "check AWS_ENDPOINT_URL, the credentials, and that the bucket exists"
         yield problem("disk", f"{where} cannot be written to: {report['error']}", advice)
     elif seconds > MAX_WRITE_SECONDS:
-        found = f"writing to {where} (fsync) takes {1000 * seconds:.0f} ms"
+        found = f"writing to {where} takes {1000 * seconds:.0f} ms"
         yield warning("disk", found, "checkpoints wait for it; a local disk is faster")
     else:
-        yield ok("disk", f"writing to {where} (fsync) takes {1000 * seconds:.0f} ms")
+        yield ok("disk", f"writing to {where} takes {1000 * seconds:.0f} ms")
     if report["file_system"] in NETWORK_FILE_SYSTEMS and dialect == "sqlite":
         yield warning(
             "disk",

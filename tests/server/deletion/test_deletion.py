@@ -11,8 +11,7 @@ from microcosmos.archive import creature
 from server.attempts.claim import claim
 from server.deletion import bin, purge
 from server.maintenance.reconcile import reconcile
-from server.renderings.storage import save
-from server.storage.artifacts import rendering_path
+from server.renderings.storage import existing, save
 from server.tables import (
     GIF,
     REPLAY,
@@ -20,7 +19,6 @@ from server.tables import (
     Creature,
     Elite,
     GarbageCreature,
-    GarbageFile,
     Parent,
     Run,
 )
@@ -152,10 +150,7 @@ def test_a_purge_keeps_what_others_use(api, services, spec, report, identity, ch
     assert {name: api.get(f"creatures/{name}").json() for name in kept} == kept
     assert api.get(f"creatures/{grandparent}").status_code == 200
     assert api.get(f"creatures/{alone}").status_code == 404
-    left = files(services)
-    assert rendering_path(shared, REPLAY) in left
-    assert rendering_path(parent, REPLAY) in left
-    assert rendering_path(alone, REPLAY) not in left
+    assert drawn(services) == {shared, parent}
     delete_for_good(api, services, other)
     assert [name for name in kept if api.get(f"creatures/{name}").status_code == 200] == [
         brought
@@ -197,14 +192,20 @@ def test_a_file_that_cannot_be_removed_is_removed_later(
     assert row_counts(services)["garbage_files"] == 0
 
 
-def test_a_rendering_that_was_made_again_stays(services, run_id, report, identity):
+def drawn(services):
+    """The creatures of the files that are renderings."""
+    names = (Path(file).name for file in files(services) if file.startswith("replays/"))
+    return {name.partition("-")[0] for name in names}
+
+
+def test_a_rendering_that_was_made_again_replaces_the_file(services, run_id, report, identity):
     finish(services, run_id, report(1, {0: 1.0}), files=False)
     name = creature.name(identity(1000))
     save(services, name, GIF, b"a film")
-    with services.sessions.write.begin() as session:
-        session.add(GarbageFile(path=rendering_path(name, GIF)))
+    save(services, name, GIF, b"a film")
     reconcile(services)
-    assert files(services) == [rendering_path(name, GIF)]
+    (kept,) = files(services)
+    assert services.artifacts.read(kept) == existing(services, name, GIF) == b"a film"
     assert row_counts(services)["garbage_files"] == 0
 
 

@@ -4,6 +4,7 @@ import shutil
 
 import httpx
 import pytest
+from object_store import new_prefix
 
 from server.storage import space
 
@@ -66,3 +67,14 @@ def test_the_free_bytes_of_each_disk_are_a_metric(services, address):
         assert holds in ('{holds="store"}', '{holds="database"}')
     free = shutil.disk_usage(services.settings.data).free
     assert float(found['{holds="store"}']) == pytest.approx(free, rel=0.2)
+
+
+@pytest.mark.postgresql
+def test_an_object_store_has_no_disk(object_store, serve, database):
+    with serve(artifacts_url=new_prefix()) as address:
+        ready = httpx.get(f"{address}/readyz").json()
+        assert ready["store"] == "ok", "the first start marks it"
+        assert ready["disk"] == ("none" if database == "postgresql" else "ok")
+        found = httpx.get(f"{address}/api/v1/health").json()["disk"]
+    assert (found["writable"], found["free_bytes"], found["file_system"]) == (True, None, "s3")
+    assert found["location"].startswith("s3://")

@@ -2232,7 +2232,7 @@ export interface components {
              * Disk
              * @enum {string}
              */
-            disk: "ok" | "almost full" | "full";
+            disk: "ok" | "almost full" | "full" | "none";
             /**
              * Redis
              * @enum {string}

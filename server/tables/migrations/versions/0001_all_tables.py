@@ -47,7 +47,11 @@ def upgrade() -> None:
 
 
 def _installation() -> None:
-    table = op.create_table("installation", sa.Column("id", sa.Uuid(), primary_key=True))
+    table = op.create_table(
+        "installation",
+        sa.Column("id", sa.Uuid(), primary_key=True),
+        sa.Column("keep_files_until", MOMENT),
+    )
     op.bulk_insert(table, [{"id": uuid4()}])
 
 
