@@ -116,7 +116,7 @@ def broken(
 
 TEXT = (Path(__file__).parents[2] / "docs" / "operation.md").read_text()
 ELSEWHERE = {"database_url", "redis_url", "artifacts_url", "token", "max_bytes", "data"}
-ELSEWHERE |= {"public_url", "modules", "labels"}
+ELSEWHERE |= {"public_url", "modules", "labels", "cluster", "cluster_certificate"}
 """Settings whose defaults are described in words."""
 
 
