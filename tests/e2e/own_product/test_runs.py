@@ -37,7 +37,8 @@ def rows(page: Page):
 
 
 def row(page: Page, run: str):
-    return rows(page).filter(has_text=run)
+    # Other rows may name the run too, such as one that waits for it.
+    return rows(page).filter(has=page.get_by_role("rowheader").filter(has_text=run))
 
 
 def rename_by_mouse(page: Page, run: str) -> None:
