@@ -30,7 +30,8 @@ def configured() -> Any:
     """Return Dask's `distributed`, configured."""
     distributed = require("distributed", PACKAGE)
     require("dask", PACKAGE).config.set(CONFIGURATION)
-    logging.getLogger("distributed").setLevel(logging.WARNING)
+    # It logs a page for each connection that is lost, which we expect and say in a line.
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
     return distributed
 
 

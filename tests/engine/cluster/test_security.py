@@ -40,7 +40,7 @@ def test_this_machine_needs_no_certificate(host):
 
 
 def test_a_certificate_that_is_missing_or_not_needed_is_named(tmp_path, certificate):
-    with pytest.raises(ValueError, match="must be a file, got .*absent"):
+    with pytest.raises(ValueError, match=r"must be a file, got .*absent"):
         security("tls://head:8786", tmp_path / "absent")
     with pytest.raises(ValueError, match="a certificate needs tls://"):
         security("tcp://127.0.0.1:8786", certificate)
