@@ -18,6 +18,7 @@ from .auth.authorize import MAY_READ, PUBLIC, SHARE_HEADER
 from .auth.middleware import PrincipalMiddleware
 from .auth.tokens import watch
 from .core import api, errors, static_files
+from .core.answers import AnswerCache
 from .core.processes import on_stop_signal
 from .core.request_id import RequestId
 from .core.security_headers import SecurityHeaders, redact_request_log
@@ -50,6 +51,9 @@ ROUTES = (
     *(shares, events, workers, queue, tokens, health),
 )
 
+KEPT_ARCHIVES, KEPT_NETWORKS = 64 << 20, 16 << 20
+"""Bytes of answers that a process keeps."""
+
 log = logging.getLogger(__name__)
 
 
@@ -71,6 +75,8 @@ def create_app(services: Services) -> FastAPI:
     app.state.services = services
     app.state.authenticator = Authenticator(services)
     app.state.metrics = Metrics(services)
+    app.state.archive_answers = AnswerCache(KEPT_ARCHIVES)
+    app.state.network_answers = AnswerCache(KEPT_NETWORKS)
     errors.install(app)
     redact_request_log()
     api.describe(app)
@@ -126,4 +132,6 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         task.cancel()
     await asyncio.gather(*tasks, return_exceptions=True)
     await fanout.redis.aclose()
+    app.state.archive_answers.close()
+    app.state.network_answers.close()
     services.close()

@@ -15,7 +15,7 @@ from .artifacts import (
 )
 from .base import Base, Expiring, Owned, Sha256
 from .creatures import Creature, GarbageCreature, InitialCreature, Parent
-from .installation import InstallationId
+from .installation import InstallationState
 from .results import CORRECTED, Elite, Generation, Result
 from .runs import (
     CANCELLED,

@@ -86,6 +86,8 @@ class Run(Owned, Base):
     """The last recorded one."""
     checkpoint_generation: Mapped[int] = mapped_column(default=0)
     """The generation of the last checkpoint; 0 without a checkpoint."""
+    rewinds: Mapped[int] = mapped_column(default=0)
+    """Counts returns to a checkpoint: an archive as of a generation may differ after each."""
     evaluations: Mapped[int] = mapped_column(BigInteger, default=0)
     infeasible: Mapped[int] = mapped_column(BigInteger, default=0)
     seconds: Mapped[float] = mapped_column(default=0.0)

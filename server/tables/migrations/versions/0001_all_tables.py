@@ -50,9 +50,10 @@ def _installation() -> None:
     table = op.create_table(
         "installation",
         sa.Column("id", sa.Uuid(), primary_key=True),
-        sa.Column("keep_files_until", MOMENT),
+        sa.Column("verdicts", sa.Integer(), nullable=False),
+        *_optional(MOMENT, "reconciled_at", "keep_files_until"),
     )
-    op.bulk_insert(table, [{"id": uuid4()}])
+    op.bulk_insert(table, [{"id": uuid4(), "verdicts": 0}])
 
 
 def _creatures() -> None:
@@ -127,6 +128,7 @@ def _runs() -> None:
         *_required(MOMENT, "created_at", "queued_at"),
         *_required(sa.Integer(), "attempt", "attempts_without_checkpoint"),
         *_required(sa.Integer(), "generations", "generation", "checkpoint_generation"),
+        sa.Column("rewinds", sa.Integer(), nullable=False),
         *_optional(sa.String(length=255), "worker", "avoided_worker"),
         *_required(sa.BigInteger(), "evaluations", "infeasible"),
         sa.Column("seconds", sa.Double(), nullable=False),
