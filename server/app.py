@@ -5,6 +5,8 @@ import logging
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import partial
+from multiprocessing import parent_process
+from signal import SIGTERM
 
 from fastapi import APIRouter, FastAPI
 
@@ -17,8 +19,9 @@ from .auth.authenticate import Authenticator
 from .auth.authorize import MAY_READ, PUBLIC, SHARE_HEADER
 from .auth.middleware import PrincipalMiddleware
 from .auth.tokens import watch
-from .core import api, errors, static_files
-from .core.processes import on_stop_signal
+from .core import api, errors, logs, static_files
+from .core.answers import AnswerCache
+from .core.processes import die_with_parent, on_stop_signal
 from .core.request_id import RequestId
 from .core.security_headers import SecurityHeaders, redact_request_log
 from .creatures import routes as creatures
@@ -50,12 +53,22 @@ ROUTES = (
     *(shares, events, workers, queue, tokens, health),
 )
 
+KEPT_ARCHIVES, KEPT_NETWORKS = 64 << 20, 16 << 20
+"""Bytes of answers that a process keeps."""
+
 log = logging.getLogger(__name__)
 
 
 def create() -> FastAPI:
-    """Return the application for uvicorn, with the settings of the environment."""
-    return create_app(connect(Settings()))
+    """Return the application for uvicorn, with the settings of the environment.
+
+    One of several processes ends with the one that started it.
+    """
+    settings = Settings()
+    if parent := parent_process():
+        die_with_parent(parent.pid or 0, SIGTERM)
+        logs.set_up(settings)
+    return create_app(connect(settings))
 
 
 def create_app(services: Services) -> FastAPI:
@@ -71,6 +84,8 @@ def create_app(services: Services) -> FastAPI:
     app.state.services = services
     app.state.authenticator = Authenticator(services)
     app.state.metrics = Metrics(services)
+    app.state.archive_answers = AnswerCache(KEPT_ARCHIVES)
+    app.state.network_answers = AnswerCache(KEPT_NETWORKS)
     errors.install(app)
     redact_request_log()
     api.describe(app)
@@ -126,4 +141,6 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         task.cancel()
     await asyncio.gather(*tasks, return_exceptions=True)
     await fanout.redis.aclose()
+    app.state.archive_answers.close()
+    app.state.network_answers.close()
     services.close()

@@ -1,16 +1,21 @@
-"""`python -m server.main`: start the server alone."""
+"""`python -m server.main`: start the server alone, in one process or several."""
 
+import os
 import sys
+import tempfile
 
 import uvicorn
 
 from .auth import bootstrap
 from .core import logs
+from .core.processes import SHARED_METRICS
 from .services.services import connect
 from .settings import Settings, create_private
 from .tables import migrations
 
 SHUTDOWN_SECONDS = 5
+SILENT_SECONDS = 30
+"""Seconds after which one of several processes that does not answer is replaced."""
 
 
 def main() -> None:
@@ -27,13 +32,23 @@ def main() -> None:
             sys.exit(str(error))
         finally:
             services.close()
+    with tempfile.TemporaryDirectory(prefix="microcosmos-metrics-") as counted:
+        if settings.servers > 1:
+            os.environ[SHARED_METRICS] = counted
+        serve(settings)
+
+
+def serve(settings: Settings) -> None:
+    """Serve until a signal; several processes share the port, and dead ones are replaced."""
     uvicorn.run(
         "server.app:create",
         factory=True,
         host=settings.host,
         port=settings.port,
+        workers=settings.servers,
         timeout_graceful_shutdown=SHUTDOWN_SECONDS,
         log_config=None,
+        timeout_worker_healthcheck=SILENT_SECONDS,
     )
 
 

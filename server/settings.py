@@ -12,7 +12,7 @@ MIN_TOKEN_LENGTH = 16
 
 
 class Settings(BaseSettings):
-    """Read from `MICROCOSMOS_*`; the port also from `PORT`, the workers from `WORKERS`."""
+    """Read from `MICROCOSMOS_*`; some also from `PORT`, `WORKERS` and `SERVERS`."""
 
     model_config = SettingsConfigDict(
         env_prefix="MICROCOSMOS_", populate_by_name=True, extra="ignore"
@@ -45,6 +45,10 @@ class Settings(BaseSettings):
         default=1, ge=0, le=256, validation_alias=AliasChoices("WORKERS", "MICROCOSMOS_WORKERS")
     )
     """Number of workers that `make run` starts."""
+    servers: int = Field(
+        default=1, ge=1, le=64, validation_alias=AliasChoices("SERVERS", "MICROCOSMOS_SERVERS")
+    )
+    """Number of processes that answer requests, all at one port."""
     modules: str = ""
     """Python files with plug-ins, separated by colons. Only workers read them. Installed
     packages with entry points `microcosmos.plugins` need not be named."""

@@ -106,6 +106,7 @@ def rewind(session: Session, run: Run) -> bool:
     summaries = (Generation.run_id == run.id) & Generation.summary.is_not(None)
     newest = select(Generation.summary).where(summaries).order_by(Generation.generation.desc())
     run.summary = session.scalars(newest.limit(1)).one_or_none()
+    run.rewinds += 1
     for name, value in corrected_at(session, run.id, last).items():
         setattr(run, name, value)
     return True

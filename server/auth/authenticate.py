@@ -23,10 +23,14 @@ ADDRESSES = 4096
 
 
 class RateLimit:
-    """Remembers when each address may send the next wrong token."""
+    """Remembers when each address may send the next wrong token.
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic):
+    Each of several processes allows its part of the rate, so that all allow no more than one.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic, processes: int = 1):
         self._clock, self._lock = clock, Lock()
+        self._burst, self._interval = max(1, BURST // processes), INTERVAL * processes
         self._charged_until = OrderedDict[str, float]()
 
     def add(self, address: str) -> int:
@@ -35,9 +39,10 @@ class RateLimit:
         with self._lock:
             now = self._clock()
             charged = max(now, self._charged_until.pop(network, now))
-            wait = max(0, ceil(charged + INTERVAL - now - BURST * INTERVAL))
+            allowed = self._burst * self._interval
+            wait = max(0, ceil(charged + self._interval - now - allowed))
             # A refused attempt does not make the wait longer.
-            self._charged_until[network] = charged if wait else charged + INTERVAL
+            self._charged_until[network] = charged if wait else charged + self._interval
             if len(self._charged_until) > ADDRESSES:
                 self._charged_until.popitem(last=False)
         return wait
@@ -61,7 +66,8 @@ class Authenticator:
     """Identifies principals. The rate limit never delays a valid token."""
 
     def __init__(self, services: Services):
-        self.services, self.limit = services, RateLimit()
+        self.services = services
+        self.limit = RateLimit(processes=services.settings.servers)
 
     def identify(self, token: str | None) -> Principal:
         """Return the principal; raise `ProblemError` where a token is needed or not valid."""

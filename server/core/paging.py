@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field, FiniteFloat, StringConstraints, TypeAdapter
 from pydantic_core import to_json
-from sqlalchemy import ColumnElement, Select, and_, or_
+from sqlalchemy import ColumnElement, Select, literal, tuple_
 from sqlalchemy.orm import Session
 
 from .errors import invalid_field
@@ -23,7 +23,8 @@ NUMBER = FiniteFloat
 class Order:
     """An order of rows by a key, then by id; rows without a key come last.
 
-    `name` identifies the order in cursors; with a minus it is descending.
+    An index of key and id serves it in both directions. `name` identifies the order in cursors;
+    with a minus it is descending.
     """
 
     name: str
@@ -36,18 +37,34 @@ class Order:
         self, session: Session, statement: Select[Any], cursor: str | None, limit: int
     ) -> tuple[list[Any], str | None]:
         """Return the rows after a cursor, and the cursor of the next page, if there is one."""
-        listed = statement.add_columns(self.key)
-        if cursor:
-            listed = listed.where(self._after(*self._position(cursor)))
-        descending = self.name.startswith("-")
-        columns = [column.desc() if descending else column for column in (self.key, self.id)]
-        listed = listed.order_by(self.key.is_(None), *columns).limit(limit + 1)
-        rows = session.execute(listed).all()
+        after = self._position(cursor) if cursor else None
+        rows: list[Any] = []
+        if after is None or after[0] is not None:
+            beyond = [] if after is None else [self._beyond(*after)]
+            rows += self._read(session, statement, limit + 1, self.key.is_not(None), *beyond)
+        if len(rows) <= limit:
+            later = after and after[0] is None
+            beyond = [self._beyond_id(after[1])] if after and later else []
+            left = limit + 1 - len(rows)
+            rows += self._read(session, statement, left, self.key.is_(None), *beyond)
         items = [row for row, _ in rows[:limit]]
         if len(rows) <= limit:
             return items, None
         last = [self.name, rows[limit - 1][1], getattr(items[-1], self.id.key)]
         return items, urlsafe_b64encode(to_json(last)).decode()
+
+    @property
+    def _descending(self) -> bool:
+        return self.name.startswith("-")
+
+    def _read(
+        self, session: Session, statement: Select[Any], limit: int, *where: ColumnElement[bool]
+    ) -> list[Any]:
+        """Return rows that all have a key, or all have none."""
+        columns = (self.key, self.id)
+        order = [one.desc() for one in columns] if self._descending else columns
+        listed = statement.add_columns(self.key).where(*where).order_by(*order).limit(limit)
+        return list(session.execute(listed))
 
     def _position(self, cursor: str) -> tuple[Any, Any]:
         kind = TypeAdapter(tuple[str, self.key_type | None, self.id_type])  # pyright: ignore
@@ -60,10 +77,11 @@ class Order:
             raise invalid_field("cursor", needed, cursor) from None
         return key, identity
 
-    def _after(self, key: Any, identity: Any) -> ColumnElement[bool]:
-        descending = self.name.startswith("-")
-        later = self.id < identity if descending else self.id > identity
-        if key is None:
-            return and_(self.key.is_(None), later)
-        beyond = self.key < key if descending else self.key > key
-        return or_(beyond, and_(self.key == key, later), self.key.is_(None))
+    def _beyond(self, key: Any, identity: Any) -> ColumnElement[bool]:
+        """Return the condition for rows after one with a key."""
+        place = tuple_(self.key, self.id)
+        given = tuple_(literal(key, self.key.type), literal(identity, self.id.type))
+        return place < given if self._descending else place > given
+
+    def _beyond_id(self, identity: Any) -> ColumnElement[bool]:
+        return self.id < identity if self._descending else self.id > identity

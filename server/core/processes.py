@@ -12,6 +12,8 @@ from threading import current_thread, main_thread
 from types import FrameType
 
 PR_SET_PDEATHSIG = 1
+SHARED_METRICS = "PROMETHEUS_MULTIPROC_DIR"
+"""The variable that names a folder in which several processes count together."""
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 _libc = ctypes.CDLL(None, use_errno=True)
 

@@ -1,6 +1,7 @@
 """Routes of creatures: read, import, relatives, and the network in several forms."""
 
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
+from functools import partial
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Query, Request
@@ -9,9 +10,11 @@ from fastapi.responses import JSONResponse, Response
 
 from microcosmos.archive import creature, creature_h5
 from microcosmos.spec.creature import PlanDrawing
+from microcosmos.version import VERSION
 from microcosmos.viz.networks import NetworkPositions
 
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE, ShareAccessDep
+from ..core.answers import respond, tag_of
 from ..core.api import Answers, sends
 from ..core.json_body import read_body
 from ..core.schemas import Wire
@@ -136,16 +139,19 @@ def read_plan(identity: IdentityDep, response: Response) -> PlanDrawing:
     return plans.drawing(identity)
 
 
-def _network_reader(form: str, media_type: str, description: str) -> Callable[..., Response]:
-    def read(sha: Sha, identity: IdentityDep) -> Response:
+def _network_reader(
+    form: str, media_type: str, description: str
+) -> Callable[..., Awaitable[Response]]:
+    async def read(request: Request, sha: Sha, identity: IdentityDep) -> Response:
         name = f"network-{sha[:12]}.{form}"
         headers = {
             **IMMUTABLE,
             "Content-Disposition": f'inline; filename="{name}"',
             "Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'",
         }
-        data = sandbox().network(identity, form)
-        return Response(data, headers=headers, media_type=media_type)
+        kept, tag = request.app.state.network_answers, tag_of(VERSION, sha, form)
+        make = partial(sandbox().network, identity, form)
+        return await respond(request, kept, tag, make, media_type, headers)
 
     read.__name__ = f"read_network_{form}"
     read.__doc__ = f"Return the network as {description}."

@@ -25,7 +25,7 @@ from ..services.services import Services
 from ..settings import create_private
 from ..storage.artifacts import Artifacts, StoredFile
 from ..storage.mark import MARK
-from ..tables import QUEUED, RUNNING, InstallationId, Run, Worker, migrations
+from ..tables import QUEUED, RUNNING, InstallationState, Run, Worker, migrations
 from . import dump
 
 MANIFEST, FILES = "manifest.json", "artifacts"
@@ -66,7 +66,7 @@ def make(services: Services, folder: Path) -> tuple[Backup, list[str]]:
             fault = _copy(file, services.artifacts, copies)
             faults.append(fault) if fault else copied.append(asdict(file))
         with services.sessions.read() as session:
-            own = str(session.scalars(select(InstallationId.id)).one())
+            own = str(session.scalars(select(InstallationState.id)).one())
         made_at = datetime.now(UTC).isoformat(timespec="seconds")
         digest = _digest(folder / name)
         made = Backup(VERSION, made_at, own, engine.dialect.name, name, digest, copied)
@@ -170,7 +170,7 @@ def _no_deletion(services: Services) -> Iterator[Any]:
 def _hold(services: Services, seconds: float) -> None:
     with services.sessions.write.begin() as session:
         until = now(session) + timedelta(seconds=seconds)
-        session.execute(update(InstallationId).values(keep_files_until=until))
+        session.execute(update(InstallationState).values(keep_files_until=until))
 
 
 def _return_runs(services: Services) -> None:
@@ -180,4 +180,4 @@ def _return_runs(services: Services) -> None:
         for run_id in session.scalars(taken).all():
             _ = stop_attempt(session, run_id) or release(session, run_id)
         session.execute(delete(Worker))
-        session.execute(update(InstallationId).values(keep_files_until=None))
+        session.execute(update(InstallationState).values(keep_files_until=None))

@@ -1,5 +1,6 @@
 """Metrics for Prometheus: runs, queues, workers and requests, without names or ids."""
 
+import os
 import time
 from collections import Counter as Tally
 from collections.abc import Iterable, Iterator
@@ -14,6 +15,7 @@ from prometheus_client import (
 )
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, InfoMetricFamily
 from prometheus_client.metrics_core import Metric
+from prometheus_client.multiprocess import MultiProcessCollector
 from prometheus_client.registry import Collector
 from redis import RedisError
 from sqlalchemy import func, select
@@ -22,6 +24,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from microcosmos.version import VERSION
 
+from ..core.processes import SHARED_METRICS
 from ..services.services import Services
 from ..storage import space
 from ..tables import RUNNING, STATUSES, Run
@@ -35,20 +38,26 @@ disable_created_metrics()
 
 
 class Metrics(Collector):
-    """Requests of this process since it started, and the state of database and queues."""
+    """Requests since the server started, and the state of database and queues.
+
+    The processes of one server count requests together, in files.
+    """
 
     def __init__(self, services: Services):
         self.services, self.registry = services, CollectorRegistry()
-        self.registry.register(self)
+        counted = CollectorRegistry()
+        shared = SHARED_METRICS in os.environ
+        for one in (self, MultiProcessCollector(None) if shared else counted):
+            self.registry.register(one)  # pyright: ignore
         labels = ("method", "route", "status")
         self.requests = Counter(
-            "microcosmos_requests", "Answered requests.", labels, registry=self.registry
+            "microcosmos_requests", "Answered requests.", labels, registry=counted
         )
         self.seconds = Histogram(
             "microcosmos_request_seconds",
             "Seconds from a request to the start of its answer.",
             buckets=BUCKETS,
-            registry=self.registry,
+            registry=counted,
         )
 
     def count(self, method: str, route: str, status: int, seconds: float) -> None:

@@ -1,6 +1,6 @@
 """The reconciler: repair runs that lack their worker, and delete expired rows.
 
-The server runs it every few seconds.
+A server runs it every few seconds; several servers take turns.
 """
 
 import logging
@@ -10,41 +10,48 @@ from contextlib import contextmanager
 from threading import Event, Thread
 
 from redis import RedisError
-from sqlalchemy import delete, select
+from sqlalchemy import delete, or_, select, update
 from sqlalchemy.exc import SQLAlchemyError
 
 from ..attempts import leases
 from ..attempts.preemption import make_room
-from ..core.database import ago
+from ..core.database import ago, clock
 from ..deletion.purge import purge
 from ..deletion.retention import expire
 from ..runs.announce import announce
 from ..runs.lifecycle import end_attempt, fail_attempt, release
 from ..runs.log import note
 from ..services.services import Services
-from ..tables import CANCELLED, QUEUED, RUNNING, Run, Sweep, Worker
+from ..tables import CANCELLED, QUEUED, RUNNING, InstallationState, Run, Sweep, Worker
 
 SILENT_SECONDS = 3600.0
 """Seconds of silence after which a worker is deleted."""
 EXPIRE_SECONDS = 3600.0
 """Seconds between two searches for what the settings no longer keep."""
 
+TURN = 0.9
+"""Part of the interval after which the next pass may begin."""
+
 log = logging.getLogger(__name__)
 
 
 @contextmanager
 def reconciling(services: Services) -> Iterator[None]:
-    """Reconcile now and every few seconds, in a thread, until the end of the block."""
+    """Reconcile every few seconds, in a thread, until the end of the block.
+
+    Servers over one database take turns: one pass an interval is enough for all.
+    """
     ended = Event()
 
     def repeat() -> None:
         expire_at = 0.0
         while True:
             try:
-                reconcile(services)
-                if time.monotonic() >= expire_at:
-                    expire(services)
-                    expire_at = time.monotonic() + EXPIRE_SECONDS
+                if take_turn(services):
+                    reconcile(services)
+                    if time.monotonic() >= expire_at:
+                        expire(services)
+                        expire_at = time.monotonic() + EXPIRE_SECONDS
             except (RedisError, SQLAlchemyError) as error:
                 log.warning("will reconcile again: %s", error)
             except Exception:  # Without this thread nothing would requeue lost runs.
@@ -59,6 +66,16 @@ def reconciling(services: Services) -> Iterator[None]:
     finally:
         ended.set()
         thread.join()
+
+
+def take_turn(services: Services) -> bool:
+    """Return True unless another server began a pass within the interval."""
+    with services.sessions.write.begin() as session:
+        last = InstallationState.reconciled_at
+        begun = ago(session, TURN * services.settings.reconcile_interval)
+        due = update(InstallationState).where(or_(last.is_(None), last <= begun))
+        taken = session.execute(due.values(reconciled_at=clock()).returning(last))
+        return taken.one_or_none() is not None
 
 
 def reconcile(services: Services) -> None:

@@ -47,7 +47,8 @@ def read_health(services: ServicesDep) -> health_report.HealthReport:
 
 
 @outside.get("/healthz", dependencies=[PUBLIC])
-def alive() -> Health:
+async def alive() -> Health:
+    """Answer without a thread: all may be waiting for something else."""
     return Health(help=static_files.DOCUMENTATION.is_dir())
 
 

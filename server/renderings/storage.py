@@ -18,7 +18,17 @@ from ..queue.jobs import FAILURE_SECONDS
 from ..services.services import Services
 from ..storage.artifacts import rendering_path
 from ..storage.garbage import discard
-from ..tables import AUDIT, GIF, MP4, PREVIEW, REPLAY, STRIP, Artifact, Creature
+from ..tables import (
+    AUDIT,
+    GIF,
+    MP4,
+    PREVIEW,
+    REPLAY,
+    STRIP,
+    Artifact,
+    Creature,
+    InstallationState,
+)
 
 ENGINE_ERROR = re.compile(r"^[\w.]*(?:CreatureError|Missing|Broken): ")
 """Prefix to remove from the engine's own errors; others keep their class name."""
@@ -113,6 +123,8 @@ def _delete(session: Session, creature: str, kind: str, trusted: bool | None = N
     if kind == AUDIT:
         audited = update(Creature).where(Creature.sha256 == creature)
         session.execute(audited.values(trusted=trusted))
+        counted = update(InstallationState)
+        session.execute(counted.values(verdicts=InstallationState.verdicts + 1))
 
 
 def existing(services: Services, creature: str, kind: str) -> bytes | None:

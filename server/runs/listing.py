@@ -6,13 +6,13 @@ from typing import Annotated, Any, Literal
 from uuid import UUID
 
 from pydantic import Field
-from sqlalchemy import ColumnElement, Double, Row, Select, case, cast, func, or_, select, true
+from sqlalchemy import ColumnElement, Row, Select, func, or_, select, true
 from sqlalchemy.ext.compiler import compiles
 from sqlalchemy.orm import Session
 from sqlalchemy.sql.functions import GenericFunction
 
 from ..core.paging import COUNT, MOMENT, NUMBER, TEXT, Order
-from ..tables import FINISHED, STATUSES, Run
+from ..tables import PROGRESS, STATUS_PLACE, STATUSES, Run
 from .lifecycle import NOT_IN_BIN
 
 Sort = Literal[
@@ -28,16 +28,8 @@ KEYS: dict[str, tuple[ColumnElement[Any], Any]] = {
     "finished": (Run.finished_at.expression, MOMENT),
     "name": (func.lower(Run.name), TEXT),
     "experiment": (Run.experiment.expression, TEXT),
-    "status": (
-        case({name: place for place, name in enumerate(STATUSES)}, value=Run.status),
-        Annotated[int, Field(ge=0, lt=len(STATUSES))],
-    ),
-    "progress": (
-        case(
-            (Run.status == FINISHED, 1.0), else_=cast(Run.generation, Double) / Run.generations
-        ),
-        NUMBER,
-    ),
+    "status": (STATUS_PLACE, Annotated[int, Field(ge=0, lt=len(STATUSES))]),
+    "progress": (PROGRESS, NUMBER),
     "evaluations": (Run.evaluations.expression, COUNT),
     "qd_score": (Run.qd_score.expression, NUMBER),
     "coverage": (Run.coverage.expression, NUMBER),

@@ -71,7 +71,8 @@ class LiveShare:
             raise ProblemError(404, "Not found", f"This share holds no run of the id {run_id}.")
         run = session.get_one(Run, run_id)
         last = session.get(Generation, (run_id, share.generation))
-        copied = ("id", "experiment", "spec", "version", "created_at", "device", "generations")
+        copied = ("id", "experiment", "spec", "version", "created_at", "device")
+        copied = (*copied, "generations", "rewinds")
         figures = ("qd_score", "coverage", "best", "evaluations", "infeasible", "seconds")
         return Run(
             demonstration=False,

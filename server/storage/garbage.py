@@ -10,7 +10,7 @@ from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
 from ..core.database import Sessions, clock, insert_missing
-from ..tables import GarbageFile, InstallationId
+from ..tables import GarbageFile, InstallationState
 from .artifacts import Artifacts
 
 FILES_PER_STEP = 500
@@ -26,7 +26,7 @@ def discard(session: Session, paths: Sequence[str]) -> None:
 def remove_files(sessions: Sessions, artifacts: Artifacts) -> bool:
     """Delete a few marked files; return False if none were deleted."""
     with sessions.read() as session:
-        kept = select(InstallationId.id).where(InstallationId.keep_files_until > clock())
+        kept = select(InstallationState.id).where(InstallationState.keep_files_until > clock())
         if session.scalars(kept).one_or_none():
             return False
         paths = list(session.scalars(select(GarbageFile.path).limit(FILES_PER_STEP)))

@@ -8,7 +8,7 @@ from sqlalchemy import select
 
 from ..core.database import Sessions
 from ..core.errors import StoreUnavailable
-from ..tables import Artifact, InstallationId
+from ..tables import Artifact, InstallationState
 from .artifacts import Artifacts
 
 MARK = "installation"
@@ -18,7 +18,7 @@ MARK = "installation"
 def leave(sessions: Sessions, artifacts: Artifacts) -> None:
     """Mark a store in which nothing is recorded yet; the server does it when it starts."""
     with sessions.read() as session:
-        own = session.scalars(select(InstallationId.id)).one()
+        own = session.scalars(select(InstallationState.id)).one()
         used = session.scalars(select(Artifact.path).limit(1)).one_or_none()
     if used is None and _found(artifacts) is None:
         artifacts.write(MARK, str(own).encode())
@@ -27,7 +27,7 @@ def leave(sessions: Sessions, artifacts: Artifacts) -> None:
 def fault(sessions: Sessions, artifacts: Artifacts) -> str | None:
     """Return why this is not the installation's store; None if it is."""
     with sessions.read() as session:
-        own = str(session.scalars(select(InstallationId.id)).one())
+        own = str(session.scalars(select(InstallationState.id)).one())
     place = f"The store {artifacts.location}"
     try:
         found = _found(artifacts)

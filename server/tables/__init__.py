@@ -15,7 +15,7 @@ from .artifacts import (
 )
 from .base import Base, Expiring, Owned, Sha256
 from .creatures import Creature, GarbageCreature, InitialCreature, Parent
-from .installation import InstallationId
+from .installation import InstallationState
 from .results import CORRECTED, Elite, Generation, Result
 from .runs import (
     CANCELLED,
@@ -26,8 +26,10 @@ from .runs import (
     NORMAL,
     PAUSED,
     PRIORITIES,
+    PROGRESS,
     QUEUED,
     RUNNING,
+    STATUS_PLACE,
     STATUSES,
     TERMINAL,
     URGENT,

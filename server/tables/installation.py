@@ -8,11 +8,16 @@ from sqlalchemy.orm import Mapped, mapped_column
 from .base import Base
 
 
-class InstallationId(Base):
-    """The one row that names this database and its store; the migration inserts it."""
+class InstallationState(Base):
+    """The one row of the installation; the migration inserts it."""
 
     __tablename__ = "installation"
 
     id: Mapped[UUID] = mapped_column(primary_key=True)
+    """Names this database and its store."""
+    verdicts: Mapped[int] = mapped_column(default=0)
+    """Counts changes of the verdicts of audits, which archives show."""
+    reconciled_at: Mapped[datetime | None]
+    """When a server last began the periodic work; another one waits for its turn."""
     keep_files_until: Mapped[datetime | None]
     """Until then the server deletes no file: a backup is being made."""

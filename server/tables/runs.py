@@ -4,7 +4,19 @@ from datetime import datetime
 from typing import Any, Literal
 from uuid import UUID, uuid4
 
-from sqlalchemy import JSON, BigInteger, CheckConstraint, ForeignKey, Index, String, Text
+from sqlalchemy import (
+    JSON,
+    BigInteger,
+    CheckConstraint,
+    Double,
+    ForeignKey,
+    Index,
+    Integer,
+    String,
+    Text,
+    literal_column,
+    text,
+)
 from sqlalchemy.orm import Mapped, mapped_column
 
 from ..core.database import clock
@@ -20,6 +32,21 @@ Priority = Literal["low", "normal", "high", "urgent"]
 """`urgent` goes before the runs of all owners, the others order the runs of one owner."""
 
 
+SORTED = (
+    *("created_at", "started_at", "finished_at", "experiment"),
+    *("evaluations", "qd_score", "coverage", "best"),
+)
+"""Columns by which the list of runs is ordered, besides the name and the next two."""
+# Without parameters, since an index serves only the expression that it has.
+_PLACES = " ".join(f"WHEN '{status}' THEN {place}" for place, status in enumerate(STATUSES))
+STATUS_PLACE = literal_column(f"CASE status {_PLACES} END", Integer)
+PROGRESS = literal_column(
+    f"CASE WHEN status = '{FINISHED}' THEN 1.0 "
+    "ELSE CAST(generation AS DOUBLE PRECISION) / generations END",
+    Double,
+)
+
+
 class Run(Owned, Base):
     """The execution of a spec, with its authoritative state."""
 
@@ -30,7 +57,10 @@ class Run(Owned, Base):
             f"requested_state IN {(PAUSED, CANCELLED, QUEUED)}", name="requested_state"
         ),
         CheckConstraint(f"priority IN {PRIORITIES}", name="priority"),
-        Index(None, "created_at", "id"),
+        *(Index(None, name, "id") for name in SORTED),
+        Index("ix_runs_name_id", text("(lower(name))"), "id"),
+        Index("ix_runs_status_id", text(f"({STATUS_PLACE})"), "id"),
+        Index("ix_runs_progress_id", text(f"({PROGRESS})"), "id"),
         Index(None, "status", "heartbeat_at"),
         Index(None, "sweep", "sweep_index"),
         Index(None, "purge_at"),
@@ -86,6 +116,8 @@ class Run(Owned, Base):
     """The last recorded one."""
     checkpoint_generation: Mapped[int] = mapped_column(default=0)
     """The generation of the last checkpoint; 0 without a checkpoint."""
+    rewinds: Mapped[int] = mapped_column(default=0)
+    """Counts returns to a checkpoint: an archive as of a generation may differ after each."""
     evaluations: Mapped[int] = mapped_column(BigInteger, default=0)
     infeasible: Mapped[int] = mapped_column(BigInteger, default=0)
     seconds: Mapped[float] = mapped_column(default=0.0)

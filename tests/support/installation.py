@@ -13,7 +13,7 @@ from server.app import create_app
 from server.services.services import Services, connect
 from server.settings import Settings
 from server.storage import mark
-from server.tables import Base, InstallationId, migrations
+from server.tables import Base, InstallationState, migrations
 
 
 class Installation:
@@ -33,7 +33,7 @@ class Installation:
     def clean(self) -> None:
         with self.services.sessions.write.begin() as session:
             for table in reversed(Base.metadata.sorted_tables):
-                if table.name != InstallationId.__tablename__:
+                if table.name != InstallationState.__tablename__:
                     session.execute(table.delete())
         empty_redis(self.services)
         shutil.rmtree(self.services.settings.artifacts, ignore_errors=True)

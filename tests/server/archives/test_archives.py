@@ -11,7 +11,7 @@ from reports import archive_file, audit
 from microcosmos.archive import file
 from microcosmos.archive.poses import PoseStream, decode
 from microcosmos.spec import parse
-from server.archives import routes as archives
+from server.archives import reading, routes
 from server.attempts.claim import claim
 from server.renderings import storage as renderings
 from server.runs.submission import submit
@@ -88,7 +88,7 @@ def test_the_pose_streams_of_cells_come_at_once(api, run_id, services, record):
 
 def test_streams_of_too_many_or_malformed_cells_are_refused(api, run_id):
     path = f"runs/{run_id}/archive/poses"
-    many = ",".join(map(str, range(archives.POSE_CELLS + 1)))
+    many = ",".join(map(str, range(routes.POSE_CELLS + 1)))
     (error,) = errors(api.get(path, params={"cells": many}))
     assert (error["field"], error["needed"]) == ("cells", "at most 1,000 cells")
     for cells in ("", "a", "1,,2", "-1"):
@@ -206,7 +206,7 @@ def test_unknown_measures_and_too_long_histories_are_refused(api, run_id, record
     assert "displacement" in error["needed"]
     history = f"runs/{run_id}/archive/history"
     assert fields(api.get(history, params={"measures": "beauty"}))[0] == "measures"
-    monkeypatch.setattr(archives, "HISTORY_ENTRIES", 1)
+    monkeypatch.setattr(reading, "HISTORY_ENTRIES", 1)
     assert "has 2 entries, more than the 1" in detail(api.get(history), 422)
 
 

@@ -10,7 +10,7 @@ from microcosmos.archive.axes import of_spec
 from microcosmos.archive.population import creatures
 from microcosmos.archive.reprojection import over
 from microcosmos.cli import app
-from server.archives import routes as archives
+from server.archives import reading
 
 SLOW, FAST = {"speed": 0.01, "turning": 0.1}, {"speed": 0.5, "turning": 5.0}
 
@@ -69,7 +69,7 @@ def test_impossible_axes_and_too_long_histories_are_refused(api, evolved, monkey
     for axes in ("", "speed,speed", "pc9"):
         (error,) = errors(api.get(path, params={"axes": axes}))
         assert error["field"] == "axes", axes
-    monkeypatch.setattr(archives, "HISTORY_ENTRIES", 1)
+    monkeypatch.setattr(reading, "HISTORY_ENTRIES", 1)
     assert "has 5 entries" in detail(api.get(path, params={"axes": "speed"}), 422)
 
 

@@ -218,6 +218,15 @@ def test_a_burst_of_wrong_tokens_from_an_address_is_allowed_and_recovers(limit, 
     assert [limit.add("192.0.2.1") for _ in range(BURST)] == [0] * BURST
 
 
+def test_several_processes_allow_no_more_than_one(clock):
+    one, other = limits = [RateLimit(clock, processes=2) for _ in range(2)]
+    allowed = [limit.add("192.0.2.1") == 0 for limit in limits for _ in range(BURST)]
+    assert allowed.count(True) == BURST
+    clock.now += 2 * INTERVAL
+    assert [one.add("192.0.2.1") == 0 for _ in range(2)] == [True, False]
+    assert other.add("192.0.2.1") == 0
+
+
 def test_the_rate_limit_remembers_limited_addresses(limit):
     for number in range(2 * ADDRESSES):
         limit.add(f"198.18.{number // 256}.{number % 256}")

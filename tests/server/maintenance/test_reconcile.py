@@ -6,10 +6,11 @@ from redis import ConnectionError
 
 from server.attempts.attempt import ClaimLost
 from server.attempts.leases import end_job, fail_job
+from server.core.database import ago
 from server.maintenance import reconcile as reconciler
-from server.maintenance.reconcile import reconcile
+from server.maintenance.reconcile import reconcile, take_turn
 from server.runs.lifecycle import MAX_ATTEMPTS
-from server.tables import Run, Worker
+from server.tables import InstallationState, Run, Worker
 from server.workers import registry
 
 pytestmark = pytest.mark.postgresql
@@ -19,6 +20,16 @@ def test_a_server_reconciles_when_it_starts(run_id, attempt, serve, silence, row
     silence()
     with serve(reconcile_interval=0.05):
         eventually(lambda: row().status == "queued")
+
+
+def test_servers_take_turns(services, update_rows):
+    update_rows(InstallationState, reconciled_at=None)
+    assert [take_turn(services) for _ in range(3)] == [True, False, False]
+    interval = services.settings.reconcile_interval
+    with services.sessions.read() as session:
+        earlier = ago(session, interval)
+    update_rows(InstallationState, reconciled_at=earlier)
+    assert [take_turn(services) for _ in range(2)] == [True, False]
 
 
 def test_a_silent_workers_run_is_queued_again(services, attempt, flush, row, record, silence):

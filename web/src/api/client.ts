@@ -1,5 +1,6 @@
 /** All requests of the page. Failed requests throw a `Problem`. */
 
+import { COLUMNS, decodeColumns } from "../decode/columns";
 import { SHARE_HEADER, sharedSlug } from "./address";
 import { type Answer, ROOT, client, success, whenReady } from "./http";
 import type * as wire from "./types";
@@ -58,12 +59,20 @@ export const restoreRun = (id: string) => typed<wire.Run>(client.POST("/runs/{ru
 
 const joined = (measures: string[]) => (measures.length > 0 ? { measures: measures.join(",") } : {});
 
+/** Columns come as bytes, which are smaller than JSON. */
+const AS_COLUMNS = { headers: { Accept: COLUMNS }, parseAs: "arrayBuffer" } as const;
+const decoded = async <T>(request: Promise<Answer<unknown>>) =>
+  decodeColumns<T>(await typed<ArrayBuffer>(request));
+
 /** The archive, now or after a generation, with columns of named measures; `after` skips older elites. */
-export const readArchive = (
+export function readArchive(
   id: string,
   measures: string[] = [],
   when: { generation?: number; after?: number } = {},
-) => success(client.GET("/runs/{run_id}/archive", run(id, { ...joined(measures), ...when })));
+) {
+  const asked = { ...run(id, { ...joined(measures), ...when }), ...AS_COLUMNS };
+  return decoded<wire.Archive>(client.GET("/runs/{run_id}/archive", asked));
+}
 /** The stored pose streams of the elites of cells, now or after a generation. */
 export const readArchivePoses = (id: string, cells: number[], when: { generation?: number }) =>
   typed<ArrayBuffer>(
@@ -73,13 +82,15 @@ export const readArchivePoses = (id: string, cells: number[], when: { generation
     }),
   );
 /** Every elite that ever entered the archive, with columns of named measures. */
-export const readHistory = (id: string, measures: string[]) =>
-  success(client.GET("/runs/{run_id}/archive/history", run(id, joined(measures))));
+export function readHistory(id: string, measures: string[]) {
+  const asked = { ...run(id, joined(measures)), ...AS_COLUMNS };
+  return decoded<wire.History>(client.GET("/runs/{run_id}/archive/history", asked));
+}
 /** The archive of all creatures that ever entered, over other axes. */
-export const readReprojection = (id: string, axes: string[], measures: string[]) =>
-  success(
-    client.GET("/runs/{run_id}/archive/reprojection", run(id, { axes: axes.join(","), ...joined(measures) })),
-  );
+export function readReprojection(id: string, axes: string[], measures: string[]) {
+  const asked = { ...run(id, { axes: axes.join(","), ...joined(measures) }), ...AS_COLUMNS };
+  return decoded<wire.Reprojection>(client.GET("/runs/{run_id}/archive/reprojection", asked));
+}
 /** Centroids of the cells of a CVT archive; null before its first checkpoint. */
 export const readCentroids = async (id: string): Promise<number[][] | null> =>
   (await success(client.GET("/runs/{run_id}/archive/centroids", run(id)))).centroids;

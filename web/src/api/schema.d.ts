@@ -1415,7 +1415,10 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Alive */
+        /**
+         * Alive
+         * @description Answer without a thread: all may be waiting for something else.
+         */
         get: operations["alive_healthz_get"];
         put?: never;
         post?: never;
@@ -4349,7 +4352,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ArchiveRead"];
+                    "application/vnd.microcosmos.columns": string;
                 };
+            };
+            /** @description Unchanged */
+            304: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description A problem (RFC 9457) */
             default: {
@@ -4482,7 +4493,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["HistoryRead"];
+                    "application/vnd.microcosmos.columns": string;
                 };
+            };
+            /** @description Unchanged */
+            304: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description A problem (RFC 9457) */
             default: {
@@ -4557,7 +4576,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ReprojectionRead"];
+                    "application/vnd.microcosmos.columns": string;
                 };
+            };
+            /** @description Unchanged */
+            304: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description A problem (RFC 9457) */
             default: {

@@ -13,6 +13,15 @@ depends_on = None
 
 HASH, MOMENT = sa.LargeBinary(length=32), sa.DateTime(timezone=True)
 JSON_OR_NULL = sa.JSON(none_as_null=True)
+FIGURES = ("experiment", "evaluations", "qd_score", "coverage", "best")
+KEYS = {
+    "name": "lower(name)",
+    "status": "CASE status WHEN 'queued' THEN 0 WHEN 'running' THEN 1 WHEN 'paused' THEN 2"
+    " WHEN 'finished' THEN 3 WHEN 'failed' THEN 4 WHEN 'cancelled' THEN 5 END",
+    "progress": "CASE WHEN status = 'finished' THEN 1.0"
+    " ELSE CAST(generation AS DOUBLE PRECISION) / generations END",
+}
+"""Keys of orders of runs that are no columns."""
 
 
 def _required(kind: Any, *names: str) -> list[sa.Column[Any]]:
@@ -33,15 +42,8 @@ def _to_run() -> sa.ForeignKey:
 
 def upgrade() -> None:
     for create in (
-        _installation,
-        _creatures,
-        _workers,
-        _runs,
-        _sweeps_and_logs,
-        _tokens,
-        _files,
-        _results,
-        _shares,
+        *(_installation, _creatures, _workers, _runs, _sweeps_and_logs),
+        *(_tokens, _files, _results, _shares),
     ):
         create()
 
@@ -50,9 +52,10 @@ def _installation() -> None:
     table = op.create_table(
         "installation",
         sa.Column("id", sa.Uuid(), primary_key=True),
-        sa.Column("keep_files_until", MOMENT),
+        sa.Column("verdicts", sa.Integer(), nullable=False),
+        *_optional(MOMENT, "reconciled_at", "keep_files_until"),
     )
-    op.bulk_insert(table, [{"id": uuid4()}])
+    op.bulk_insert(table, [{"id": uuid4(), "verdicts": 0}])
 
 
 def _creatures() -> None:
@@ -125,7 +128,7 @@ def _runs() -> None:
         *_optional(MOMENT, "requested_at", "released_at", "started_at", "finished_at"),
         *_optional(MOMENT, "heartbeat_at", "deleted_at", "purge_at"),
         *_required(MOMENT, "created_at", "queued_at"),
-        *_required(sa.Integer(), "attempt", "attempts_without_checkpoint"),
+        *_required(sa.Integer(), "attempt", "attempts_without_checkpoint", "rewinds"),
         *_required(sa.Integer(), "generations", "generation", "checkpoint_generation"),
         *_optional(sa.String(length=255), "worker", "avoided_worker"),
         *_required(sa.BigInteger(), "evaluations", "infeasible"),
@@ -143,10 +146,12 @@ def _runs() -> None:
             name="status",
         ),
     )
-    op.create_index("ix_runs_created_at_id", "runs", ["created_at", "id"])
-    op.create_index("ix_runs_purge_at", "runs", ["purge_at"])
-    op.create_index("ix_runs_status_heartbeat_at", "runs", ["status", "heartbeat_at"])
-    op.create_index("ix_runs_sweep_sweep_index", "runs", ["sweep", "sweep_index"])
+    orders = [[name, "id"] for name in ("created_at", "started_at", "finished_at", *FIGURES)]
+    others = (["purge_at"], ["status", "heartbeat_at"], ["sweep", "sweep_index"])
+    for columns in (*orders, *others):
+        op.create_index("_".join(("ix_runs", *columns)), "runs", columns)
+    for name, key in KEYS.items():
+        op.create_index(f"ix_runs_{name}_id", "runs", [sa.text(f"({key})"), "id"])
 
 
 def _sweeps_and_logs() -> None:

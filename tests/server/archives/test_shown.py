@@ -1,0 +1,169 @@
+"""Answers about archives: their forms, their tags, and the bytes that the server keeps."""
+
+from concurrent.futures import ThreadPoolExecutor
+from threading import Event
+
+import httpx
+import numpy as np
+import pytest
+from reports import audit
+
+from microcosmos.archive import columns
+from server.archives import reading
+from server.attempts.claim import claim
+from server.renderings import storage as renderings
+from server.tables import AUDIT
+
+MEASURES = "displacement,bending_effort"
+BINARY = {"Accept": columns.MEDIA_TYPE}
+PATHS = ("archive", "archive/history", "archive/reprojection")
+
+
+def asked(path):
+    return {"measures": MEASURES} | (
+        {"axes": "displacement,bending_effort"} if "reproj" in path else {}
+    )
+
+
+def as_json(header, arrays):
+    """The document that JSON has in place of these columns."""
+    found = {name: values.tolist() for name, values in arrays.items()}
+    found["creature"] = [bytes(sha).hex() for sha in arrays["creature"]]
+    found["trusted"] = [{-1: None, 0: False, 1: True}[one] for one in found["trusted"]]
+    measures = {name: found.pop(f"measures.{name}") for name in MEASURES.split(",")}
+    return header | found | {"measures": measures}
+
+
+@pytest.mark.parametrize("path", PATHS)
+def test_columns_as_bytes_say_what_json_says(api, services, run_id, record, path):
+    record(1, {5: 1.0, 3: 2.0})
+    record(2, {5: 1.5, 7: 0.25}, emptied=(3,))
+    url = f"runs/{run_id}/{path}"
+    plain = api.get(url, params=asked(path)).json()
+    renderings.save(services, plain["creature"][-1], AUDIT, audit(True))
+    plain = api.get(url, params=asked(path))
+    assert plain.headers["content-type"] == "application/json"
+    binary = api.get(url, params=asked(path), headers=BINARY)
+    assert binary.headers["content-type"] == columns.MEDIA_TYPE
+    header, arrays = columns.load(binary.content)
+    assert as_json(header, arrays) == plain.json()
+    assert len(arrays["cell"]) > 0
+    assert True in plain.json()["trusted"]
+
+
+def test_an_empty_archive_has_empty_columns(api, run_id):
+    answer = api.get(f"runs/{run_id}/archive", headers=BINARY)
+    header, arrays = columns.load(answer.content)
+    assert header["generation"] == 0
+    assert {len(column) for column in arrays.values()} == {0}
+
+
+@pytest.mark.parametrize("cut", [0, 3, 40, -1])
+def test_cut_columns_are_refused(cut):
+    whole = columns.dump({}, {"cell": np.arange(5)})
+    with pytest.raises(ValueError, match="column"):
+        columns.load(whole[:cut])
+
+
+@pytest.mark.postgresql
+def test_a_tag_changes_whenever_the_answer_may(api, services, run_id, report, attempt):
+    url = f"runs/{run_id}/archive"
+    attempt.record(report(1, {5: 1.0}), 1.0)
+    attempt.save(1, b"one")
+    attempt.record(report(2, {5: 1.5}), 1.0)
+    tags = [api.get(url).headers["etag"]]
+
+    def changed_once():
+        statuses = []
+        for _ in range(2):
+            answer = api.get(url, headers={"If-None-Match": tags[-1]})
+            tags.append(answer.headers["etag"])
+            statuses.append(answer.status_code)
+        return statuses == [200, 304]
+
+    assert not changed_once()
+    renderings.save(services, api.get(url).json()["creature"][0], AUDIT, audit(False))
+    assert changed_once()
+    again = claim(services, run_id, "worker")  # It returns to the checkpoint.
+    assert changed_once()
+    again.record(report(2, {5: 1.5}), 1.0)
+    assert changed_once()
+    again.record(report(3), 1.0)
+    assert changed_once()
+    assert len(set(tags)) == 5
+
+
+def test_every_form_and_question_has_a_tag_of_its_own(api, run_id, record):
+    record(1, {5: 1.0})
+    record(2, {3: 1.0})
+    url, plain = f"runs/{run_id}/archive", {"Accept-Encoding": "identity"}
+    questions = ({}, {"generation": 1}, {"after": 1}, {"measures": "displacement"})
+    tags = [
+        api.get(address, params=asked, headers=headers).headers["etag"]
+        for address in (url, f"{url}/history")
+        for headers in ({}, plain, BINARY, BINARY | plain)
+        for asked in (questions if address == url else questions[::3])
+    ]
+    assert len(set(tags)) == len(tags)
+    assert not any(tag.startswith("W/") for tag in tags)
+
+
+def test_an_unchanged_answer_is_not_sent_again(api, run_id, record):
+    record(1, {5: 1.0})
+    url = f"runs/{run_id}/archive"
+    first = api.get(url)
+    known = {"If-None-Match": f'"other", {first.headers["etag"]}'}
+    again = api.get(url, headers=known)
+    assert (again.status_code, again.content) == (304, b"")
+    assert again.headers["etag"] == first.headers["etag"]
+    assert again.headers["vary"].startswith("Accept, Accept-Encoding")
+
+
+@pytest.mark.parametrize(
+    ("accepted", "coding"),
+    [
+        ("gzip", "gzip"),
+        ("br, gzip;q=0.5", "gzip"),
+        ("gzip;q=0", None),
+        ("gzip; q=0.0, br", None),
+        ("br", None),
+        ("", None),
+    ],
+)
+def test_answers_are_compressed_for_those_who_accept_it(api, run_id, record, accepted, coding):
+    record(1, {5: 1.0})
+    url = f"runs/{run_id}/archive"
+    answer = api.get(url, headers={"Accept-Encoding": accepted})
+    assert answer.headers.get("content-encoding") == coding
+    assert answer.json() == api.get(url).json()
+
+
+def test_many_requests_make_one_answer_and_hold_no_thread(
+    api, address, run_id, record, monkeypatch
+):
+    """More requests wait than the server has threads, and it answers others meanwhile."""
+    record(1, {5: 1.0})
+    go, made, read = Event(), [], reading.archive
+
+    def slow(*arguments):
+        made.append(arguments)
+        assert go.wait(60)
+        return read(*arguments)
+
+    monkeypatch.setattr(reading, "archive", slow)
+    limits = httpx.Limits(max_connections=60)
+    with (
+        httpx.Client(base_url=str(api.base_url), timeout=60, limits=limits) as many,
+        ThreadPoolExecutor(60) as pool,
+    ):
+        answers = [pool.submit(many.get, f"runs/{run_id}/archive") for _ in range(60)]
+        try:
+            while not made:
+                pass
+            assert api.get(f"{address}/healthz").status_code == 200
+            assert api.get(f"runs/{run_id}").status_code == 200
+            assert not any(one.done() for one in answers)
+        finally:
+            go.set()
+        found = {one.result().content for one in answers}
+    assert len(found) == len(made) == 1
