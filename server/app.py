@@ -34,6 +34,8 @@ from .forks import routes as forks
 from .maintenance import routes as health
 from .maintenance.metrics import CountRequests, Metrics
 from .maintenance.reconcile import reconciling
+from .notifications import routes as notifications
+from .notifications.notifier import notifying
 from .renderings import routes as renderings
 from .runs import detail_routes as details
 from .runs import routes as runs
@@ -103,6 +105,7 @@ def create_app(services: Services) -> FastAPI:
     router.include_router(api.fallback, dependencies=[MAY_READ])
     app.include_router(router)
     app.include_router(health.outside)
+    app.webhooks.include_router(notifications.webhooks)
     for public in (share_page.router, static_files.router):
         app.include_router(public, dependencies=[PUBLIC])
     return app
@@ -134,7 +137,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     close = partial(asyncio.get_running_loop().call_soon_threadsafe, fanout.close)
     app.state.end_streams = close
     await asyncio.to_thread(sandbox().start)
-    with reconciling(services), on_stop_signal(close):
+    with reconciling(services), notifying(services), on_stop_signal(close):
         yield
     fanout.close()
     for task in tasks:

@@ -5,12 +5,13 @@ import sys
 import tempfile
 
 import uvicorn
+from pydantic import ValidationError
 
 from .auth import bootstrap
 from .core import logs
 from .core.processes import SHARED_METRICS
 from .services.services import connect
-from .settings import Settings, create_private
+from .settings import Settings, create_private, explain
 from .tables import migrations
 
 SHUTDOWN_SECONDS = 5
@@ -19,7 +20,10 @@ SILENT_SECONDS = 30
 
 
 def main() -> None:
-    settings = Settings()
+    try:
+        settings = Settings()
+    except ValidationError as error:
+        sys.exit(explain(error))
     create_private(settings.data)
     logs.set_up(settings)
     if settings.needs_token:

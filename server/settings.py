@@ -1,21 +1,38 @@
 """Settings from the environment."""
 
+import re
+from base64 import b64decode
+from contextlib import suppress
 from math import inf
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
-from pydantic import AliasChoices, Field, SecretStr, field_validator
+from pydantic import (
+    AliasChoices,
+    Field,
+    SecretStr,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+)
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 MIN_TOKEN_LENGTH = 16
+WEBHOOK_PREFIX = "whsec_"
+WEBHOOK_KEY_BYTES = (24, 64)
+"""Least and largest number of random bytes in the secret of the webhook."""
+NEW_SECRET = "`echo whsec_$(openssl rand -base64 32)` prints one"
 
 
 class Settings(BaseSettings):
     """Read from `MICROCOSMOS_*`; some also from `PORT`, `WORKERS` and `SERVERS`."""
 
     model_config = SettingsConfigDict(
-        env_prefix="MICROCOSMOS_", populate_by_name=True, extra="ignore"
+        env_prefix="MICROCOSMOS_",
+        populate_by_name=True,
+        extra="ignore",
+        hide_input_in_errors=True,  # Secrets are among the input; see `explain`.
     )
 
     data: Path = Path("data")
@@ -41,6 +58,10 @@ class Settings(BaseSettings):
     """`required`: a token is needed on loopback too, as it always is elsewhere."""
     public_url: str = Field(default="", pattern=r"^(https?://[^\s/]+(/\S*)?)?$")
     """Public address of the server, for links to shares. Empty: that of the request."""
+    webhook_url: SecretStr | None = None
+    """Address that is told when a run ends or needs a person: a secret, as it may hold one."""
+    webhook_secret: SecretStr | None = Field(default=None, validate_default=True)
+    """Key with which it is signed: `whsec_`, and random bytes in base64."""
     workers: int = Field(
         default=1, ge=0, le=256, validation_alias=AliasChoices("WORKERS", "MICROCOSMOS_WORKERS")
     )
@@ -111,6 +132,36 @@ class Settings(BaseSettings):
             )
         return url
 
+    @field_validator("webhook_url")
+    @classmethod
+    def refuse_other_schemes(cls, url: SecretStr | None) -> SecretStr | None:
+        if not url or not url.get_secret_value():
+            return None
+        if not re.fullmatch(r"https?://[^\s/@]+(/\S*)?", url.get_secret_value()):
+            raise ValueError(
+                "`webhook_url` must begin with https:// or http://, without user or password"
+            )
+        return url
+
+    @field_validator("webhook_secret")
+    @classmethod
+    def refuse_unsigned(
+        cls, secret: SecretStr | None, info: ValidationInfo
+    ) -> SecretStr | None:
+        if not secret or not secret.get_secret_value():
+            if info.data.get("webhook_url"):
+                raise ValueError(f"`webhook_secret` is needed with a webhook: {NEW_SECRET}")
+            return None
+        key = secret.get_secret_value().removeprefix(WEBHOOK_PREFIX)
+        with suppress(ValueError):
+            least, most = WEBHOOK_KEY_BYTES
+            if least <= len(b64decode(key, validate=True)) <= most:
+                return secret
+        raise ValueError(
+            "`webhook_secret` must be `whsec_` and 24 to 64 random bytes in base64: "
+            f"{NEW_SECRET}"
+        )
+
     @property
     def database(self) -> str:
         return self.database_url or f"sqlite:///{self.data.resolve() / 'microcosmos.sqlite'}"
@@ -127,6 +178,19 @@ class Settings(BaseSettings):
     @property
     def needs_token(self) -> bool:
         return bool(self.token) or self.auth == "required" or self.host not in LOOPBACK
+
+
+def explain(error: ValidationError) -> str:
+    """Return what is wrong with the environment, in lines that hold no secret."""
+    lines: list[str] = []
+    for one in error.errors():
+        name = str(one["loc"][0])
+        field = Settings.model_fields.get(name)
+        secret = field is not None and SecretStr in get_args(field.annotation)
+        got = "" if secret else f"; got {one['input']!r}"
+        text = one["msg"].removeprefix("Value error, ")
+        lines.append(text if text.startswith("`") else f"`{name}`: {text}{got}")
+    return "\n".join(lines)
 
 
 def create_private(folder: Path) -> None:

@@ -13,6 +13,8 @@ from . import nvidia
 CPUINFO = Path("/proc/cpuinfo")
 TOPOLOGY = Path("/sys/devices/system/cpu")
 MEMORY_FRACTION = "XLA_PYTHON_CLIENT_MEM_FRACTION"
+NO_DEVICE = 3
+"""Exit status of a self-test that finds no device of the needed kind; 1 for other faults."""
 DEFAULT_FRACTION = 0.75
 """Fraction of a GPU's memory that JAX allocates by default."""
 

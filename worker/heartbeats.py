@@ -15,6 +15,7 @@ from server.core.database import Sessions
 from server.workers import registry
 
 from .device import Device
+from .nvidia import XidErrors
 from .plugins import PluginReport, PluginWatcher
 from .readiness import Readiness
 from .usage import Gauge, usage
@@ -54,6 +55,8 @@ class Heartbeats(threading.Thread):
         self._labels, self._plugins, self._readiness = list(labels), plugins, readiness
         self._interval = lease / HEARTBEATS_PER_LEASE
         self.gauge = Gauge(partial(usage, device), self._interval)
+        self._errors = XidErrors(device.gpu) if device.gpu else None
+        self._errors_reported = 0
         self._ended = threading.Event()
         self._due = threading.Event()
         self._watch: Watch | None = None
@@ -92,6 +95,8 @@ class Heartbeats(threading.Thread):
     def beat(self) -> None:
         watch, ready = self._watch, self._readiness
         plugins = self._plugins.report if self._plugins else PluginReport()
+        errors = self._errors.read() if self._errors else 0
+        problem = ready.problem if ready else None
         lease: LeaseState | None = None
         if watch:
             lease = leases.heartbeat(self._sessions, watch.run, self._worker)
@@ -110,8 +115,12 @@ class Heartbeats(threading.Thread):
             unloaded=list(plugins.unloaded),
             labels=self._labels,
             device_kinds=ready.device_kinds if ready else [],
-            problem=ready.problem if ready else None,
+            problem=problem.text if problem else None,
+            problem_kind=problem.kind if problem else None,
+            gpu=self.gauge.last.gpu,
+            xid_errors=errors - self._errors_reported,
         )
+        self._errors_reported = errors
 
     def _end_lost_job(self, watch: Watch, lease: LeaseState) -> None:
         """Kill the job if another worker has its run, or if the run ended some time ago."""

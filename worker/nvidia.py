@@ -1,5 +1,6 @@
 """NVIDIA GPUs: list those that a process may use, and measure one."""
 
+import logging
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -11,6 +12,9 @@ import pynvml
 from pynvml import NVMLError
 
 T = TypeVar("T")
+CORE = pynvml.NVML_TEMPERATURE_GPU
+
+log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -39,17 +43,59 @@ def visible() -> list[Gpu]:
     return gpus if allowed is None else _allowed(allowed, cards, gpus)
 
 
-def measure(uuid: str) -> tuple[int | None, float | None]:
-    """Return the memory in use, in bytes, and the load of a GPU; None if unknown."""
+@dataclass(frozen=True)
+class Measurement:
+    """What a GPU tells about itself; None if unknown."""
+
+    memory_bytes: int | None = None
+    load: float | None = None
+    temperature_celsius: float | None = None
+    ecc_errors: int | None = None
+    """Memory errors of its lifetime that could not be corrected."""
+
+
+def measure(uuid: str) -> Measurement:
     try:
         with _library():
             handle = pynvml.nvmlDeviceGetHandleByUUID(uuid)
-            return (
+            ecc = (pynvml.NVML_MEMORY_ERROR_TYPE_UNCORRECTED, pynvml.NVML_AGGREGATE_ECC)
+            return Measurement(
                 _known(lambda: int(pynvml.nvmlDeviceGetMemoryInfo(handle).used)),
                 _known(lambda: int(pynvml.nvmlDeviceGetUtilizationRates(handle).gpu) / 100),
+                _known(lambda: float(pynvml.nvmlDeviceGetTemperature(handle, CORE))),
+                _known(lambda: int(pynvml.nvmlDeviceGetTotalEccErrors(handle, *ecc))),
             )
     except NVMLError:
-        return None, None
+        return Measurement()
+
+
+class XidErrors:
+    """Counts the errors that a card's driver reports (Xid) while this object lives."""
+
+    def __init__(self, uuid: str):
+        self.total = 0
+        self._events: Any = None
+        try:
+            pynvml.nvmlInit()  # Until the process ends: the driver forgets the events else.
+            handle = pynvml.nvmlDeviceGetHandleByUUID(uuid)
+            if pynvml.nvmlDeviceIsMigDeviceHandle(handle):
+                handle = pynvml.nvmlDeviceGetDeviceHandleFromMigDeviceHandle(handle)
+            events = pynvml.nvmlEventSetCreate()
+            kind = pynvml.nvmlEventTypeXidCriticalError
+            pynvml.nvmlDeviceRegisterEvents(handle, kind, events)
+            self._events = events
+        except NVMLError as error:
+            log.info("The driver reports no errors of %s: %s", uuid, error)
+
+    def read(self) -> int:
+        """Return the number of errors so far."""
+        try:
+            while self._events is not None:
+                pynvml.nvmlEventSetWait_v2(self._events, 0)
+                self.total += 1
+        except NVMLError:  # There are no more, which is an error of its own.
+            pass
+        return self.total
 
 
 def _allowed(names: str, cards: list[Gpu], found: list[Gpu]) -> list[Gpu]:

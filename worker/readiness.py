@@ -9,11 +9,13 @@ import time
 from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import NamedTuple
 
 from server.services.services import Services
 from server.storage import mark
+from server.tables import ProblemKind
 
-from .device import Device
+from .device import NO_DEVICE, Device
 from .process_setup import stop_requested
 
 CHECK_SECONDS = 5.0
@@ -39,6 +41,13 @@ VARIABLES = (
 SOFTWARE = ("microcosmos", "microcosmos-kernels", "jax", "jaxlib")
 
 log = logging.getLogger(__name__)
+
+
+class Problem(NamedTuple):
+    """Why a worker takes no run."""
+
+    kind: ProblemKind
+    text: str
 
 
 class StoreCheck:
@@ -68,15 +77,16 @@ class Readiness:
         self._store, self._device = StoreCheck(services), device
         self._record = _record(services, device)
         self._test_at = 0.0
-        self._device_problem: str | None = None
+        self._device_problem: Problem | None = None
         self.device_kinds: list[str] = []
         """Kinds of device whose results this one repeats; none before a self-test succeeds."""
 
     @property
-    def problem(self) -> str | None:
+    def problem(self) -> Problem | None:
         """Why the worker takes no run, if that is so."""
-        untested = None if self.device_kinds else "It tests itself before its first run"
-        return self._device_problem or untested or self._store.problem
+        untested = Problem("untested", "It tests itself before its first run")
+        store = self._store.problem and Problem("store", self._store.problem)
+        return self._device_problem or (store if self.device_kinds else untested) or None
 
     def check(self) -> bool:
         """Return True if the worker may take a run."""
@@ -92,18 +102,19 @@ class Readiness:
         If it does not, the worker takes no run, and tests itself again from time to time.
         """
         self._record.unlink(missing_ok=True)
-        self.device_kinds, fault = _self_test(self._device)
-        if fault is None:
+        self.device_kinds, found = _self_test(self._device)
+        if found is None:
             log.info("Its self-test succeeds")
             _write(self._record, self.device_kinds)
         else:
-            log.warning("Its self-test fails: %s", fault)
-        self._device_problem = fault and f"Its self-test fails: {fault}"
+            found = Problem(found.kind, f"Its self-test fails: {found.text}")
+            log.warning("%s", found.text)
+        self._device_problem = found
         self._test_at = time.monotonic() + RETEST_SECONDS
-        return fault is None
+        return found is None
 
 
-def _self_test(device: Device) -> tuple[list[str], str | None]:
+def _self_test(device: Device) -> tuple[list[str], Problem | None]:
     """Return the kinds of device, and what is wrong with it; None for a good one."""
     needed = "cpu" if device.gpu is None else "gpu"
     command = [sys.executable, "-m", "worker.self_test", needed, str(os.getpid())]
@@ -127,11 +138,13 @@ def _self_test(device: Device) -> tuple[list[str], str | None]:
                 test.kill()
                 test.communicate()
                 late_words = f"it has no result after {TEST_SECONDS:g} s; a driver may hang"
-                return [], "the worker has to stop" if stopped else late_words
+                text = "the worker has to stop" if stopped else late_words
+                return [], Problem("untested" if stopped else "self-test", text)
     if test.returncode == 0:
         return json.loads(output.splitlines()[-1]), None
     words = errors.strip().splitlines()
-    return [], words[-1][:300] if words else f"it ended with status {test.returncode}"
+    text = words[-1][:300] if words else f"it ended with status {test.returncode}"
+    return [], Problem("device" if test.returncode == NO_DEVICE else "self-test", text)
 
 
 def _record(services: Services, device: Device) -> Path:

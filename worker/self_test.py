@@ -8,13 +8,16 @@ host can carry out. It prints the kinds of device whose bits this one repeats, a
 import json
 import signal
 import sys
+from typing import NoReturn
 
 from server.core.processes import die_with_parent
 from server.settings import Settings
 
+from .device import NO_DEVICE
+
 
 def main(needed: str, parent: str | None = None) -> None:
-    """End with a sentence and status 1 if something is wrong; do not outlive the parent."""
+    """End with a sentence and a status if something is wrong; do not outlive the parent."""
     if parent:
         die_with_parent(int(parent), signal.SIGKILL)
     from microcosmos import device
@@ -23,12 +26,20 @@ def main(needed: str, parent: str | None = None) -> None:
     device.prepare()
     import jax
 
-    found = jax.local_devices()[0].platform
+    try:
+        found = jax.local_devices()[0].platform
+    except (RuntimeError, AssertionError) as error:  # The driver is gone.
+        _end_without_device(f"JAX finds no device ({error!r})")
     if needed == "gpu" and found == "cpu":
-        sys.exit("JAX sees no GPU, and this worker had one")
+        _end_without_device("JAX sees no GPU, and this worker had one")
     if wrong := self_test.fault_here() or cluster_fault(Settings()):
         sys.exit(wrong)
     print(json.dumps([device.device_kind(), device.device_kind(portable=False)]))
+
+
+def _end_without_device(text: str) -> NoReturn:
+    print(text, file=sys.stderr)
+    sys.exit(NO_DEVICE)
 
 
 def cluster_fault(settings: Settings) -> str | None:

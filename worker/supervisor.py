@@ -97,7 +97,7 @@ class Supervisor:
         ):
             fail_job(self.services, run_id, self.name, self.error)
         else:
-            end_job(self.services, run_id, self.name)
+            end_job(self.services, run_id, self.name, broken=bool(self.error))
 
     def start(self, run_id: str) -> None:
         """Start the job's process. Other users can read its arguments: no secrets."""

@@ -6,6 +6,7 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import psutil
 
@@ -24,6 +25,8 @@ class Usage:
     memory_bytes: int | None = None
     load: float | None = None
     """1 is fully busy."""
+    gpu: dict[str, Any] | None = None
+    """UUID, temperature and memory errors of the GPU, if that is the device."""
 
 
 class Gauge(threading.Thread):
@@ -51,7 +54,10 @@ class Gauge(threading.Thread):
 def usage(device: Device) -> Usage:
     """Measure the GPU, else the machine: its load is the average over a minute, per core."""
     if device.gpu is not None:
-        return Usage(*nvidia.measure(device.gpu))
+        found = nvidia.measure(device.gpu)
+        gpu = {"uuid": device.gpu, "ecc_errors": found.ecc_errors}
+        gpu |= {"temperature_celsius": found.temperature_celsius}
+        return Usage(found.memory_bytes, found.load, gpu)
     return Usage(memory_in_use(), psutil.getloadavg()[0] / (os.cpu_count() or 1))
 
 

@@ -25,15 +25,8 @@ from ..services.services import Services
 from ..storage import mark, space
 from ..storage.artifacts import checkpoint_path
 from ..storage.patience import patiently
-from ..tables import (
-    CANCELLED,
-    FAILED,
-    FINISHED,
-    PAUSED,
-    RUNNING,
-    Generation,
-    Run,
-)
+from ..tables import CANCELLED, FAILED, FINISHED, PAUSED, RUNNING, Generation, Run
+from ..workers import totals
 from . import recording
 from .checkpoints import add_checkpoint, fall_back, newest_intact
 from .ending import ended, paused
@@ -62,6 +55,8 @@ class Attempt:
     """Generation of the last checkpoint; 0 without one."""
     seconds: float
     """Wall time of the recorded generations."""
+    work: tuple[int, int] = (0, 0)
+    """Evaluations of the recorded generations, and how many of them are infeasible."""
     other_device: bool = False
     """The run may continue on another kind of device than the one that started it."""
     stop_requested: Callable[[], bool] = lambda: False
@@ -113,6 +108,7 @@ class Attempt:
                 log.note(session, run, text, "warning")
             logger.warning("run %s: %s (%s)", self.run_id, text, ", ".join(damaged))
             self.generation, self.seconds = run.checkpoint_generation, run.seconds
+            self.work = (run.evaluations, run.infeasible)
             self.publish_rewind()
             announce(self.services, self.run_id)
         return data
@@ -143,8 +139,10 @@ class Attempt:
             if session.get(Generation, (self.run_id, report.generation)) is None:
                 recording.write(session, self.run_id, rows)
                 count_device_time(session, run.owner, seconds)
+                totals.count_work(session, run, self.work, seconds)
             self.requested_state = run.requested_state
         self.seconds, self.recorded = total, True
+        self.work = (rows.run["evaluations"], rows.run["infeasible"])
         for kind, data in recording.events(self.run_id, rows):
             self.services.events.publish(kind, self.run_id, data)
         if time.monotonic() - self.announced_at >= ANNOUNCE_SECONDS:
@@ -166,7 +164,8 @@ class Attempt:
             logger.warning("No checkpoint of generation %s: %s", generation, error)
             self.warn(
                 f"The checkpoint of generation {generation} could not be written ({error}). "
-                f"The one of generation {self.generation} stays; the worker will try again."
+                f"The one of generation {self.generation} stays; the worker will try again.",
+                totals.CHECKPOINT_FAILURES,
             )
             return False
         if warning := space.shortage(self.services.settings, self.services.artifacts):
@@ -209,14 +208,16 @@ class Attempt:
             self.finish()
         elif self.requested_state == CANCELLED:
             self.cancel()
-        elif done or self.requested_state == PAUSED:
+        elif self.requested_state == PAUSED:
             self.pause()
+        elif done:
+            self.pause(warning=Run.warning)  # It says why: a person has to act.
         else:
             self.requeue()
 
-    def warn(self, text: str) -> None:
+    def warn(self, text: str, counted: totals.Key | None = None) -> None:
         """Show a warning on the run; the next checkpoint that is written clears it."""
-        self._update(text, "warning", log.UNSAVED, warning=text)
+        self._update(text, "warning", log.UNSAVED, counted, warning=text)
 
     def finish(self) -> None:
         self._update(None, **ended(FINISHED), error=None)
@@ -228,8 +229,8 @@ class Attempt:
         """Fail at once: every other attempt would fail, too."""
         self._update(text, "error", **ended(FAILED), error=text)
 
-    def pause(self) -> None:
-        self._update(f"Stopped after generation {self.generation}.", **paused())
+    def pause(self, **values: Any) -> None:
+        self._update(f"Stopped after generation {self.generation}.", **paused(), **values)
 
     def pause_until_resumed(self, reason: str, **values: Any) -> None:
         """Pause until a person adds the missing plug-in or file and resumes the run."""
@@ -261,7 +262,8 @@ class Attempt:
     def fail(self, error: str) -> None:
         """Record the traceback, and requeue the run unless this was its last attempt."""
         with self.services.sessions.write.begin() as session:
-            if not fail_attempt(session, self.run_id, Run.attempt == self.number, error=error):
+            mine = Run.attempt == self.number
+            if not fail_attempt(session, self.run_id, mine, error=error, reason="error"):
                 raise ClaimLost(f"run {self.run_id}, attempt {self.number}")
         announce(self.services, self.run_id)
         self.services.wake.send()
@@ -272,14 +274,17 @@ class Attempt:
         text: str | None,
         level: log.Level = "info",
         kind: str | None = None,
+        counted: totals.Key | None = None,
         **values: Any,
     ) -> None:
-        """Change the run and log the reason; log its status if the attempt ends."""
+        """Change the run, log the reason, and count; log its status if the attempt ends."""
         with self._current(**values) as (session, run):
             if text is not None:
                 log.note(session, run, text, level, kind)
             if run.status != RUNNING:
                 log.note_status(session, run)
+            if counted is not None:
+                totals.count(session, run.worker, counted)
         announce(self.services, self.run_id)
 
     @contextmanager

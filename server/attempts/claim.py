@@ -16,6 +16,7 @@ from ..runs.lifecycle import change, fail_attempt
 from ..schedule.fit import any_device
 from ..services.services import Services
 from ..tables import QUEUED, RUNNING, Run
+from ..workers import totals
 from .attempt import Attempt, ClaimLost
 from .checkpoints import CheckpointUnavailable, rewind
 from .leases import lease_expired
@@ -40,7 +41,8 @@ def claim(services: Services, run_id: UUID, worker: str) -> Attempt | None:
         run = session.get(Run, run_id)
         other_device = run is not None and any_device(run, now(session))
         over = or_(Run.worker == worker, lease_expired(session, services.settings.lease))
-        fail_attempt(session, run_id, over, error="the worker stopped reporting")
+        silent = "the worker stopped reporting"
+        fail_attempt(session, run_id, over, error=silent, reason="silence")
         started = {
             "status": RUNNING,
             "interrupted": False,
@@ -64,8 +66,10 @@ def claim(services: Services, run_id: UUID, worker: str) -> Attempt | None:
                 spec=run.spec,
                 generation=run.checkpoint_generation,
                 seconds=run.seconds,
+                work=(run.evaluations, run.infeasible),
                 other_device=other_device,
             )
+            totals.count(session, worker, totals.ATTEMPTS)
     if run and rewound:
         attempt.publish_rewind()
     announce(services, run_id)

@@ -11,6 +11,7 @@ from ..runs.announce import announce
 from ..runs.lifecycle import change, fail_attempt, fail_unclaimed, release, stop_attempt
 from ..services.services import Services
 from ..tables import QUEUED, RUNNING, Run
+from ..workers import totals
 
 LeaseState = Literal["held", "waiting", "over", "lost"]
 
@@ -54,11 +55,16 @@ def progress(services: Services, run_id: UUID) -> Progress | None:
     return Progress(*found) if found else None
 
 
-def end_job(services: Services, run_id: UUID, worker: str) -> None:
-    """End the attempt of a job that its worker has stopped; it does not count."""
+def end_job(services: Services, run_id: UUID, worker: str, *, broken: bool = False) -> None:
+    """End the attempt of a job that its worker has stopped; the run does not count it.
+
+    If the job died because its host is `broken`, the host does.
+    """
     with services.sessions.write.begin() as session:
         mine = Run.worker == worker
         run = stop_attempt(session, run_id, mine) or release(session, run_id, mine)
+        if broken:
+            totals.count(session, worker, totals.FAILURES["self-test"])
     _announce(services, run_id, run)
 
 
@@ -69,7 +75,7 @@ def fail_job(services: Services, run_id: UUID, worker: str, error: str) -> None:
     """
     with services.sessions.write.begin() as session:
         mine = Run.worker == worker
-        run = fail_attempt(session, run_id, mine, error=error)
+        run = fail_attempt(session, run_id, mine, error=error, reason="process")
         run = run or fail_unclaimed(session, run_id, mine, error=error)
     _announce(services, run_id, run)
 

@@ -11,6 +11,7 @@ from stat import S_IRWXO
 from subprocess import Popen
 
 from filelock import FileLock, Timeout
+from pydantic import ValidationError
 from sqlalchemy import exists, select
 from sqlalchemy.exc import OperationalError
 
@@ -21,7 +22,7 @@ from ..core.processes import spawn
 from ..maintenance.healthcheck import answers
 from ..runs.submission import submit
 from ..services import services
-from ..settings import Settings, create_private
+from ..settings import Settings, create_private, explain
 from ..tables import Run, migrations
 from . import log_rotation, redis_embedded
 from .process_tree import Child, Tree, say
@@ -156,8 +157,8 @@ def main() -> None:
     """Run until Ctrl-C; all processes end with this one."""
     try:
         settings = Settings()
-    except ValueError as error:
-        sys.exit(str(error))
+    except ValidationError as error:
+        sys.exit(explain(error))
     address = f"http://{settings.host}:{settings.port}"
     tree = Tree()
     tree.handle_signals()

@@ -70,7 +70,7 @@ class HealthReport(Wire):
     queues: dict[str, int]
     """Jobs that wait, by queue; empty where Redis does not answer."""
     workers: dict[str, int]
-    """Live workers by status; empty where the database does not answer."""
+    """Live workers, `idle`, `busy` or with a `problem`; empty without the database."""
 
 
 def database(services: Services) -> DatabaseHealth:
@@ -156,9 +156,9 @@ def report(services: Services) -> HealthReport:
         with services.sessions.read() as session:
             live = registry.live(session, services.settings.lease)
             runs = session.scalar(select(func.count()).where(Run.status == QUEUED)) or 0
-        workers = {
-            status: sum(one.status == status for one in live) for status in ("idle", "busy")
-        }
+        workers = {status: 0 for status in registry.STATES}
+        for one in live:
+            workers[registry.state(one)] += 1
         queues["runs"] = runs
     return HealthReport(
         version=VERSION,

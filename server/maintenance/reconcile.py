@@ -119,7 +119,7 @@ def requeue_expired(services: Services) -> None:
     for run_id, worker in found:
         with services.sessions.write.begin() as session:
             error = f"worker {worker} has not reported for {lease:g} s"
-            run = fail_attempt(session, run_id, *expired, error=error)
+            run = fail_attempt(session, run_id, *expired, error=error, reason="silence")
         if run:
             announce(services, run_id)
             services.wake.send()

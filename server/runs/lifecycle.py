@@ -1,11 +1,13 @@
 """Lifecycle of a run: the allowed changes between its states.
 
 The states are queued → running → finished | failed | cancelled, and paused. Each change is one
-guarded UPDATE, so that only one of two concurrent changes happens.
+guarded UPDATE, so that only one of two concurrent changes happens. A change that ends a run, or
+pauses it with a warning, also adds a notification.
 """
 
 import logging
-from typing import Any, NoReturn
+from collections.abc import Mapping
+from typing import Any, Literal, NoReturn
 from uuid import UUID
 
 from sqlalchemy import case, func, or_, update
@@ -13,20 +15,17 @@ from sqlalchemy.orm import Session
 
 from ..core.database import clock
 from ..core.errors import ProblemError
-from ..tables import (
-    CANCELLED,
-    FAILED,
-    PAUSED,
-    QUEUED,
-    RUNNING,
-    Run,
-)
+from ..notifications import outbox
+from ..tables import CANCELLED, FAILED, PAUSED, QUEUED, RUNNING, TERMINAL, Run
+from ..workers import totals
 from .log import note, note_status
 
 log = logging.getLogger(__name__)
 
 NOT_IN_BIN = Run.deleted_at.is_(None)
 
+Reason = Literal["error", "process", "silence"]
+"""Why an attempt failed: an exception, a process that died, or a worker that is silent."""
 MAX_ATTEMPTS = 3
 """Number of attempts without a new checkpoint after which a run fails."""
 
@@ -46,7 +45,15 @@ def change(session: Session, run_id: UUID, *where: Any, **values: Any) -> Run | 
     """Change a run if it satisfies `where`; return the changed row, else None."""
     statement = update(Run).where(Run.id == run_id, *where).values(**values).returning(Run)
     options = {"populate_existing": True, "synchronize_session": False}
-    return session.scalars(statement, execution_options=options).one_or_none()
+    run = session.scalars(statement, execution_options=options).one_or_none()
+    if run and "status" in values and (run.status in TERMINAL or _needs_person(run, values)):
+        outbox.add(session, run)
+    return run
+
+
+def _needs_person(run: Run, values: Mapping[str, Any]) -> bool:
+    """Return whether a change pauses a run until a person acts; its warning says why."""
+    return run.status == PAUSED and "warning" in values
 
 
 def pause(session: Session, run: Run) -> Run:
@@ -111,8 +118,10 @@ def refuse(session: Session, action: str, run: Run, needed: str) -> NoReturn:
     raise Conflict(action, current, needed)
 
 
-def fail_attempt(session: Session, run_id: UUID, *where: Any, error: str) -> Run | None:
-    """End an attempt that failed, and queue the run again.
+def fail_attempt(
+    session: Session, run_id: UUID, *where: Any, error: str, reason: Reason
+) -> Run | None:
+    """End an attempt that failed, count it, and queue the run again.
 
     If requested, pause or cancel it instead; fail it after `MAX_ATTEMPTS` attempts.
     """
@@ -120,7 +129,7 @@ def fail_attempt(session: Session, run_id: UUID, *where: Any, error: str) -> Run
     if run is None:
         return None
     note(session, run, f"Attempt {run.attempt} failed: {error}", "error")
-    return _fail_after_last_attempt(session, run, error)
+    return _fail_after_last_attempt(session, run, error, reason)
 
 
 def fail_unclaimed(session: Session, run_id: UUID, *where: Any, error: str) -> Run | None:
@@ -132,18 +141,22 @@ def fail_unclaimed(session: Session, run_id: UUID, *where: Any, error: str) -> R
     if run is None:
         return None
     note(session, run, f"An attempt failed before it began: {error}", "error")
-    return _fail_after_last_attempt(session, run, error)
+    return _fail_after_last_attempt(session, run, error, "process")
 
 
-def _fail_after_last_attempt(session: Session, run: Run, error: str) -> Run:
+def _fail_after_last_attempt(session: Session, run: Run, error: str, reason: Reason) -> Run:
+    """Fail a queued run that had all its attempts; count the failure of the last one."""
+    worker = run.avoided_worker
     if run.status == QUEUED and run.attempts_without_checkpoint >= MAX_ATTEMPTS:
-        reason = f"{MAX_ATTEMPTS} attempts without a new checkpoint"
-        text = f"{reason}; the last one: {error}"
+        limit = f"{MAX_ATTEMPTS} attempts without a new checkpoint"
+        text = f"{limit}; the last one: {error}"
         failed = change(session, run.id, status=FAILED, finished_at=clock(), error=text)
         assert failed is not None
-        note(session, failed, f"Failed: {reason}.", "error")
-        return failed
-    note_status(session, run)
+        note(session, failed, f"Failed: {limit}.", "error")
+        run = failed
+    else:
+        note_status(session, run)
+    totals.count(session, worker, totals.FAILURES[reason])
     return run
 
 

@@ -16,6 +16,7 @@ from .artifacts import (
 from .base import Base, Expiring, Owned, Sha256
 from .creatures import Creature, GarbageCreature, InitialCreature, Parent
 from .installation import InstallationState
+from .operation import Notification, Total
 from .results import CORRECTED, Elite, Generation, Result
 from .runs import (
     CANCELLED,
@@ -42,4 +43,4 @@ from .runs import (
 )
 from .shares import Share
 from .tokens import NOBODY, USE_DAYS, DeviceUse, Token
-from .workers import Plugin, Worker
+from .workers import Plugin, ProblemKind, Worker

@@ -1,7 +1,7 @@
 """Tables of workers and of the plug-ins that they offer."""
 
 from datetime import datetime
-from typing import Any
+from typing import Any, Literal
 from uuid import UUID
 
 from sqlalchemy import JSON, BigInteger, String, Text
@@ -9,6 +9,9 @@ from sqlalchemy.orm import Mapped, mapped_column
 
 from ..core.database import clock
 from .base import Base, Sha256
+
+ProblemKind = Literal["untested", "device", "self-test", "store"]
+"""`untested`: it has yet to test itself. `device`: its GPU is gone."""
 
 
 class Worker(Base):
@@ -36,6 +39,9 @@ class Worker(Base):
     labels: Mapped[list[str]] = mapped_column(default=list)
     problem: Mapped[str | None] = mapped_column(Text)
     """Why it takes no run."""
+    problem_kind: Mapped[ProblemKind | None] = mapped_column(String(16))
+    gpu: Mapped[dict[str, Any] | None]
+    """UUID, temperature and uncorrected memory errors of its GPU, where it has one."""
 
 
 class Plugin(Base):

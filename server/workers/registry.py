@@ -9,7 +9,10 @@ from sqlalchemy.orm import Session
 
 from ..core.database import Sessions, ago, clock
 from ..tables import FINISHED, RUNNING, Plugin, Run, Worker
+from . import totals
 from .schemas import RunBrief
+
+STATES = ("idle", "busy", "problem")
 
 
 def report(
@@ -19,10 +22,14 @@ def report(
     memory_bytes: int,
     status: Literal["idle", "busy"],
     run_id: UUID | None = None,
+    xid_errors: int = 0,
     **columns: Any,
 ) -> None:
-    """Report a live worker: its run, and in other columns its load and its plug-ins."""
-    defaults = {"kind": "cpu", "problem": None}
+    """Report a live worker: its run, and in other columns its load and its plug-ins.
+
+    `xid_errors` is the number of errors of its GPU since the last report.
+    """
+    defaults = {"kind": "cpu", "problem": None, "problem_kind": None, "gpu": None}
     lists = ("plugins", "unloaded", "device_kinds", "labels")
     columns = {**defaults, **{name: [] for name in lists}, **columns}
     columns |= {"device": device, "memory_bytes": memory_bytes}
@@ -38,6 +45,8 @@ def report(
         row.heartbeat_at = clock()
         if not same:
             row.since = clock()
+        if xid_errors:
+            totals.add(session, totals.host_of(name), {totals.XID_ERRORS: xid_errors})
 
 
 def retire(sessions: Sessions, name: str) -> None:
@@ -49,6 +58,11 @@ def live(session: Session, lease: float) -> list[Worker]:
     """Return the workers that reported within a lease, by name."""
     alive = Worker.heartbeat_at >= ago(session, lease)
     return list(session.scalars(select(Worker).where(alive).order_by(Worker.name)))
+
+
+def state(worker: Worker) -> str:
+    """Return one of `STATES`: a worker with a problem takes no run."""
+    return "problem" if worker.problem is not None else worker.status
 
 
 def running(session: Session, alive: Sequence[Worker]) -> dict[str, Run]:

@@ -5,7 +5,7 @@ from typing import Literal
 from uuid import UUID
 
 from ..core.schemas import Wire
-from ..tables import Status
+from ..tables import ProblemKind, Status
 
 
 class RunBrief(Wire):
@@ -40,6 +40,15 @@ class UnloadedRead(Wire):
     reason: str
 
 
+class GpuRead(Wire):
+    """The state of a GPU; None where it does not tell."""
+
+    uuid: str
+    temperature_celsius: float | None
+    ecc_errors: int | None
+    """Memory errors of its lifetime that could not be corrected."""
+
+
 class WorkerRead(Wire):
     name: str
     device: str
@@ -61,3 +70,6 @@ class WorkerRead(Wire):
     labels: list[str]
     problem: str | None
     """Why it takes no run."""
+    problem_kind: ProblemKind | None
+    gpu: GpuRead | None
+    """None for a worker on a processor."""

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pynvml
 import pytest
 
-from worker import device, usage
+from worker import device, nvidia, usage
 from worker.device import Device, memory
 from worker.usage import Usage
 
@@ -27,12 +27,13 @@ def nvml(monkeypatch):
     """A function that replaces NVIDIA's library by one that knows some cards.
 
     `cards` has name and memory by UUID, None for a card that fails; None is no driver.
-    `divided` is the UUID of a card with the MIG instances `DIVIDED`.
+    `divided` is the UUID of a card with the MIG instances `DIVIDED`. `hot` is temperature and
+    memory errors.
     """
     for name in ("JAX_PLATFORMS", "CUDA_VISIBLE_DEVICES", device.MEMORY_FRACTION):
         monkeypatch.delenv(name, raising=False)
 
-    def install(cards, divided=None, used=0, load=None):
+    def install(cards, divided=None, used=0, load=None, hot=(None, None)):
         every = DIVIDED | (cards or {})
 
         def known(value):
@@ -52,6 +53,8 @@ def nvml(monkeypatch):
                 total=known(every[uuid])[1], used=known(used)
             ),
             "DeviceGetUtilizationRates": lambda _: SimpleNamespace(gpu=known(load)),
+            "DeviceGetTemperature": lambda *_: known(hot[0]),
+            "DeviceGetTotalEccErrors": lambda *_: known(hot[1]),
             "DeviceGetMigMode": lambda uuid: (known(1 if uuid == divided else None), 1),
             "DeviceGetMaxMigDeviceCount": lambda _: 7,
             "DeviceGetMigDeviceHandleByIndex": lambda _, i: known(
@@ -62,6 +65,28 @@ def nvml(monkeypatch):
             monkeypatch.setattr(pynvml, f"nvml{name}", answer)
 
     return install
+
+
+@pytest.fixture
+def errors(monkeypatch):
+    """The errors that the driver is about to report, by card; the first card is divided."""
+    coming = {card: [] for card in TWO}
+
+    def next_error(watched, _):
+        if not coming[watched[0]]:
+            raise pynvml.NVMLError(pynvml.NVML_ERROR_TIMEOUT)
+        return coming[watched[0]].pop()
+
+    answers = {
+        "DeviceIsMigDeviceHandle": lambda uuid: uuid in DIVIDED,
+        "DeviceGetDeviceHandleFromMigDeviceHandle": lambda _: next(iter(TWO)),
+        "EventSetCreate": list,
+        "DeviceRegisterEvents": lambda uuid, _, watched: watched.append(uuid),
+        "EventSetWait_v2": next_error,
+    }
+    for name, answer in answers.items():
+        monkeypatch.setattr(pynvml, f"nvml{name}", answer)
+    return coming
 
 
 def test_every_worker_has_a_gpu_of_its_own(nvml):
@@ -194,18 +219,36 @@ def test_in_a_container_its_own_memory_is_reported(tmp_path, monkeypatch, curren
 GPU = {"GPU-3": ("a GPU", 80 << 30)}
 
 
+def state(temperature, ecc_errors):
+    """What a worker says about that GPU."""
+    return {"uuid": "GPU-3", "temperature_celsius": temperature, "ecc_errors": ecc_errors}
+
+
 @pytest.mark.parametrize(
-    ("cards", "used", "load", "expected"),
+    ("cards", "used", "load", "hot", "expected"),
     [
-        (GPU, 1234, 56, Usage(1234, 0.56)),
-        (GPU, 1234, None, Usage(1234, None)),
-        (GPU, None, None, Usage()),
-        (None, 0, None, Usage()),
+        (GPU, 1234, 56, (71, 2), Usage(1234, 0.56, state(71.0, 2))),
+        (GPU, 1234, None, (71, None), Usage(1234, None, state(71.0, None))),
+        (GPU, None, None, (None, None), Usage(None, None, state(None, None))),
+        (None, 0, None, (71, 2), Usage(None, None, state(None, None))),
     ],
 )
-def test_a_gpu_reports_its_own_usage_and_none_for_the_rest(nvml, cards, used, load, expected):
-    nvml(cards, used=used, load=load)
+def test_a_gpu_reports_its_own_state_and_none_for_the_rest(
+    nvml, cards, used, load, hot, expected
+):
+    nvml(cards, used=used, load=load, hot=hot)
     assert usage.usage(Device("gpu", 80 << 30, {}, "GPU-3")) == expected
+
+
+def test_errors_of_a_card_are_counted_also_by_a_worker_on_a_part_of_it(nvml, errors):
+    nvml(TWO)
+    part, other = nvidia.XidErrors("MIG-cccc3333"), nvidia.XidErrors("GPU-bbbb2222")
+    errors["GPU-aaaa1111"] += [31, 79]
+    assert (part.read(), part.read(), other.read()) == (2, 2, 0)
+    errors["GPU-aaaa1111"].append(48)
+    assert part.read() == 3
+    nvml(None)
+    assert nvidia.XidErrors("GPU-bbbb2222").read() == 0, "without a driver"
 
 
 @pytest.mark.parametrize("error", [OSError("gone"), ValueError("no number")])

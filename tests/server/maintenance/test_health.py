@@ -22,7 +22,7 @@ def test_a_healthy_server_reports_all_its_parts(api, services, run_id, database)
     assert found["redis"]["version"]
     assert found["redis"]["policy"] == "noeviction"
     assert found["queues"] == {"runs": 1, "renderings": 0, "audits": 0}
-    assert found["workers"] == {"idle": 0, "busy": 1}
+    assert found["workers"] == {"idle": 0, "busy": 1, "problem": 0}
 
 
 def test_a_part_that_does_not_answer_is_reported_with_its_error(services, serve, monkeypatch):

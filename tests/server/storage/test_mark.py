@@ -96,9 +96,10 @@ def test_a_worker_without_the_store_takes_no_run_until_it_is_there(
 
 
 def report(services, readiness):
-    registry.report(
-        services.sessions, "lost", "a device", 8 << 30, "idle", problem=readiness.problem
-    )
+    found = readiness.problem
+    kind, text = (found.kind, found.text) if found else (None, None)
+    lost = (services.sessions, "lost", "a device", 8 << 30, "idle")
+    registry.report(*lost, problem=text, problem_kind=kind)
 
 
 def test_a_good_store_is_not_read_before_every_job(services, readiness, statements):

@@ -1446,7 +1446,31 @@ export interface paths {
         trace?: never;
     };
 }
-export type webhooks = Record<string, never>;
+export interface webhooks {
+    run: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Tell Run
+         * @description Sent to `MICROCOSMOS_WEBHOOK_URL` until it is answered with a status of 2xx.
+         *
+         *     `webhook-id` is the same at each try. `webhook-signature` is `v1,` and the HMAC-SHA256 of
+         *     `webhook-id.webhook-timestamp.body` in base64.
+         */
+        post: operations["tell_runrun_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+}
 export interface components {
     schemas: {
         /** Ancestors */
@@ -1828,6 +1852,18 @@ export interface components {
             creatures: number;
             /** Run */
             run: string | null;
+        };
+        /**
+         * GpuRead
+         * @description The state of a GPU; None where it does not tell.
+         */
+        GpuRead: {
+            /** Ecc Errors */
+            ecc_errors: number | null;
+            /** Temperature Celsius */
+            temperature_celsius: number | null;
+            /** Uuid */
+            uuid: string;
         };
         /** Health */
         Health: {
@@ -2431,6 +2467,55 @@ export interface components {
              */
             run: string;
         };
+        /**
+         * RunEvent
+         * @description What the webhook is sent when a run ends, fails or pauses until a person acts.
+         */
+        RunEvent: {
+            data: components["schemas"]["RunNotice"];
+            /**
+             * Timestamp
+             * Format: date-time
+             */
+            timestamp: string;
+            /**
+             * Type
+             * @enum {string}
+             */
+            type: "run.finished" | "run.failed" | "run.cancelled" | "run.paused";
+        };
+        /**
+         * RunNotice
+         * @description A run as it was when it ended or paused.
+         */
+        RunNotice: {
+            /** Attempt */
+            attempt: number;
+            /** Experiment */
+            experiment: string;
+            /** Generation */
+            generation: number;
+            /** Generations */
+            generations: number;
+            /** Name */
+            name: string | null;
+            /** Reason */
+            reason: string | null;
+            /**
+             * Run
+             * Format: uuid
+             */
+            run: string;
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
+            /** Sweep */
+            sweep: string | null;
+            /** Url */
+            url: string | null;
+        };
         /** RunPage */
         RunPage: {
             /** Items */
@@ -2994,6 +3079,7 @@ export interface components {
             device: string;
             /** Device Kinds */
             device_kinds: string[];
+            gpu: components["schemas"]["GpuRead"] | null;
             /**
              * Heartbeat At
              * Format: date-time
@@ -3018,6 +3104,8 @@ export interface components {
             plugins: components["schemas"]["PluginRead"][];
             /** Problem */
             problem: string | null;
+            /** Problem Kind */
+            problem_kind: ("untested" | "device" | "self-test" | "store") | null;
             /** Run */
             run: string | null;
             /**
@@ -5894,6 +5982,39 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["Readiness"];
                 };
+            };
+        };
+    };
+    tell_runrun_post: {
+        parameters: {
+            query?: never;
+            header: {
+                "webhook-id": string;
+                "webhook-timestamp": number;
+                "webhook-signature": string;
+            };
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["RunEvent"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Any other answer: it is sent again later */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
         };
     };

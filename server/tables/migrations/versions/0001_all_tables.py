@@ -42,8 +42,8 @@ def _to_run() -> sa.ForeignKey:
 
 def upgrade() -> None:
     for create in (
-        *(_installation, _creatures, _workers, _runs, _sweeps_and_logs),
-        *(_tokens, _files, _results, _shares),
+        *(_installation, _creatures, _workers, _runs, _sweeps_and_logs, _tokens),
+        *(_files, _results, _shares, _operation),
     ):
         create()
 
@@ -107,6 +107,8 @@ def _workers() -> None:
         *_required(MOMENT, "since", "heartbeat_at"),
         *_required(sa.JSON(), "plugins", "unloaded", "device_kinds", "labels"),
         sa.Column("problem", sa.Text()),
+        sa.Column("problem_kind", sa.String(length=16)),
+        sa.Column("gpu", JSON_OR_NULL),
     )
 
 
@@ -201,14 +203,9 @@ def _tokens() -> None:
         sa.CheckConstraint("scope IN ('read', 'write', 'admin')", name="scope"),
         sa.UniqueConstraint("secret_sha256"),
     )
-    op.create_index(
-        "ix_tokens_name",
-        "tokens",
-        ["name"],
-        unique=True,
-        sqlite_where=sa.text("revoked_at IS NULL"),
-        postgresql_where=sa.text("revoked_at IS NULL"),
-    )
+    live = sa.text("revoked_at IS NULL")
+    where: dict[str, Any] = {"sqlite_where": live, "postgresql_where": live}
+    op.create_index("ix_tokens_name", "tokens", ["name"], unique=True, **where)
     op.create_table(
         "device_use",
         sa.Column("owner", sa.Uuid(), primary_key=True),
@@ -218,10 +215,7 @@ def _tokens() -> None:
 
 
 def _files() -> None:
-    op.create_table(
-        "garbage_files",
-        sa.Column("path", sa.String(length=255), primary_key=True),
-    )
+    op.create_table("garbage_files", sa.Column("path", sa.String(length=255), primary_key=True))
     op.create_table(
         "artifacts",
         sa.Column("path", sa.String(length=255), primary_key=True),
@@ -291,6 +285,27 @@ def _shares() -> None:
         sa.CheckConstraint("(creature IS NULL) <> (run_id IS NULL)", name="one_thing"),
     )
     op.create_index("ix_shares_created_at_slug", "shares", ["created_at", "slug"])
+
+
+def _operation() -> None:
+    op.create_table(
+        "totals",
+        sa.Column("name", sa.String(length=32), primary_key=True),
+        sa.Column("host", sa.String(length=255), primary_key=True),
+        sa.Column("kind", sa.String(length=32), primary_key=True),
+        sa.Column("value", sa.Double(), nullable=False),
+        sa.Column("changed_at", MOMENT, nullable=False),
+    )
+    op.create_table(
+        "notifications",
+        sa.Column("id", sa.Uuid(), primary_key=True),
+        sa.Column("run_id", sa.Uuid(), nullable=False),
+        sa.Column("kind", sa.String(length=32), nullable=False),
+        sa.Column("data", JSON_OR_NULL, nullable=False),
+        *_required(MOMENT, "created_at", "due_at"),
+        sa.Column("tries", sa.Integer(), nullable=False),
+    )
+    op.create_index("ix_notifications_due_at_id", "notifications", ["due_at", "id"])
 
 
 def downgrade() -> None:

@@ -1,0 +1,60 @@
+"""The notifier: a thread of the server that sends notifications, so that no run waits."""
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import Event, Thread
+
+from sqlalchemy.exc import SQLAlchemyError
+
+from ..services.services import Services
+from . import outbox
+from .delivery import NotDelivered, body_of, send
+
+log = logging.getLogger(__name__)
+
+
+@contextmanager
+def notifying(services: Services) -> Iterator[None]:
+    """Send notifications now and every few seconds, in a thread, until the end of the block."""
+    ended = Event()
+
+    def repeat() -> None:
+        while not ended.is_set():
+            try:
+                while not ended.is_set() and send_next(services):
+                    pass
+            except SQLAlchemyError as error:
+                log.warning("Notifications wait for the database: %s", error)
+            except Exception:  # Without this thread nobody would be told.
+                log.exception("Notifications will be tried again")
+            ended.wait(services.settings.reconcile_interval)
+
+    thread = Thread(target=repeat, name="notifier", daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
+
+
+def send_next(services: Services) -> bool:
+    """Send the next notification that is due; return whether another one may follow at once."""
+    one = outbox.take(services)
+    if one is None:
+        return False
+    if services.settings.webhook_url is None:
+        outbox.settle(services, one, None)
+        return True
+    try:
+        send(services.settings, str(one.id), body_of(services.settings, one))
+    except NotDelivered as error:
+        log.warning(
+            "The webhook was not told `%s` of run %s at try %s: %s",
+            *(one.kind, one.run_id, one.tries, error),
+        )
+        outbox.settle(services, one, outbox.FAILED)
+        return False
+    outbox.settle(services, one, outbox.DELIVERED)
+    return True

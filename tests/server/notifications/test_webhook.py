@@ -1,0 +1,273 @@
+"""The webhook: signed, repeated until it is accepted, and told of each event once."""
+
+import hmac
+import json
+import logging
+import time
+from base64 import b64encode
+from contextlib import contextmanager
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from threading import Thread
+
+import httpx
+import jsonschema
+import pytest
+from pydantic import SecretStr, ValidationError
+
+from server.attempts.attempt import Attempt
+from server.core.database import clock
+from server.notifications import __main__ as trial
+from server.notifications import outbox
+from server.notifications.notifier import send_next
+from server.runs.lifecycle import change
+from server.settings import Settings, explain
+from server.tables import Notification, Run
+from server.workers import totals
+
+KEY = b"0123456789abcdef0123456789abcdef"
+SECRET = f"whsec_{b64encode(KEY).decode()}"
+
+
+class Receiver:
+    """A real HTTP server that keeps what it is sent and gives the `answers`, then 204."""
+
+    def __init__(self, answers=()):
+        self.answers, self.got = list(answers), []
+
+    @contextmanager
+    def serve(self):
+        receiver = self
+
+        class Handler(BaseHTTPRequestHandler):
+            def do_POST(self):
+                body = self.rfile.read(int(self.headers["Content-Length"]))
+                receiver.got.append((self.path, dict(self.headers), body))
+                status, *place = receiver.answers.pop(0) if receiver.answers else (204,)
+                self.send_response(status)
+                for one in place:
+                    self.send_header("Location", one)
+                self.end_headers()
+
+            def log_message(self, *_):
+                pass
+
+        server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+        Thread(target=server.serve_forever, daemon=True).start()
+        try:
+            yield f"http://127.0.0.1:{server.server_port}"
+        finally:
+            server.shutdown()
+            server.server_close()
+
+
+@pytest.fixture
+def receiver():
+    return Receiver()
+
+
+@pytest.fixture
+def told(receiver, services, monkeypatch):
+    """The installation with a webhook, whose address has a secret in its path."""
+    with receiver.serve() as url:
+        for name, value in (("url", f"{url}/hook/s3cret?k=k3y"), ("secret", SECRET)):
+            monkeypatch.setattr(services.settings, f"webhook_{name}", SecretStr(value))
+        yield services
+
+
+def make_due(update_rows):
+    update_rows(Notification, due_at=clock())
+
+
+def events(receiver):
+    return [json.loads(body) for _, _, body in receiver.got]
+
+
+def test_a_receiver_that_fails_twice_is_told_once(
+    told, receiver, attempt, record, update_rows, count, caplog
+):
+    receiver.answers = [(500,), (503,)]
+    record(4, {5: 1.0})
+    attempt.refuse("Traceback\nValueError: 3 is no body")
+    for tries in (1, 2):
+        assert not send_next(told), "a receiver that fails has a pause"
+        assert not send_next(told), "it is not due"
+        assert len(receiver.got) == tries
+        make_due(update_rows)
+    assert send_next(told)
+    assert not send_next(told)
+    assert count(Notification) == 0
+    ids = {headers["webhook-id"] for _, headers, _ in receiver.got}
+    bodies = {body for _, _, body in receiver.got}
+    assert (len(receiver.got), len(ids), len(bodies)) == (3, 1, 1)
+    with told.sessions.read() as session:
+        found = totals.read(session)
+    assert (found[outbox.FAILED], found[outbox.DELIVERED]) == (2, 1)
+    assert found[totals.Key(totals.RUNS_ENDED, "failed")] == 1, "the event counts once"
+    warnings = [one.getMessage() for one in caplog.records if one.levelno >= logging.WARNING]
+    assert "at try 1: it answers 500" in warnings[0]
+    assert not any(word in caplog.text for word in ("s3cret", "k3y", SECRET, KEY.decode()))
+
+
+def test_what_is_sent_is_signed_and_as_documented(told, receiver, api, attempt, record, run_id):
+    record(4, {5: 1.0})
+    attempt.refuse("Traceback\nValueError: 3 is no body")
+    send_next(told)
+    path, headers, body = receiver.got[0]
+    assert path == "/hook/s3cret?k=k3y"
+    moment = headers["webhook-timestamp"]
+    assert abs(time.time() - int(moment)) < 60
+    signed = f"{headers['webhook-id']}.{moment}.".encode() + body
+    digest = b64encode(hmac.new(KEY, signed, "sha256").digest()).decode()
+    assert headers["webhook-signature"] == f"v1,{digest}"
+    document = api.get("openapi.json").json()
+    schema = document["webhooks"]["run"]["post"]["requestBody"]["content"]["application/json"]
+    whole = {**schema["schema"], "components": document["components"]}
+    event = json.loads(body)
+    jsonschema.Draft202012Validator(whole).validate(event)
+    assert (event["type"], event["data"]["run"]) == ("run.failed", str(run_id))
+    assert event["data"]["reason"] == "ValueError: 3 is no body"
+    assert (event["data"]["generation"], event["data"]["url"]) == (4, None)
+
+
+def finish(attempt: Attempt) -> None:
+    attempt.finish()
+
+
+def ask_to_pause(attempt: Attempt) -> None:
+    attempt.pause()
+
+
+def lack_a_plugin(attempt: Attempt) -> None:
+    attempt.pause_until_resumed("It needs the plug-in mine.sway")
+
+
+def fail_to_save(attempt: Attempt) -> None:
+    attempt.services.artifacts.write = full
+    attempt.end(True, 4, lambda: b"")
+
+
+def full(*_):
+    raise OSError(28, "No space left on device")
+
+
+@pytest.mark.parametrize(
+    ("act", "kinds"),
+    [
+        (finish, ["run.finished"]),
+        (ask_to_pause, []),
+        (lack_a_plugin, ["run.paused"]),
+        (fail_to_save, ["run.paused"]),
+    ],
+)
+def test_who_must_act_is_told_and_who_acted_is_not(
+    told, receiver, attempt, record, act, kinds, monkeypatch
+):
+    monkeypatch.setattr(told.artifacts, "write", told.artifacts.write)  # `full` for this test.
+    record(4, {5: 1.0})
+    act(attempt)
+    while send_next(told):
+        pass
+    assert [one["type"] for one in events(receiver)] == kinds
+
+
+def test_cancelled_and_extended_runs_are_told_each_time_they_end(
+    told, receiver, api, attempt, record, run_id, claim_run, spec
+):
+    record(4, {5: 1.0})
+    attempt.finish()
+    assert api.post(f"runs/{run_id}/extend", json={"generations": 1}).status_code < 300
+    api.post(f"runs/{run_id}/cancel")
+    while send_next(told):
+        pass
+    assert [one["type"] for one in events(receiver)] == ["run.finished", "run.cancelled"]
+    assert len({headers["webhook-id"] for _, headers, _ in receiver.got}) == 2
+
+
+def test_a_redirect_is_not_followed(told, receiver, attempt, caplog):
+    other = Receiver()
+    with other.serve() as elsewhere:
+        receiver.answers = [(307, elsewhere)]
+        attempt.finish()
+        assert not send_next(told)
+    assert other.got == []
+    assert "it answers 307, and redirects are not followed" in caplog.text
+
+
+def test_an_event_that_nobody_accepts_for_days_is_discarded(
+    told, receiver, attempt, update_rows, count
+):
+    attempt.finish()
+    receiver.answers = [(500,)]
+    with told.sessions.read() as session:
+        then = session.query(Notification).one().created_at - outbox.LIFETIME
+    update_rows(Notification, created_at=then)
+    send_next(told)
+    assert count(Notification) == 0
+    with told.sessions.read() as session:
+        assert totals.read(session)[outbox.DISCARDED] == 1
+
+
+def test_a_change_that_is_rolled_back_tells_nobody(services, run_id, count):
+    with services.sessions.write() as session:
+        change(session, run_id, status="failed")
+        session.flush()
+        session.rollback()
+    assert count(Notification) == 0
+
+
+def test_a_server_sends_by_itself_and_without_a_webhook_discards(
+    serve, receiver, attempt, count, eventually
+):
+    with receiver.serve() as url:
+        settings = {"webhook_url": SecretStr(url), "webhook_secret": SecretStr(SECRET)}
+        attempt.finish()
+        settings["reconcile_interval"] = 0.05
+        with serve(**settings, public_url="https://box.example/"):
+            eventually(lambda: receiver.got and count(Notification) == 0)
+        (event,) = events(receiver)
+        assert event["data"]["url"] == f"https://box.example/runs/{event['data']['run']}"
+        with serve(reconcile_interval=0.05) as address:
+            run = attempt.services.sessions.read().query(Run).one()
+            httpx.post(f"{address}/api/v1/runs/{run.id}/extend", json={"generations": 1})
+            httpx.post(f"{address}/api/v1/runs/{run.id}/cancel")
+            eventually(lambda: count(Notification) == 0)
+        assert len(receiver.got) == 1
+
+
+@pytest.mark.parametrize(
+    ("given", "field"),
+    [
+        ({"WEBHOOK_URL": "ftp://s3cret"}, "webhook_url"),
+        ({"WEBHOOK_URL": "http://u:s3cret@host/"}, "webhook_url"),
+        ({"WEBHOOK_URL": "http://host/s3cret"}, "webhook_secret"),
+        ({"WEBHOOK_SECRET": "whsec_s3cret"}, "webhook_secret"),
+        ({"TOKEN": "s3cret"}, "token"),
+    ],
+)
+def test_a_wrong_secret_is_named_and_not_printed(monkeypatch, given, field):
+    for name, value in given.items():
+        monkeypatch.setenv(f"MICROCOSMOS_{name}", value)
+    with pytest.raises(ValidationError) as caught:
+        Settings()
+    for text in (str(caught.value), explain(caught.value)):
+        assert f"`{field}`" in text
+        assert "s3cret" not in text
+
+
+def test_a_wrong_setting_that_is_no_secret_is_printed(monkeypatch):
+    monkeypatch.setenv("PORT", "0")
+    with pytest.raises(ValidationError) as caught:
+        Settings()
+    assert explain(caught.value).endswith("greater than or equal to 1; got '0'")
+
+
+def test_the_command_tries_the_webhook(receiver, monkeypatch, capsys):
+    with receiver.serve() as url:
+        monkeypatch.setenv("MICROCOSMOS_WEBHOOK_URL", url)
+        monkeypatch.setenv("MICROCOSMOS_WEBHOOK_SECRET", SECRET)
+        receiver.answers = [(401,)]
+        with pytest.raises(SystemExit, match="The webhook was not told: it answers 401"):
+            trial.main()
+        trial.main()
+    assert "accepted" in capsys.readouterr().out
+    assert [one["type"] for one in events(receiver)] == ["run.finished"] * 2
