@@ -19,6 +19,9 @@ from sqlalchemy.types import TypeDecorator
 from ..settings import create_private
 
 TIMEOUT_MS = 15_000
+KEPT_CONNECTIONS, MAX_CONNECTIONS = 5, 15
+"""Connections that a process keeps open, and the most that it uses at once."""
+POOL = {"pool_size": KEPT_CONNECTIONS, "max_overflow": MAX_CONNECTIONS - KEPT_CONNECTIONS}
 RETRY_SECONDS = 1.0
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -116,6 +119,7 @@ def _postgresql(url: Any) -> Engine:
     return create_engine(
         url.set(drivername="postgresql+psycopg"),
         pool_pre_ping=True,
+        **POOL,
         connect_args={"connect_timeout": 10, "options": f"-c timezone=UTC {limits}"},
     )
 
@@ -123,7 +127,7 @@ def _postgresql(url: Any) -> Engine:
 def _sqlite(url: Any) -> Engine:
     if url.database:
         create_private(Path(url.database).parent)
-    engine = create_engine(url, connect_args={"timeout": TIMEOUT_MS / 1000})
+    engine = create_engine(url, connect_args={"timeout": TIMEOUT_MS / 1000}, **POOL)
     event.listen(engine, "connect", _prepare_sqlite)
     event.listen(engine, "begin", _begin_sqlite)
     return engine

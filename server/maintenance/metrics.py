@@ -1,10 +1,9 @@
-"""Metrics for Prometheus: runs, queues, workers and requests, without names or ids."""
+"""Metrics for Prometheus: this server's requests and statements, and the state."""
 
 import os
 import time
-from collections import Counter as Tally
-from collections.abc import Iterable, Iterator
-from pathlib import Path
+from collections.abc import Iterator
+from typing import Any
 
 from prometheus_client import (
     CollectorRegistry,
@@ -13,34 +12,33 @@ from prometheus_client import (
     disable_created_metrics,
     generate_latest,
 )
-from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, InfoMetricFamily
+from prometheus_client.core import InfoMetricFamily
 from prometheus_client.metrics_core import Metric
 from prometheus_client.multiprocess import MultiProcessCollector
 from prometheus_client.registry import Collector
-from redis import RedisError
-from sqlalchemy import func, select
-from sqlalchemy.orm import Session
+from sqlalchemy import Engine, QueuePool, event
+from sqlalchemy.exc import SQLAlchemyError
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from microcosmos.version import VERSION
 
+from ..core.database import MAX_CONNECTIONS
 from ..core.processes import SHARED_METRICS
 from ..services.services import Services
-from ..storage import space
-from ..tables import RUNNING, STATUSES, Run
-from ..workers import registry
+from . import state_metrics
+from .state_metrics import gauge
 
 BUCKETS = (0.005, 0.02, 0.05, 0.1, 0.25, 1.0, 5.0)
-"""Upper bounds of the histogram of request times, in seconds."""
+"""Upper bounds of the histograms of requests and statements, in seconds."""
 METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")
 
 disable_created_metrics()
 
 
 class Metrics(Collector):
-    """Requests since the server started, and the state of database and queues.
+    """Counts of this server since it started, and the state of the installation.
 
-    The processes of one server count requests together, in files.
+    The processes of one server count together, in files.
     """
 
     def __init__(self, services: Services):
@@ -59,6 +57,13 @@ class Metrics(Collector):
             buckets=BUCKETS,
             registry=counted,
         )
+        self.statements = Histogram(
+            "microcosmos_database_statement_seconds",
+            "Seconds that the database took for a statement of this server.",
+            buckets=BUCKETS,
+            registry=counted,
+        )
+        time_statements(services.sessions.engine, self.statements)
 
     def count(self, method: str, route: str, status: int, seconds: float) -> None:
         method = method if method in METHODS else "other"  # Clients may invent some.
@@ -67,14 +72,42 @@ class Metrics(Collector):
 
     def collect(self) -> Iterator[Metric]:
         yield InfoMetricFamily("microcosmos", "The server.", {"version": VERSION})
-        with self.services.sessions.read() as session:
-            yield from _runs(session)
-            yield _workers(session, self.services.settings.lease)
-        yield _disks(self.services)
-        yield from _queues(self.services)
+        yield from self._database()
+        yield from state_metrics.of_disks(self.services)
+        yield from state_metrics.of_redis(self.services)
+
+    def _database(self) -> Iterator[Metric]:
+        """Yield the database's state; without it the other metrics tell the rest."""
+        services, found = self.services, list[Metric]()
+        try:
+            with services.sessions.read() as session:
+                found += state_metrics.of_database(session, services.settings.lease)
+        except SQLAlchemyError:
+            found = []
+        yield gauge("database_up", "1 if the database answers.", (), [(bool(found),)])
+        yield from found
+        if isinstance(pool := services.sessions.engine.pool, QueuePool):
+            used = [("in_use", pool.checkedout()), ("idle", pool.checkedin())]
+            about = "Connections of the process that answers."
+            yield gauge("database_connections", about, ("state",), used)
+        limit = [(MAX_CONNECTIONS,)]
+        yield gauge("database_connections_limit", "Most connections in use.", (), limit)
 
     def text(self) -> bytes:
         return generate_latest(self.registry)
+
+
+def time_statements(engine: Engine, histogram: Histogram) -> None:
+    """Have an engine observe the time of each statement."""
+
+    def before(_connection: Any, _cursor: Any, _text: str, _values: Any, context: Any, _: Any):
+        context.began = time.perf_counter()
+
+    def after(_connection: Any, _cursor: Any, _text: str, _values: Any, context: Any, _: Any):
+        histogram.observe(time.perf_counter() - context.began)
+
+    event.listen(engine, "before_cursor_execute", before)
+    event.listen(engine, "after_cursor_execute", after)
 
 
 class CountRequests:
@@ -109,56 +142,3 @@ def route(scope: Scope) -> str:
     for name, value in given:
         path = path.replace(f"/{value}", f"/{{{name}}}", 1)
     return path
-
-
-def _runs(session: Session) -> Iterator[Metric]:
-    sums = (func.sum(c) for c in (Run.evaluations, Run.infeasible, Run.generation, Run.seconds))
-    each = session.execute(select(Run.status, func.count(), *sums).group_by(Run.status)).all()
-    rows = {status: tuple(values) for status, *values in each}
-    nothing = (0, 0, 0, 0, 0.0)
-    counts = ((status, rows.get(status, nothing)[0]) for status in STATUSES)
-    yield _gauge("runs", "Runs, by status.", ("status",), counts)
-    for index, name, about in (
-        (1, "evaluations", "Evaluations of all runs."),
-        (2, "infeasible", "Infeasible evaluations."),
-        (3, "generations", "Recorded generations."),
-        (4, "computing_seconds", "Seconds of computing of all recorded generations."),
-    ):
-        total = sum(float(row[index]) for row in rows.values())
-        yield CounterMetricFamily(f"microcosmos_{name}", about, total)
-    _, _, _, generations, seconds = rows.get(RUNNING, nothing)
-    mean = [(float(seconds) / float(generations),)] if generations else []
-    yield _gauge("generation_seconds", "Mean seconds per generation of running runs.", (), mean)
-
-
-def _workers(session: Session, lease: float) -> Metric:
-    found = Tally((one.kind, one.status) for one in registry.live(session, lease))
-    pairs = [(kind, status) for kind in ("cpu", "gpu") for status in ("idle", "busy")]
-    counts = ((*pair, found[pair]) for pair in pairs)
-    return _gauge("workers", "Live workers.", ("kind", "status"), counts)
-
-
-def _disks(services: Services) -> Metric:
-    """Label the disks by what they hold: paths may tell names."""
-    settings, store = services.settings, services.artifacts
-    kinds = {Path(store.root): "store", settings.data.resolve(): "database"}
-    free = [(kinds[one], space.free_bytes(one)) for one in space.folders(settings, store)]
-    return _gauge("disk_free_bytes", "Free bytes, by what the disk holds.", ("holds",), free)
-
-
-def _queues(services: Services) -> Iterator[Metric]:
-    try:
-        lengths = services.jobs.lengths()
-    except RedisError:
-        lengths = {}
-    yield _gauge("redis_up", "1 if Redis answers.", (), [(bool(lengths),)])
-    yield _gauge("queue_length", "Jobs that wait for a worker.", ("queue",), lengths.items())
-
-
-def _gauge(
-    name: str, about: str, labels: Iterable[str], samples: Iterable[tuple[str | float, ...]]
-) -> Metric:
-    family = GaugeMetricFamily(f"microcosmos_{name}", about, labels=tuple(labels))
-    for *values, value in samples:
-        family.add_metric([str(one) for one in values], float(value))
-    return family

@@ -46,12 +46,14 @@ def reconciling(services: Services) -> Iterator[None]:
     def repeat() -> None:
         expire_at = 0.0
         while True:
+            began = time.monotonic()
             try:
                 if take_turn(services):
                     reconcile(services)
                     if time.monotonic() >= expire_at:
                         expire(services)
                         expire_at = time.monotonic() + EXPIRE_SECONDS
+                    note_pass(services, time.monotonic() - began)
             except (RedisError, SQLAlchemyError) as error:
                 log.warning("will reconcile again: %s", error)
             except Exception:  # Without this thread nothing would requeue lost runs.
@@ -76,6 +78,13 @@ def take_turn(services: Services) -> bool:
         due = update(InstallationState).where(or_(last.is_(None), last <= begun))
         taken = session.execute(due.values(reconciled_at=clock()).returning(last))
         return taken.one_or_none() is not None
+
+
+def note_pass(services: Services, seconds: float) -> None:
+    """Record a complete pass: if there is none for long, somebody has to look."""
+    done = update(InstallationState).values(passed_at=clock(), pass_seconds=seconds)
+    with services.sessions.write.begin() as session:
+        session.execute(done)
 
 
 def reconcile(services: Services) -> None:

@@ -25,6 +25,8 @@ DELIVERED, DISCARDED, FAILED = (
     totals.Key(totals.WEBHOOK, outcome) for outcome in ("delivered", "discarded", "failed")
 )
 
+OUTCOMES = (DELIVERED, DISCARDED, FAILED)
+
 
 def add(session: Session, run: Run) -> None:
     """Add a notification of the state that a run has from this transaction on."""

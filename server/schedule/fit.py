@@ -1,18 +1,24 @@
 """Whether a worker can carry out a run, and why no live one can."""
 
+import json
+from collections import Counter
 from collections.abc import Callable, Sequence
 from datetime import datetime, timedelta
 from typing import Any, NamedTuple
 
+from sqlalchemy import Text, case, cast, func, select
+from sqlalchemy.orm import Session
+
 from microcosmos.sizes import size
 
-from ..tables import Run, Worker
+from ..tables import QUEUED, Run, Worker
 from ..workers import plugins
 
 
 class Requirement(NamedTuple):
     """Something that a run asks of its worker."""
 
+    name: str
     met: Callable[[Any, Worker, datetime], bool]
     """Takes a run, or its columns as in `order.COLUMNS`, a worker, and the time."""
     explain: Callable[[Run, Sequence[Worker]], str]
@@ -34,6 +40,52 @@ def fitting(
             return [], one.explain(run, workers)
         workers = left
     return workers, None
+
+
+class Asked(NamedTuple):
+    """What runs ask of a worker: the columns of `Run` on which it depends whether one fits."""
+
+    plugin_versions: list[str] | None
+    labels: list[str]
+    memory_bytes: int | None
+    device: str | None
+    device_patience: float | None
+    checkpoint_generation: int
+    queued_at: datetime | None
+    released_at: datetime | None
+
+
+def count_unfit(session: Session, alive: Sequence[Worker], moment: datetime) -> Counter[str]:
+    """Count the queued runs that no live worker can carry out, by the first unmet requirement.
+
+    They are counted as `worker` if no worker is alive. Ten thousand runs ask much the same, so
+    the database groups them.
+    """
+    patient = Run.device_patience.is_not(None)
+    columns = (
+        *(cast(Run.plugin_versions, Text), cast(Run.labels, Text), Run.memory_bytes),
+        *(Run.device, Run.device_patience, case((Run.checkpoint_generation > 0, 1), else_=0)),
+        *(case((patient, Run.queued_at)), case((patient, Run.released_at))),
+    )
+    numbered = [column.label(name) for column, name in zip(columns, Asked._fields, strict=True)]
+    groups = select(*numbered, func.count()).group_by(*numbered)
+    found = Counter[str]()
+    waiting = groups.where(Run.status == QUEUED, Run.worker.is_(None))
+    rows: Sequence[Any] = session.execute(waiting).all()
+    for versions, labels, *others, number in rows:
+        asked = Asked(json.loads(versions or "null"), json.loads(labels), *others)
+        if unmet := _unmet(asked, alive, moment) if alive else "worker":
+            found[unmet] += number
+    return found
+
+
+def _unmet(run: Asked, workers: Sequence[Worker], moment: datetime) -> str | None:
+    """Return the name of the first requirement that leaves no worker."""
+    for one in REQUIREMENTS:
+        workers = [worker for worker in workers if one.met(run, worker, moment)]
+        if not workers:
+            return one.name
+    return None
 
 
 def patience_ends(run: Any) -> datetime | None:
@@ -98,9 +150,9 @@ def _explain_device(run: Run, _: Sequence[Worker]) -> str:
 
 
 REQUIREMENTS = (
-    Requirement(_has_plugins, _explain_plugins),
-    Requirement(_has_labels, _explain_labels),
-    Requirement(_has_memory, _explain_memory),
-    Requirement(_repeats_bits, _explain_device),
+    Requirement("plugins", _has_plugins, _explain_plugins),
+    Requirement("labels", _has_labels, _explain_labels),
+    Requirement("memory", _has_memory, _explain_memory),
+    Requirement("device", _repeats_bits, _explain_device),
 )
 """In the order in which they are explained."""

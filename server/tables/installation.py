@@ -19,5 +19,8 @@ class InstallationState(Base):
     """Counts changes of the verdicts of audits, which archives show."""
     reconciled_at: Mapped[datetime | None]
     """When a server last began the periodic work; another one waits for its turn."""
+    passed_at: Mapped[datetime | None]
+    """When a server last completed it."""
+    pass_seconds: Mapped[float | None]
     keep_files_until: Mapped[datetime | None]
     """Until then the server deletes no file: a backup is being made."""

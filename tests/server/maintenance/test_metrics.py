@@ -4,7 +4,13 @@ import re
 
 import httpx
 import pytest
+from sqlalchemy.exc import OperationalError
 
+from server.attempts.leases import end_job
+from server.core.database import ago
+from server.deletion.purge import purge
+from server.maintenance import state_metrics
+from server.tables import Artifact, InstallationState, Run
 from server.workers import registry
 
 SAMPLE = re.compile(r'^(\w+)(?:\{((?:\w+="(?:[^"\\]|\\.)*",?)*)\})? (\S+)$')
@@ -46,7 +52,7 @@ def test_runs_queues_and_workers_are_counted(services, run_id, scrape, record):
     assert (after["runs", 'status="queued"'], after["runs", 'status="running"']) == (0, 1)
     assert after["evaluations_total", ""] == 16 * 4
     assert after["infeasible_total", ""] == 4
-    assert after["generations_total", ""] == 4
+    assert after["generations_total", ""] == 1, "one report"
     assert after["computing_seconds_total", ""] == 10
     assert after["generation_seconds", ""] == 2.5
     assert after["workers", 'kind="gpu",status="busy"'] == 1
@@ -84,3 +90,122 @@ def test_metrics_without_redis_show_the_rest(run_id, serve):
     assert "microcosmos_redis_up 0.0" in lines
     assert 'microcosmos_runs{status="queued"} 1.0' in lines
     assert not any(line.startswith("microcosmos_queue_length{") for line in lines)
+
+
+def test_counters_fall_neither_by_deletion_nor_by_rewinding_nor_by_a_restart(
+    services, run_id, scrape, serve, record, claim_run, update_rows
+):
+    record(4, {5: 1.0}, seconds=10.0)
+    end_job(services, run_id, "worker")
+    claim_run().refuse("no")  # It begins with generation 0 again.
+    with services.sessions.read() as session:
+        then = ago(session, 1)
+    before = scrape()
+    update_rows(Run, deleted_at=then, purge_at=then)
+    purge(services)
+    after = scrape()
+    assert after["runs", 'status="failed"'] == 0
+    counters = [key for key in before if key[0].endswith("_total")]
+    assert all(after[key] >= before[key] for key in counters)
+    assert after["evaluations_total", ""] == 64
+    with serve(reconcile_interval=0.05) as address:
+        lines = httpx.get(f"{address}/metrics", verify=False).text.splitlines()
+    assert "microcosmos_evaluations_total 64.0" in lines
+    assert 'microcosmos_attempts_total{host="worker"} 2.0' in lines
+
+
+def test_the_age_of_checkpoints_is_that_of_running_runs(
+    services, run_id, attempt, record, scrape, update_rows
+):
+    key = ("run_checkpoint_age_seconds", f'run="{run_id}"')
+    with services.sessions.read() as session:
+        then = ago(session, 3600)
+    update_rows(Run, started_at=then)
+    assert scrape()[key] == pytest.approx(3600, abs=60), "there is none yet"
+    record(1, {5: 1.0})
+    attempt.save(1, b"data")
+    assert scrape()[key] < 60
+    update_rows(Artifact, created_at=then)
+    assert scrape()[key] == pytest.approx(3600, abs=60)
+    attempt.finish()
+    assert key not in scrape()
+
+
+@pytest.mark.postgresql
+@pytest.mark.parametrize(
+    ("columns", "missing"),
+    [
+        ({"labels": []}, None),
+        ({"labels": ["a100"]}, "labels"),
+        ({"memory_bytes": 1 << 40}, "memory"),
+        ({"plugin_versions": ["ab"]}, "plugins"),
+        ({"device": "another kind", "checkpoint_generation": 3}, "device"),
+        ({"device": "another kind", "checkpoint_generation": 0}, None),
+        ({"device": "another", "checkpoint_generation": 3, "device_patience": 0.0}, None),
+        ({"device": "another", "checkpoint_generation": 3, "device_patience": 9e6}, "device"),
+    ],
+)
+def test_runs_that_no_worker_fits_are_counted_by_what_is_missing(
+    services, run_id, scrape, update_rows, columns, missing
+):
+    assert scrape()["runs_unfit", 'missing="worker"'] == 1
+    registry.report(services.sessions, "worker-1", "a device", 1 << 30, "idle")
+    update_rows(Run, **columns)
+    found = scrape()
+    for name in ("worker", "plugins", "labels", "memory", "device"):
+        assert found["runs_unfit", f'missing="{name}"'] == (name == missing), name
+
+
+def test_workers_with_a_problem_and_their_gpus_are_shown_by_host(services, scrape):
+    gpu = {"uuid": "GPU-1", "temperature_celsius": 91.0, "ecc_errors": 2}
+    for number in (1, 2):  # Two workers share the card.
+        name = f"box-7-{number}"
+        trouble = {"problem": "It fails", "problem_kind": "self-test"} if number == 2 else {}
+        more = {"kind": "gpu", "gpu": gpu, **trouble}
+        registry.report(services.sessions, name, "a GPU", 1, "idle", xid_errors=2, **more)
+    unknown = gpu | {"uuid": "GPU-2", "temperature_celsius": None, "ecc_errors": None}
+    registry.report(services.sessions, "other-1", "a GPU", 1, "idle", kind="gpu", gpu=unknown)
+    found = scrape()
+    assert found["workers", 'kind="gpu",status="problem"'] == 1
+    assert found["workers", 'kind="gpu",status="idle"'] == 2
+    assert found["worker_problems", 'host="box-7",problem="self-test"'] == 1
+    card = 'gpu="GPU-1",host="box-7"'
+    assert found["gpu_temperature_celsius", card] == 91
+    assert found["gpu_ecc_errors_total", card] == 2
+    assert found["gpu_xid_errors_total", 'host="box-7"'] == 4
+    assert found["gpu_xid_errors_total", 'host="other"'] == 0
+    assert not any("GPU-2" in labels for _, labels in found)
+
+
+def test_the_servers_own_work_is_measured(serve, services, update_rows, eventually):
+    with serve(reconcile_interval=0.05) as address:
+
+        def lines():
+            text = httpx.get(f"{address}/metrics", verify=False).text
+            return dict(line.rsplit(" ", 1) for line in text.splitlines() if line[0] != "#")
+
+        age = "microcosmos_reconciler_pass_age_seconds"
+        eventually(lambda: age in lines())
+        assert float(lines()[age]) < 20
+        assert float(lines()["microcosmos_reconciler_pass_seconds"]) > 0
+        with services.sessions.read() as session:
+            then = ago(session, 600)
+        update_rows(InstallationState, passed_at=then, reconciled_at=then)
+        eventually(lambda: float(lines()[age]) < 20)
+        found = lines()
+    assert float(found["microcosmos_database_statement_seconds_count"]) > 10
+    assert float(found['microcosmos_database_connections{state="in_use"}']) >= 0
+    assert float(found["microcosmos_database_connections_limit"]) == 15
+    free, whole = (f'microcosmos_disk_{one}_bytes{{holds="store"}}' for one in ("free", "size"))
+    assert 0 < float(found[free]) < float(found[whole])
+
+
+def test_metrics_without_the_database_show_the_rest(scrape, monkeypatch):
+    def refuse(*_):
+        raise OperationalError("SELECT", None, Exception("connection refused"))
+
+    monkeypatch.setattr(state_metrics, "of_database", refuse)
+    found = scrape()
+    assert found["database_up", ""] == 0
+    assert found["redis_up", ""] == 1
+    assert not any(name == "runs" for name, _ in found)

@@ -53,7 +53,8 @@ def _installation() -> None:
         "installation",
         sa.Column("id", sa.Uuid(), primary_key=True),
         sa.Column("verdicts", sa.Integer(), nullable=False),
-        *_optional(MOMENT, "reconciled_at", "keep_files_until"),
+        *_optional(MOMENT, "reconciled_at", "passed_at", "keep_files_until"),
+        sa.Column("pass_seconds", sa.Double()),
     )
     op.bulk_insert(table, [{"id": uuid4(), "verdicts": 0}])
 
