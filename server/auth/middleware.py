@@ -90,7 +90,7 @@ class PrincipalMiddleware:
         clean = request.url.remove_query_params("token")
         # The log of requests is written at the end: it must not name the secret.
         request.scope["query_string"] = clean.query.encode()
-        if _follows_a_foreign_link(request.headers):
+        if not _opened_by_a_person(request.headers):
             return RedirectResponse(clean, 303)  # The page asks for a token.
         try:
             principal = await run_in_threadpool(self.authenticator.identify, given)
@@ -129,13 +129,15 @@ def _refuse_foreign_origin(headers: Headers) -> None:
         raise ProblemError(403, "Forbidden", needed)
 
 
-def _follows_a_foreign_link(headers: Headers) -> bool:
-    """Tell whether a page of another site names the address: nobody typed or opened it."""
-    site = headers.get("sec-fetch-site")
-    if site is None:  # An old browser, or none.
-        referer = headers.get("referer")
-        return referer is not None and _split(referer).netloc != headers.get("host", "")
-    return site not in ("none", "same-origin")
+def _opened_by_a_person(headers: Headers) -> bool:
+    """Tell whether somebody typed or opened the address, or our own page links to it.
+
+    Without HTTPS, beyond loopback, browsers do not tell, and other sites can hide themselves.
+    """
+    site, referer = headers.get("sec-fetch-site"), headers.get("referer")
+    if site is None:
+        return referer is not None and _split(referer).netloc == headers.get("host", "")
+    return site in ("none", "same-origin")
 
 
 def _split(address: str) -> SplitResult:

@@ -127,7 +127,8 @@ def _postgresql(url: Any) -> Engine:
 def _sqlite(url: Any) -> Engine:
     if url.database:
         create_private(Path(url.database).parent)
-    engine = create_engine(url, connect_args={"timeout": TIMEOUT_MS / 1000}, **POOL)
+    pool = POOL if url.database else {}  # In memory there is one connection.
+    engine = create_engine(url, connect_args={"timeout": TIMEOUT_MS / 1000}, **pool)
     event.listen(engine, "connect", _prepare_sqlite)
     event.listen(engine, "begin", _begin_sqlite)
     return engine

@@ -1,6 +1,7 @@
 """Authorisation: every route of the application × every kind of principal."""
 
 import re
+from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 from uuid import uuid4
 
@@ -194,6 +195,23 @@ def test_each_principal_reaches_exactly_the_permitted_routes(serve, secrets, par
                 if met != EXPECTED[need][who] or found in (405, 500):
                     wrong.append(f"{route} needs {need}: {who} met {found}")
     assert wrong == []
+
+
+def test_no_request_of_a_token_to_read_orders_audits_or_measurements(
+    serve, services, secrets, parameters
+):
+    sent = {"Authorization": f"Bearer {secrets['reader']}"}
+    with serve(auth="required") as address, httpx.Client(base_url=address, timeout=20) as http:
+        met = {route: status(http, *asked(route, parameters), sent) for route in API}
+    assert services.jobs.audits.count == 0
+    assert services.jobs.renderings.count > 0, "what it looks at is drawn"
+    ordering = [f"POST {ROOT}/creatures/{{sha}}/{one}" for one in ("audit", "measurement")]
+    assert [met[route] for route in ordering] == [FORBIDDEN] * 2
+
+
+def asked(route: str, parameters: Callable[[str], str]) -> tuple[str, str]:
+    method, path = route.split()
+    return method, parameters(path)
 
 
 def status(http: httpx.Client, method: str, url: str, headers: dict[str, str]) -> int:

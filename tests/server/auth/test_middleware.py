@@ -14,6 +14,9 @@ from server.auth.authenticate import ADDRESSES, BURST, INTERVAL, RateLimit, netw
 from server.auth.cookies import COOKIE
 from server.settings import MIN_TOKEN_LENGTH, Settings
 
+TYPED = {"Sec-Fetch-Site": "none"}
+"""What a browser says where somebody typed or opened an address."""
+
 
 def test_only_loopback_goes_without_a_token_unless_configured():
     for host in ("0.0.0.0", "192.0.2.1", "::"):
@@ -66,9 +69,9 @@ def test_a_configured_token_is_needed_from_any_host(serve):
 
 def test_a_page_opened_with_the_token_keeps_it_in_a_cookie(serve):
     with serve(token=SecretStr("secret")) as address, httpx.Client() as client:
-        client.get(f"{address}/runs?token=wrong")
+        client.get(f"{address}/runs?token=wrong", headers=TYPED)
         assert client.get(f"{address}/api/v1/runs").status_code == 401
-        answer = client.get(f"{address}/runs?token=secret&view=map")
+        answer = client.get(f"{address}/runs?token=secret&view=map", headers=TYPED)
         assert answer.status_code == 303
         assert answer.headers["location"] == f"{address}/runs?view=map"
         for word in ("HttpOnly", "SameSite=strict"):
@@ -79,16 +82,21 @@ def test_a_page_opened_with_the_token_keeps_it_in_a_cookie(serve):
 @pytest.mark.parametrize(
     ("sent", "signed_in"),
     [
-        ({}, True),
-        ({"Sec-Fetch-Site": "none"}, True),
+        ({}, False),
+        (TYPED, True),
         ({"Sec-Fetch-Site": "same-origin"}, True),
         ({"Sec-Fetch-Site": "cross-site"}, False),
         ({"Sec-Fetch-Site": "same-site"}, False),
         ({"Referer": "http://evil.example/runs"}, False),
+        ({"Referer": "http://127.0.0.1:PORT/runs"}, True),
+        ({"Referer": "http://127.0.0.1:1/runs"}, False),
+        ({"Referer": "http://["}, False),
     ],
 )
 def test_a_link_of_another_site_signs_nobody_in(serve, sent, signed_in):
     with serve(token=SecretStr("secret")) as address, httpx.Client() as browser:
+        port = str(urlsplit(address).port)
+        sent = {name: value.replace("PORT", port) for name, value in sent.items()}
         answer = browser.get(f"{address}/runs?token=secret&view=map", headers=sent)
         assert answer.headers["location"] == f"{address}/runs?view=map"
         assert ("set-cookie" in answer.headers) == signed_in
@@ -122,7 +130,7 @@ def listening(caplog):
 def test_the_log_of_requests_does_not_name_a_token_in_an_address(serve, caplog):
     with serve(token=SecretStr("secret")) as address, listening(caplog) as logged:
         for token in ("secret", "guessed"):
-            httpx.get(f"{address}/runs?token={token}&view=map")
+            httpx.get(f"{address}/runs?token={token}&view=map", headers=TYPED)
         assert logged() == ["/runs"] * 2
 
 
@@ -171,7 +179,7 @@ def test_the_cookie_is_named_after_the_port_that_the_browser_knows(serve):
     with serve(token=SecretStr("secret")) as address, httpx.Client() as client:
         for host, name in (("localhost:9000", "microcosmos_token_9000"), ("box", COOKIE)):
             sent = {"Host": host}
-            answer = client.get(f"{address}/?token=secret", headers=sent)
+            answer = client.get(f"{address}/?token=secret", headers=sent | TYPED)
             assert answer.headers["set-cookie"].startswith(f"{name}=")
 
 
@@ -275,4 +283,7 @@ def test_wrong_tokens_are_limited_and_valid_ones_pass(serve, services):
             assert refused.json()["title"] == "Too many wrong tokens"
         assert ask(good).status_code == 200
         assert http.post("/api/v1/session", json={"token": good}).status_code == 200
-        assert http.get("/?token=mc_other").status_code in (200, 503)  # The page asks for one.
+        assert http.get("/?token=mc_other", headers=TYPED).status_code in (
+            200,
+            503,
+        )  # The page asks for one.
