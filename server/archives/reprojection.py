@@ -13,7 +13,7 @@ from microcosmos.archive.population import creatures
 from microcosmos.archive.principal import NAME
 from microcosmos.archive.reprojection import FITNESS, Reprojection, over, reproject
 
-from ..core.errors import invalid_field
+from ..core.errors import FieldError, ProblemError, invalid_field
 from ..tables import Run
 from . import elites
 from .schemas import Axis, Component, Figures, ReprojectionRead
@@ -44,7 +44,8 @@ def read(
     try:
         made, learned = over(creatures(listed, *given), axes, of_spec(run.spec))
     except ValueError as error:
-        raise invalid_field("axes", str(error), ",".join(axes)) from error
+        wrong = FieldError(field="axes", message=str(error), got=",".join(axes))
+        raise ProblemError(422, "Invalid input", str(error), [wrong]) from error
     present = session.execute(elites.as_of(run, run.generation)).all()
     alone = reproject(made.creatures.among([row.creature for row in present]), made.axes)
     return ReprojectionRead(

@@ -65,7 +65,9 @@ async def read_history(shown: ShownArchiveDep, measures: str = "") -> Response:
     **archive_answers(ReprojectionRead),
     dependencies=[MAY_READ_SHARED],
 )
-async def read_reprojection(shown: ShownArchiveDep, axes: str, measures: str = "") -> Response:
+async def read_reprojection(
+    shown: ShownArchiveDep, axes: Annotated[str, Query(min_length=1)], measures: str = ""
+) -> Response:
     """Return the archive of all creatures that ever entered, over any other axes.
 
     `axes` are measures, `fitness`, or principal components of all measures (`pc1` to `pc9`),

@@ -1,6 +1,6 @@
 """Routes of runs: estimate, submit, list, read, edit, pause, resume and cancel."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 from uuid import UUID
 
 from fastapi import APIRouter, Body, Depends, Query, Request, Response
@@ -16,7 +16,7 @@ from ..estimates.eta import speeds_of
 from ..estimates.schemas import EstimateRead
 from ..services.services import ServicesDep, SessionDep
 from ..specs import parsing
-from ..specs.schemas import DrawingRead
+from ..specs.schemas import DrawingRead, SpecDocument
 from ..tables import Run, Status
 from ..workers import registry
 from . import lifecycle, listing
@@ -35,11 +35,8 @@ from .submission import (
 
 router = APIRouter(prefix="/runs", tags=["runs"], route_class=json_route(SPEC_BYTES))
 
-Document = Annotated[dict[str, Any], Body()]
-"""A spec, which `microcosmos.spec` checks: its messages name fields as people write them."""
 
-
-def spec_sent(document: Document, services: ServicesDep) -> Spec:
+def spec_sent(document: Annotated[SpecDocument, Body()], services: ServicesDep) -> Spec:
     return parsing.parse(services, document)
 
 

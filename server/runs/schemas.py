@@ -4,7 +4,7 @@ from datetime import datetime
 from typing import Annotated, Any, Literal, Self
 from uuid import UUID
 
-from pydantic import AfterValidator, Field, StringConstraints, model_validator
+from pydantic import AfterValidator, ConfigDict, Field, StringConstraints, model_validator
 
 from ..core.schemas import Wire
 from ..specs.schemas import PictureRead
@@ -83,6 +83,8 @@ Range = tuple[float, float]
 
 class ForkStart(Wire):
     """The creatures that a fork starts from, given by one of these fields."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"minProperties": 1})
 
     creatures: Annotated[list[Digest], Field(min_length=1, max_length=4096)] | None = None
     """Creatures by name, from any run."""

@@ -4,11 +4,20 @@ from collections.abc import Iterable
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BeforeValidator, ConfigDict
+from pydantic import BeforeValidator, ConfigDict, WithJsonSchema
 
-from microcosmos.spec import solid_runs, targets
+from microcosmos.spec import EXPERIMENTS, solid_runs, targets
 
 from ..core.schemas import Wire
+
+SPEC_SCHEMA = {
+    "type": "object",
+    "required": ["experiment"],
+    "properties": {"experiment": {"enum": sorted(EXPERIMENTS)}},
+    "description": "A spec; `GET /experiments` has the schema of each experiment.",
+}
+SpecDocument = Annotated[dict[str, Any], WithJsonSchema(SPEC_SCHEMA)]
+"""A spec as it is sent: `microcosmos.spec` checks it and names fields as people write them."""
 
 
 class PresetRead(Wire):

@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, Field, StringConstraints
 from ..core.schemas import Wire
 from ..estimates.schemas import MeasuredSpeed, QueueAhead
 from ..runs.schemas import Name
+from ..specs.schemas import SpecDocument
 from ..tables import Status
 
 MAX_RUNS = 1000
@@ -46,7 +47,7 @@ Values = Annotated[list[Any], Field(min_length=1, max_length=MAX_RUNS)]
 class SweepCreate(Wire):
     """A request for many runs: each case of the grid with each seed."""
 
-    spec: dict[str, Any]
+    spec: SpecDocument
     seeds: Annotated[Count | Listed, BeforeValidator(seeds_sent)] = 1
     """A number of seeds, starting with the spec's own, or a list of seeds."""
     grid: Annotated[dict[Path, Values], Field(max_length=MAX_FIELDS)] = Field(default={})

@@ -2814,9 +2814,13 @@ export interface components {
              * @default 1
              */
             seeds: number | number[];
-            /** Spec */
+            /**
+             * Spec
+             * @description A spec; `GET /experiments` has the schema of each experiment.
+             */
             spec: {
-                [key: string]: unknown;
+                /** @enum {unknown} */
+                experiment: "folding" | "gaits" | "neuroevolution" | "quality-diversity" | "refinement" | "scaling";
             };
         };
         /** SweepCurves */
@@ -4252,7 +4256,8 @@ export interface operations {
         requestBody: {
             content: {
                 "application/json": {
-                    [key: string]: unknown;
+                    /** @enum {unknown} */
+                    experiment: "folding" | "gaits" | "neuroevolution" | "quality-diversity" | "refinement" | "scaling";
                 };
             };
         };
@@ -4296,7 +4301,8 @@ export interface operations {
         requestBody: {
             content: {
                 "application/json": {
-                    [key: string]: unknown;
+                    /** @enum {unknown} */
+                    experiment: "folding" | "gaits" | "neuroevolution" | "quality-diversity" | "refinement" | "scaling";
                 };
             };
         };
