@@ -4,7 +4,7 @@ from datetime import datetime
 from typing import Any
 from uuid import UUID, uuid4
 
-from sqlalchemy import Index, String
+from sqlalchemy import String
 from sqlalchemy.orm import Mapped, mapped_column
 
 from ..core.database import clock
@@ -29,7 +29,6 @@ class Notification(Base):
     """An event of a run that a webhook is to be told; deleted once it was told."""
 
     __tablename__ = "notifications"
-    __table_args__ = (Index(None, "due_at", "id"),)
 
     id: Mapped[UUID] = mapped_column(primary_key=True, default=uuid4)
     """Repeats of an event have the same id."""

@@ -161,13 +161,13 @@ def test_a_job_that_ignores_the_stop_is_killed_at_no_cost(
 def test_a_job_that_dies_before_its_claim_is_counted_with_its_last_words(
     run_id, row, busy, next_run, capfd
 ):
-    busy.environment["MICROCOSMOS_LEASE"] = "soon"
+    busy.environment["MICROCOSMOS_DATABASE_URL"] = "nonsense"
     for number in range(1, MAX_ATTEMPTS + 1):
         busy.carry_out(next_run())
         assert row().attempts_without_checkpoint == number
     assert row().status == "failed"
     assert "its process ended with status 1" in row().error
-    assert "Input should be a valid number" in row().error
+    assert "Could not parse SQLAlchemy URL" in row().error
     assert "Traceback" in capfd.readouterr().err, "the worker's log has all of it"
 
 

@@ -6,13 +6,21 @@ from uuid import uuid4
 import sqlalchemy as sa
 from alembic import op
 
+from server.tables.migrations.columns import (
+    HASH,
+    JSON_OR_NULL,
+    MOMENT,
+    optional,
+    required,
+    to_creature,
+    to_run,
+)
+
 revision = "0001"
 down_revision = None
 branch_labels = None
 depends_on = None
 
-HASH, MOMENT = sa.LargeBinary(length=32), sa.DateTime(timezone=True)
-JSON_OR_NULL = sa.JSON(none_as_null=True)
 FIGURES = ("experiment", "evaluations", "qd_score", "coverage", "best")
 KEYS = {
     "name": "lower(name)",
@@ -22,22 +30,6 @@ KEYS = {
     " ELSE CAST(generation AS DOUBLE PRECISION) / generations END",
 }
 """Keys of orders of runs that are no columns."""
-
-
-def _required(kind: Any, *names: str) -> list[sa.Column[Any]]:
-    return [sa.Column(name, kind, nullable=False) for name in names]
-
-
-def _optional(kind: Any, *names: str) -> list[sa.Column[Any]]:
-    return [sa.Column(name, kind) for name in names]
-
-
-def _to_creature() -> sa.ForeignKey:
-    return sa.ForeignKey("creatures.sha256")
-
-
-def _to_run() -> sa.ForeignKey:
-    return sa.ForeignKey("runs.id", ondelete="CASCADE")
 
 
 def upgrade() -> None:
@@ -53,7 +45,7 @@ def _installation() -> None:
         "installation",
         sa.Column("id", sa.Uuid(), primary_key=True),
         sa.Column("verdicts", sa.Integer(), nullable=False),
-        *_optional(MOMENT, "reconciled_at", "passed_at", "keep_files_until"),
+        *optional(MOMENT, "reconciled_at", "passed_at", "keep_files_until"),
         sa.Column("pass_seconds", sa.Double()),
     )
     op.bulk_insert(table, [{"id": uuid4(), "verdicts": 0}])
@@ -65,9 +57,9 @@ def _creatures() -> None:
         sa.Column("sha256", HASH, primary_key=True),
         sa.Column("trusted", sa.Boolean()),
         sa.Column("identity", sa.LargeBinary(), nullable=False),
-        *_required(sa.JSON(), "parents", "credit"),
+        *required(sa.JSON(), "parents", "credit"),
         sa.Column("operator", sa.Text()),
-        *_optional(JSON_OR_NULL, "measured", "provenance"),
+        *optional(JSON_OR_NULL, "measured", "provenance"),
         sa.Column("licence", sa.Text(), nullable=False),
         sa.Column("created_at", MOMENT, nullable=False),
         sa.Column("imported", sa.Boolean(), nullable=False),
@@ -80,7 +72,7 @@ def _creatures() -> None:
     )
     op.create_table(
         "parents",
-        sa.Column("child", HASH, _to_creature(), primary_key=True),
+        sa.Column("child", HASH, to_creature(), primary_key=True),
         sa.Column("position", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("parent", HASH, nullable=False),
     )
@@ -100,13 +92,13 @@ def _workers() -> None:
         "workers",
         sa.Column("name", sa.String(length=255), primary_key=True),
         sa.Column("device", sa.Text(), nullable=False),
-        *_required(sa.String(length=16), "kind", "status"),
+        *required(sa.String(length=16), "kind", "status"),
         sa.Column("memory_bytes", sa.BigInteger(), nullable=False),
         sa.Column("memory_used_bytes", sa.BigInteger()),
         sa.Column("load", sa.Double()),
         sa.Column("run_id", sa.Uuid()),
-        *_required(MOMENT, "since", "heartbeat_at"),
-        *_required(sa.JSON(), "plugins", "unloaded", "device_kinds", "labels"),
+        *required(MOMENT, "since", "heartbeat_at"),
+        *required(sa.JSON(), "plugins", "unloaded", "device_kinds", "labels"),
         sa.Column("problem", sa.Text()),
         sa.Column("problem_kind", sa.String(length=16)),
         sa.Column("gpu", JSON_OR_NULL),
@@ -117,29 +109,29 @@ def _runs() -> None:
     op.create_table(
         "runs",
         sa.Column("id", sa.Uuid(), primary_key=True),
-        *_required(sa.String(length=64), "experiment", "version"),
+        *required(sa.String(length=64), "experiment", "version"),
         sa.Column("spec", JSON_OR_NULL, nullable=False),
-        *_optional(JSON_OR_NULL, "plugin_versions", "summary"),
-        *_required(sa.Boolean(), "demonstration", "interrupted", "may_yield"),
+        *optional(JSON_OR_NULL, "plugin_versions", "summary"),
+        *required(sa.Boolean(), "demonstration", "interrupted", "may_yield"),
         sa.Column("name", sa.String(length=200)),
-        *_required(sa.JSON(), "tags", "labels"),
-        *_optional(sa.Text(), "note", "device", "error", "warning"),
-        *_required(sa.String(length=16), "status", "priority"),
+        *required(sa.JSON(), "tags", "labels"),
+        *optional(sa.Text(), "note", "device", "error", "warning"),
+        *required(sa.String(length=16), "status", "priority"),
         sa.Column("requested_state", sa.String(length=16)),
         sa.Column("memory_bytes", sa.BigInteger()),
         sa.Column("device_patience", sa.Double()),
-        *_optional(MOMENT, "requested_at", "released_at", "started_at", "finished_at"),
-        *_optional(MOMENT, "heartbeat_at", "deleted_at", "purge_at"),
-        *_required(MOMENT, "created_at", "queued_at"),
-        *_required(sa.Integer(), "attempt", "attempts_without_checkpoint", "rewinds"),
-        *_required(sa.Integer(), "generations", "generation", "checkpoint_generation"),
-        *_optional(sa.String(length=255), "worker", "avoided_worker"),
-        *_required(sa.BigInteger(), "evaluations", "infeasible"),
+        *optional(MOMENT, "requested_at", "released_at", "started_at", "finished_at"),
+        *optional(MOMENT, "heartbeat_at", "deleted_at", "purge_at"),
+        *required(MOMENT, "created_at", "queued_at"),
+        *required(sa.Integer(), "attempt", "attempts_without_checkpoint", "rewinds"),
+        *required(sa.Integer(), "generations", "generation", "checkpoint_generation"),
+        *optional(sa.String(length=255), "worker", "avoided_worker"),
+        *required(sa.BigInteger(), "evaluations", "infeasible"),
         sa.Column("seconds", sa.Double(), nullable=False),
-        *_optional(sa.Double(), "qd_score", "coverage", "best"),
-        *_optional(sa.Double(), "corrected_qd_score", "corrected_coverage", "hit_rate"),
-        *_optional(sa.Uuid(), "sweep", "forked_from", "owner"),
-        *_optional(sa.Integer(), "sweep_index", "n_initial"),
+        *optional(sa.Double(), "qd_score", "coverage", "best"),
+        *optional(sa.Double(), "corrected_qd_score", "corrected_coverage", "hit_rate"),
+        *optional(sa.Uuid(), "sweep", "forked_from", "owner"),
+        *optional(sa.Integer(), "sweep_index", "n_initial"),
         sa.CheckConstraint(
             "requested_state IN ('paused', 'cancelled', 'queued')", name="requested_state"
         ),
@@ -163,7 +155,7 @@ def _sweeps_and_logs() -> None:
         sa.Column("id", sa.Uuid(), primary_key=True),
         sa.Column("experiment", sa.String(length=64), nullable=False),
         sa.Column("name", sa.String(length=200)),
-        *_required(JSON_OR_NULL, "spec", "grid"),
+        *required(JSON_OR_NULL, "spec", "grid"),
         sa.Column("seeds", sa.JSON(), nullable=False),
         sa.Column("created_at", MOMENT, nullable=False),
         sa.Column("owner", sa.Uuid()),
@@ -173,14 +165,14 @@ def _sweeps_and_logs() -> None:
         "idempotency",
         sa.Column("key", sa.String(length=255), primary_key=True),
         sa.Column("body_sha256", HASH, nullable=False),
-        sa.Column("run_id", sa.Uuid(), _to_run()),
+        sa.Column("run_id", sa.Uuid(), to_run()),
         sa.Column("sweep", sa.Uuid(), sa.ForeignKey("sweeps.id", ondelete="CASCADE")),
         sa.Column("created_at", MOMENT, nullable=False),
     )
     op.create_table(
         "log_entries",
         sa.Column("id", sa.Integer(), primary_key=True),
-        sa.Column("run_id", sa.Uuid(), _to_run(), nullable=False),
+        sa.Column("run_id", sa.Uuid(), to_run(), nullable=False),
         sa.Column("at", MOMENT, nullable=False),
         sa.Column("level", sa.String(length=16), nullable=False),
         sa.Column("attempt", sa.Integer(), nullable=False),
@@ -196,10 +188,10 @@ def _tokens() -> None:
         sa.Column("id", sa.Uuid(), primary_key=True),
         sa.Column("name", sa.String(length=64), nullable=False),
         sa.Column("secret_sha256", HASH, nullable=False),
-        *_required(sa.String(length=16), "prefix", "scope"),
+        *required(sa.String(length=16), "prefix", "scope"),
         sa.Column("created_at", MOMENT, nullable=False),
-        *_optional(MOMENT, "expires_at", "revoked_at", "last_used_at"),
-        *_optional(sa.Integer(), "max_queued", "max_running"),
+        *optional(MOMENT, "expires_at", "revoked_at", "last_used_at"),
+        *optional(sa.Integer(), "max_queued", "max_running"),
         sa.Column("device_hours", sa.Double()),
         sa.CheckConstraint("scope IN ('read', 'write', 'admin')", name="scope"),
         sa.UniqueConstraint("secret_sha256"),
@@ -221,9 +213,9 @@ def _files() -> None:
         "artifacts",
         sa.Column("path", sa.String(length=255), primary_key=True),
         sa.Column("kind", sa.String(length=16), nullable=False),
-        sa.Column("run_id", sa.Uuid(), _to_run()),
-        *_optional(sa.Integer(), "number", "generation"),
-        sa.Column("creature", HASH, _to_creature()),
+        sa.Column("run_id", sa.Uuid(), to_run()),
+        *optional(sa.Integer(), "number", "generation"),
+        sa.Column("creature", HASH, to_creature()),
         sa.Column("size", sa.BigInteger(), nullable=False),
         sa.Column("sha256", HASH, nullable=False),
         sa.Column("created_at", MOMENT, nullable=False),
@@ -232,8 +224,8 @@ def _files() -> None:
     )
     op.create_table(
         "initial_creatures",
-        sa.Column("run_id", sa.Uuid(), _to_run(), primary_key=True),
-        sa.Column("creature", HASH, _to_creature(), primary_key=True),
+        sa.Column("run_id", sa.Uuid(), to_run(), primary_key=True),
+        sa.Column("creature", HASH, to_creature(), primary_key=True),
     )
     op.create_index("ix_initial_creatures_creature", "initial_creatures", ["creature"])
 
@@ -241,30 +233,30 @@ def _files() -> None:
 def _results() -> None:
     op.create_table(
         "elites",
-        sa.Column("run_id", sa.Uuid(), _to_run(), primary_key=True),
+        sa.Column("run_id", sa.Uuid(), to_run(), primary_key=True),
         sa.Column("cell", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("generation", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("fitness", sa.Double()),
         sa.Column("descriptors", sa.JSON()),
-        sa.Column("creature", HASH, _to_creature()),
+        sa.Column("creature", HASH, to_creature()),
     )
     op.create_index("ix_elites_creature", "elites", ["creature"])
     op.create_table(
         "generations",
-        sa.Column("run_id", sa.Uuid(), _to_run(), primary_key=True),
+        sa.Column("run_id", sa.Uuid(), to_run(), primary_key=True),
         sa.Column("generation", sa.Integer(), primary_key=True, autoincrement=False),
-        *_optional(sa.Double(), "qd_score", "coverage", "best", "mean"),
-        *_required(sa.BigInteger(), "evaluations", "infeasible"),
+        *optional(sa.Double(), "qd_score", "coverage", "best", "mean"),
+        *required(sa.BigInteger(), "evaluations", "infeasible"),
         sa.Column("seconds", sa.Double(), nullable=False),
         sa.Column("summary", JSON_OR_NULL),
     )
     op.create_table(
         "results",
-        sa.Column("run_id", sa.Uuid(), _to_run(), primary_key=True),
+        sa.Column("run_id", sa.Uuid(), to_run(), primary_key=True),
         sa.Column("number", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("generation", sa.Integer(), nullable=False),
         sa.Column("values", JSON_OR_NULL, nullable=False),
-        sa.Column("creature", HASH, _to_creature()),
+        sa.Column("creature", HASH, to_creature()),
     )
     op.create_index("ix_results_creature", "results", ["creature"])
 
@@ -273,15 +265,15 @@ def _shares() -> None:
     op.create_table(
         "shares",
         sa.Column("slug", sa.String(length=43), primary_key=True),
-        sa.Column("creature", HASH, _to_creature()),
-        sa.Column("run_id", sa.Uuid(), _to_run()),
+        sa.Column("creature", HASH, to_creature()),
+        sa.Column("run_id", sa.Uuid(), to_run()),
         sa.Column("generation", sa.Integer()),
-        sa.Column("cover", HASH, _to_creature(), nullable=False),
-        *_required(sa.Text(), "title", "licence"),
+        sa.Column("cover", HASH, to_creature(), nullable=False),
+        *required(sa.Text(), "title", "licence"),
         sa.Column("credit", sa.JSON(), nullable=False),
         sa.Column("listed", sa.Boolean(), nullable=False),
         sa.Column("created_at", MOMENT, nullable=False),
-        *_optional(MOMENT, "expires_at", "revoked_at"),
+        *optional(MOMENT, "expires_at", "revoked_at"),
         sa.Column("owner", sa.Uuid()),
         sa.CheckConstraint("(creature IS NULL) <> (run_id IS NULL)", name="one_thing"),
     )
@@ -303,10 +295,9 @@ def _operation() -> None:
         sa.Column("run_id", sa.Uuid(), nullable=False),
         sa.Column("kind", sa.String(length=32), nullable=False),
         sa.Column("data", JSON_OR_NULL, nullable=False),
-        *_required(MOMENT, "created_at", "due_at"),
+        *required(MOMENT, "created_at", "due_at"),
         sa.Column("tries", sa.Integer(), nullable=False),
     )
-    op.create_index("ix_notifications_due_at_id", "notifications", ["due_at", "id"])
 
 
 def downgrade() -> None:
