@@ -7,8 +7,10 @@ import sqlalchemy as sa
 from alembic import op
 
 from server.tables.migrations.columns import (
+    FIGURES,
     HASH,
     JSON_OR_NULL,
+    KEYS,
     MOMENT,
     optional,
     required,
@@ -20,16 +22,6 @@ revision = "0001"
 down_revision = None
 branch_labels = None
 depends_on = None
-
-FIGURES = ("experiment", "evaluations", "qd_score", "coverage", "best")
-KEYS = {
-    "name": "lower(name)",
-    "status": "CASE status WHEN 'queued' THEN 0 WHEN 'running' THEN 1 WHEN 'paused' THEN 2"
-    " WHEN 'finished' THEN 3 WHEN 'failed' THEN 4 WHEN 'cancelled' THEN 5 END",
-    "progress": "CASE WHEN status = 'finished' THEN 1.0"
-    " ELSE CAST(generation AS DOUBLE PRECISION) / generations END",
-}
-"""Keys of orders of runs that are no columns."""
 
 
 def upgrade() -> None:
