@@ -77,7 +77,7 @@ def _passes(session: Session) -> Iterator[Metric]:
     age = [((now(session) - at).total_seconds(),)] if at else []
     about = "Seconds since the reconciler last completed a pass."
     yield gauge("reconciler_pass_age_seconds", about, (), age)
-    took = [(seconds,)] if at else []
+    took = [(seconds,)] if seconds is not None else []
     yield gauge("reconciler_pass_seconds", "Seconds that this pass took.", (), took)
 
 
