@@ -26,6 +26,7 @@ from ..tables import (
     Idempotency,
     InitialCreature,
     LogEntry,
+    Notification,
     Result,
     Run,
     Share,
@@ -102,7 +103,7 @@ def _delete_run(session: Session, run_id: UUID) -> None:
     folder = run_folder(run_id)
     elsewhere = [path for path in session.scalars(rows) if not path.startswith(folder)]
     discard(session, [folder, *elsewhere])
-    for table in (InitialCreature, Idempotency, Share):
+    for table in (InitialCreature, Idempotency, Notification, Share):
         session.execute(delete(table).where(table.run_id == run_id))
     session.execute(update(Run).where(Run.forked_from == run_id).values(forked_from=None))
     session.execute(delete(Run).where(Run.id == run_id))

@@ -9,7 +9,7 @@ from datetime import timedelta
 from sqlalchemy import delete, func, select, update
 from sqlalchemy.orm import Session
 
-from ..core.database import now
+from ..core.database import clock, now
 from ..services.services import Services
 from ..tables import PAUSED, Notification, Run
 from ..workers import totals
@@ -42,6 +42,12 @@ def take(services: Services) -> Notification | None:
 
     Of several servers one gets it. What is taken for the first time is counted.
     """
+    with services.sessions.read() as session:  # Usually there is none, and nobody has to wait.
+        if (
+            session.scalar(select(Notification.id).where(Notification.due_at <= clock()))
+            is None
+        ):
+            return None
     with services.sessions.write.begin() as session:
         moment = now(session)
         due = select(Notification).where(Notification.due_at <= moment)

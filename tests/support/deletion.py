@@ -9,16 +9,16 @@ from server.attempts.claim import claim
 from server.maintenance.reconcile import reconcile
 from server.runs.submission import IdempotentRequest, submit
 from server.storage.mark import MARK
-from server.tables import Base, DeviceUse, Run
+from server.tables import Base, DeviceUse, Run, Total
 
 
 def row_counts(services):
-    """Count the rows of all tables, but for device time: a deleted run has used its own."""
+    """Count the rows of all tables, but for device time and totals, which a run leaves."""
     with services.sessions.read() as session:
         return {
             table.name: session.scalar(select(func.count()).select_from(table))
             for table in Base.metadata.sorted_tables
-            if table.name != DeviceUse.__tablename__
+            if table.name not in (DeviceUse.__tablename__, Total.__tablename__)
         }
 
 
