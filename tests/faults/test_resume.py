@@ -60,7 +60,7 @@ def test_a_frozen_worker_is_replaced_and_writes_nothing_when_it_wakes(
 
 @pytest.mark.long
 @pytest.mark.parametrize(
-    ("sent", "status", "seconds"), [(signal.SIGINT, 0, 0), (signal.SIGKILL, -9, 30)]
+    ("sent", "status", "seconds"), [(signal.SIGINT, 0, 10), (signal.SIGKILL, -9, 30)]
 )
 def test_the_end_of_the_root_ends_all_and_the_next_start_resumes(
     product, spec, undisturbed, sent, status, seconds

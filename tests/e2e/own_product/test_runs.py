@@ -37,8 +37,8 @@ def rows(page: Page):
 
 
 def row(page: Page, run: str):
-    # Other rows may name the run too, such as one that waits for it.
-    return rows(page).filter(has=page.get_by_role("rowheader").filter(has_text=run))
+    # By its link: another row names the run too if it waits for it.
+    return rows(page).filter(has=page.locator(f'a[href*="/runs/{run}"]'))
 
 
 def rename_by_mouse(page: Page, run: str) -> None:

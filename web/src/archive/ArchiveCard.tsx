@@ -164,7 +164,8 @@ function useShownGeneration(query: URLSearchParams, last: number) {
       setQuery({ at: at === null ? null : String(at) });
     }, DELAY_MS);
     return () => clearTimeout(timer);
-  }, [at]);
+    // The address may follow an earlier value only after the next one was chosen.
+  }, [at, requested]);
   // After a rewind, the requested generation may not exist.
   return [at !== null && at >= last ? null : at, setAt] as const;
 }
