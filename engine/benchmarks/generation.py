@@ -9,7 +9,6 @@ import statistics
 import time
 from dataclasses import replace
 from typing import Any
-from unittest.mock import patch
 
 import jax
 import jax.numpy as jnp
@@ -69,23 +68,24 @@ def generations(document: dict[str, Any], full: bool) -> list[tuple[float, float
     """Seconds of each timed generation, and of its rollouts."""
     run = build(parse(document | ({"archive": LARGE} if full else {})))
     assert isinstance(run, Evolution)
-    rollouts, evaluate = [0.0], search.evaluate_blocks
+    rollouts = [0.0]
 
-    def timed(program: Any, *given: Any, **options: Any) -> Any:
-        start = time.monotonic()
-        found = evaluate(program, *given, **options)
-        if program is run.programs.evaluate_block:
-            rollouts[0] += time.monotonic() - start
-        return found
+    class Timed(search.LocalDevices):
+        def evaluate(self, program: Any, *given: Any, **options: Any) -> Any:
+            start = time.monotonic()
+            found = super().evaluate(program, *given, **options)
+            if program is run.programs.evaluate_block:
+                rollouts[0] += time.monotonic() - start
+            return found
 
     state, seconds = run.init(), []
     if full:
         state = filled(run, state)
-    with patch.object(search, "evaluate_blocks", timed):
-        for _ in range(WARM + TIMED):
-            rollouts[0], start = 0.0, time.monotonic()
-            state, _ = run.advance(state)
-            seconds.append((time.monotonic() - start, rollouts[0]))
+    timed = replace(run, devices=Timed())
+    for _ in range(WARM + TIMED):
+        rollouts[0], start = 0.0, time.monotonic()
+        state, _ = timed.advance(state)
+        seconds.append((time.monotonic() - start, rollouts[0]))
     return seconds[WARM:]
 
 

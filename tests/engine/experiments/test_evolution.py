@@ -13,8 +13,7 @@ import microcosmos
 from microcosmos import naming, search
 from microcosmos.archive import creature, file, poses, variety
 from microcosmos.build import build, build_task
-from microcosmos.experiments import evolution
-from microcosmos.search import MEASURES, STATUSES, tensorneat
+from microcosmos.search import MEASURES, STATUSES, LocalDevices, tensorneat
 from microcosmos.spec import parse
 from microcosmos.spec.evolution import UNLIMITED
 
@@ -186,17 +185,17 @@ def test_creatures_that_are_judged_infeasible_are_no_elites(small):
     assert report.summary[f"infeasible: {min(reasons)}"] > 0
 
 
-def test_an_evaluation_that_cannot_be_trusted_is_no_elite(experiment, monkeypatch):
-    evaluate, fittest = evolution.search.evaluate_blocks, []
+def test_an_evaluation_that_cannot_be_trusted_is_no_elite(experiment):
+    fittest = []
 
-    def too_fast(*block, **options):
-        found = evaluate(*block, **options)
-        fittest.append(int(np.argmax(found.fitness)))
-        status = np.where(np.arange(len(found.status)) == fittest[-1], 2, found.status)
-        return eqx.tree_at(lambda evaluation: evaluation.status, found, status)
+    class TooFast(LocalDevices):
+        def evaluate(self, *block, **options):
+            found = super().evaluate(*block, **options)
+            fittest.append(int(np.argmax(found.fitness)))
+            status = np.where(np.arange(len(found.status)) == fittest[-1], 2, found.status)
+            return eqx.tree_at(lambda evaluation: evaluation.status, found, status)
 
-    monkeypatch.setattr(evolution.search, "evaluate_blocks", too_fast)
-    state, report = experiment.advance(experiment.init())
+    state, report = replace(experiment, devices=TooFast()).advance(experiment.init())
     assert report.infeasible == 1
     assert state.failures.slot.tolist() == fittest
     assert fittest[0] not in np.asarray(state.elites.slot)[np.asarray(state.elites.occupied)]
