@@ -82,5 +82,6 @@ def test_an_emptied_place_disappears_live_and_in_the_history(page, idle, fronts)
         expect(elites(page)).to_have_text(f"{number} elites")
     page.get_by_role("button", name="Newest").click()
     expect(elites(page)).to_have_text("2 elites")
+    page.wait_for_url(lambda url: "at=" not in url)  # The address follows with a delay.
     page.reload()
     expect(elites(page)).to_have_text("2 elites")
