@@ -68,7 +68,7 @@ class Connection:
         self._thread.join(2 * CONNECT_SECONDS)
 
     def _keep(self) -> None:
-        distributed = require("distributed", PACKAGE)
+        distributed, away = require("distributed", PACKAGE), False
         while not self._ended.is_set():
             try:
                 with distributed.Client(
@@ -79,9 +79,13 @@ class Connection:
                     name=f"microcosmos {self._run}",
                 ) as client:
                     log.info("Connected with the scheduler at %s", self._url)
+                    away = False
                     self._watch(client)
             except (OSError, ValueError, RuntimeError) as error:
-                log.warning("The scheduler at %s does not answer: %s", self._url, error)
+                if not away:  # Once, however long it lasts.
+                    text = "The scheduler at %s does not answer; it is called again: %s"
+                    log.warning(text, self._url, error)
+                away = True
             self._asked, self._fitting = {}, ()
             self._ended.wait(RETRY_SECONDS)
 
