@@ -115,6 +115,8 @@ class Cluster:
         for one in self.processes:
             one.kill()
             one.wait()
+            if one.stdin:
+                one.stdin.close()
 
 
 def undisturbed(cluster: Cluster) -> str:
