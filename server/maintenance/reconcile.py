@@ -5,13 +5,10 @@ A server runs it every few seconds; several servers take turns.
 
 import logging
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
-from threading import Event, Thread
+from contextlib import AbstractContextManager
+from threading import Event
 
-from redis import RedisError
 from sqlalchemy import delete, or_, select, update
-from sqlalchemy.exc import SQLAlchemyError
 
 from ..attempts import leases
 from ..attempts.preemption import make_room
@@ -21,6 +18,7 @@ from ..deletion.retention import expire
 from ..runs.announce import announce
 from ..runs.lifecycle import end_attempt, fail_attempt, release
 from ..runs.log import note
+from ..services.periodic import repeating
 from ..services.services import Services
 from ..tables import CANCELLED, QUEUED, RUNNING, InstallationState, Run, Sweep, Worker
 
@@ -35,39 +33,24 @@ TURN = 0.9
 log = logging.getLogger(__name__)
 
 
-@contextmanager
-def reconciling(services: Services) -> Iterator[None]:
+def reconciling(services: Services) -> AbstractContextManager[None]:
     """Reconcile every few seconds, in a thread, until the end of the block.
 
     Servers over one database take turns: one pass an interval is enough for all.
     """
-    ended = Event()
+    expire_at = 0.0
 
-    def repeat() -> None:
-        expire_at = 0.0
-        while True:
-            began = time.monotonic()
-            try:
-                if take_turn(services):
-                    reconcile(services)
-                    if time.monotonic() >= expire_at:
-                        expire(services)
-                        expire_at = time.monotonic() + EXPIRE_SECONDS
-                    note_pass(services, time.monotonic() - began)
-            except (RedisError, SQLAlchemyError) as error:
-                log.warning("will reconcile again: %s", error)
-            except Exception:  # Without this thread nothing would requeue lost runs.
-                log.exception("will reconcile again")
-            if ended.wait(services.settings.reconcile_interval):
-                return
+    def take_pass(_: Event) -> None:
+        nonlocal expire_at
+        began = time.monotonic()
+        if take_turn(services):
+            reconcile(services)
+            if time.monotonic() >= expire_at:
+                expire(services)
+                expire_at = time.monotonic() + EXPIRE_SECONDS
+            note_pass(services, time.monotonic() - began)
 
-    thread = Thread(target=repeat, name="reconciler", daemon=True)
-    thread.start()
-    try:
-        yield
-    finally:
-        ended.set()
-        thread.join()
+    return repeating("reconciler", services.settings.reconcile_interval, take_pass)
 
 
 def take_turn(services: Services) -> bool:

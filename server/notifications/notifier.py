@@ -1,12 +1,10 @@
 """The notifier: a thread of the server that sends notifications, so that no run waits."""
 
 import logging
-from collections.abc import Iterator
-from contextlib import contextmanager
-from threading import Event, Thread
+from contextlib import AbstractContextManager
+from threading import Event
 
-from sqlalchemy.exc import SQLAlchemyError
-
+from ..services.periodic import repeating
 from ..services.services import Services
 from . import outbox
 from .delivery import NotDelivered, body_of, send
@@ -14,29 +12,14 @@ from .delivery import NotDelivered, body_of, send
 log = logging.getLogger(__name__)
 
 
-@contextmanager
-def notifying(services: Services) -> Iterator[None]:
+def notifying(services: Services) -> AbstractContextManager[None]:
     """Send notifications now and every few seconds, in a thread, until the end of the block."""
-    ended = Event()
 
-    def repeat() -> None:
-        while not ended.is_set():
-            try:
-                while not ended.is_set() and send_next(services):
-                    pass
-            except SQLAlchemyError as error:
-                log.warning("Notifications wait for the database: %s", error)
-            except Exception:  # Without this thread nobody would be told.
-                log.exception("Notifications will be tried again")
-            ended.wait(services.settings.reconcile_interval)
+    def send_all(ended: Event) -> None:
+        while not ended.is_set() and send_next(services):
+            pass
 
-    thread = Thread(target=repeat, name="notifier", daemon=True)
-    thread.start()
-    try:
-        yield
-    finally:
-        ended.set()
-        thread.join()
+    return repeating("notifier", services.settings.reconcile_interval, send_all)
 
 
 def send_next(services: Services) -> bool:

@@ -28,7 +28,9 @@ class Helper:
     capacity = 2
 
     def __init__(self, client: Any, address: str, name: str, run: str):
-        self.address, self.name, self.problem = address, name, None
+        self.address, self.name = address, name
+        self.fits = False
+        """Whether it has said that it can compute the run, and failed at no block."""
         self._client, self._run, self._numbers = client, run, count()
 
     def ask(self, function: Any, *arguments: Any) -> Pending:
@@ -42,8 +44,9 @@ class Helper:
         return self.ask(compute, work)
 
     def fail(self, error: BaseException) -> None:
-        self.problem = f"{type(error).__name__}: {error}"
-        log.warning("%s computes no more blocks of this run: %s", self.name, self.problem)
+        self.fits = False
+        text = "%s computes no more blocks of this run: %s: %s"
+        log.warning(text, self.name, type(error).__name__, error)
 
 
 class Connection:
@@ -54,14 +57,13 @@ class Connection:
         self._security = security(url, certificate)
         self._url, self._spec, self._device, self._run = url, spec, device, run
         self._asked: dict[str, Helper] = {}
-        self._fitting: tuple[Helper, ...] = ()
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._keep, daemon=True, name="cluster")
         self._thread.start()
 
     def helpers(self) -> Sequence[Helper]:
         """Return the helpers that compute for the run now."""
-        return [one for one in self._fitting if one.problem is None]
+        return [one for one in list(self._asked.values()) if one.fits]
 
     def close(self) -> None:
         self._ended.set()
@@ -81,12 +83,14 @@ class Connection:
                     log.info("Connected with the scheduler at %s", self._url)
                     away = False
                     self._watch(client)
-            except (OSError, ValueError, RuntimeError) as error:
+            except (
+                Exception
+            ) as error:  # Whatever Dask raises, the run goes on, and calls again.
                 if not away:  # Once, however long it lasts.
                     text = "The scheduler at %s does not answer; it is called again: %s"
                     log.warning(text, self._url, error)
                 away = True
-            self._asked, self._fitting = {}, ()
+            self._asked = {}
             self._ended.wait(RETRY_SECONDS)
 
     def _watch(self, client: Any) -> None:
@@ -99,7 +103,6 @@ class Connection:
                     self._ask(client, Helper(client, address, str(worker["id"]), self._run))
             for address in [one for one in self._asked if one not in found]:
                 log.info("%s has left", self._asked.pop(address).name)
-            self._fitting = tuple(one for one in self._fitting if one.address in found)
 
     def _ask(self, client: Any, helper: Helper) -> None:
         """Ask a helper whether it fits; until it answers it gets nothing."""
@@ -111,13 +114,10 @@ class Connection:
                 problem = pending.result()
             except BaseException as error:  # It has left, or the connection is lost.
                 problem = f"{type(error).__name__}: {error}"
-            if self._asked.get(helper.address) is not helper:
-                return
             if problem:
                 log.warning("%s gets no blocks of this run: %s", helper.name, problem)
-                helper.problem = problem
-                return
-            log.info("%s computes for this run", helper.name)
-            self._fitting = (*self._fitting, helper)
+            else:
+                log.info("%s computes for this run", helper.name)
+            helper.fits = not problem
 
         pending.add_done_callback(answered)
