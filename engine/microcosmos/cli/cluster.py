@@ -47,7 +47,7 @@ def certificate(
 
 @group.command("scheduler")
 def scheduler(url: Address, certificate: Certificate = None) -> None:
-    """Be the scheduler at an address of this machine, until Ctrl+C. It needs no GPU."""
+    """Run the scheduler at an address of this machine, until Ctrl+C. It needs no GPU."""
     from ..cluster.scheduler import serve
 
     with failing("cluster"):

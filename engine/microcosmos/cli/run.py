@@ -49,7 +49,7 @@ def evolve(
     begin_from: From = None,
     cluster: Annotated[
         str | None,
-        Option(help="Compute with the helpers of a scheduler too, like tls://host:8786."),
+        Option(help="Scheduler whose helpers compute too, like tls://host:8786."),
     ] = None,
     certificate: Certificate = None,
     module: Modules = None,

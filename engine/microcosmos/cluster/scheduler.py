@@ -36,7 +36,7 @@ def configured() -> Any:
 
 
 def serve(url: str, certificate: Path | None, told: Callable[[str], object]) -> None:
-    """Be the scheduler at an address until a signal; `told` gets the address once it listens.
+    """Run the scheduler at an address until a signal; `told` gets the address once it listens.
 
     Raises `ValueError` for an address or certificate that may not be used, and `OSError` where
     nothing can listen.
