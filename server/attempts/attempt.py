@@ -28,7 +28,7 @@ from ..storage.patience import patiently
 from ..tables import CANCELLED, FAILED, FINISHED, PAUSED, RUNNING, Generation, Run
 from ..workers import totals
 from . import recording
-from .checkpoints import add_checkpoint, fall_back, newest_intact
+from .checkpoints import CheckpointUnavailable, add_checkpoint, fall_back, newest_intact
 from .ending import ended, paused
 
 logger = logging.getLogger(__name__)
@@ -178,6 +178,8 @@ class Attempt:
 
         Raise `OSError` if it cannot be written; the previous one stays.
         """
+        if fault := mark.fault(self.services.sessions, self.services.artifacts):
+            raise StoreUnavailable(fault)  # A lost mount leaves an empty folder.
         path = checkpoint_path(self.run_id, self.number, generation, data)
         stored = self.services.artifacts.write(path, data)
         with self._current() as (session, run):
@@ -237,19 +239,19 @@ class Attempt:
         text = f"{reason.rstrip('.')}. Then resume the run."
         self._update(text, "warning", **paused(), warning=text, **values)
 
-    def leave_unread(self, error: StoreUnavailable) -> None:
+    def leave_unread(self, error: CheckpointUnavailable | StoreUnavailable) -> None:
         """End an attempt whose checkpoint cannot be read; it does not count.
 
         The run returns to the queue while the whole store is away: no worker takes it then. It
-        pauses if only its own file cannot be read.
+        pauses if only its own files are missing, damaged or unreadable.
         """
-        services = self.services
-        if self.interrupted() or mark.fault(services.sessions, services.artifacts):
+        missing = isinstance(error, CheckpointUnavailable)
+        away = mark.fault(self.services.sessions, self.services.artifacts)
+        if away or (self.interrupted() and not missing):
             self.requeue()
         else:
-            self.pause_until_resumed(
-                f"Its checkpoint cannot be read ({error}). Repair the store"
-            )
+            unread = f"Its checkpoint cannot be read ({error}). Repair the store"
+            self.pause_until_resumed(str(error) if missing else unread)
 
     @retried
     def requeue(self) -> None:

@@ -94,11 +94,7 @@ def claimed(
         yield attempt
     except ClaimLost as error:
         logger.warning("Lost %s", error)
-    except CheckpointUnavailable as error:
-        logger.error("Run %s: %s", run_id, error)
-        with suppress(ClaimLost):
-            attempt.pause_until_resumed(str(error))
-    except StoreUnavailable as error:
+    except (CheckpointUnavailable, StoreUnavailable) as error:
         logger.error("Run %s: %s", run_id, error)
         with suppress(ClaimLost):
             attempt.leave_unread(error)

@@ -1,5 +1,6 @@
 """Files in a folder or in S3: checkpoints, renderings, shared archives; complete or absent."""
 
+import errno
 import hashlib
 import os
 from collections.abc import Iterator
@@ -13,6 +14,8 @@ import fsspec
 from ..core.errors import StoreUnavailable
 
 CHUNK = 4 << 20
+FULL = (errno.ENOSPC, errno.EDQUOT)
+"""Errors of a full disk. It stays full until a person acts; a lost mount may come back."""
 KEEP_LAST, KEEP_EVERY = 3, 10
 S3 = {
     "skip_instance_cache": True,
@@ -40,8 +43,8 @@ class StoredFile:
 class Artifacts:
     """A store of files by relative path, in a folder or at `s3://bucket/prefix`.
 
-    Raise `FileNotFoundError` for a missing file, `StoreUnavailable` if the store does not
-    answer, and other `OSError`s if a folder cannot be written to.
+    Raise `FileNotFoundError` for a missing file to be read, another `OSError` if a folder's
+    disk is full, and `StoreUnavailable` if the store does not answer.
     """
 
     def __init__(self, url: str):
@@ -53,11 +56,15 @@ class Artifacts:
 
     def write(self, path: str, data: bytes) -> StoredFile:
         """Write a file whole or not at all: after an `OSError` the earlier one stays."""
-        if self.local:
-            self._write_to_disk(self._full(path), data)
-        else:
-            with _outages():
+        try:
+            if self.local:
+                self._write_to_disk(self._full(path), data)
+            else:
                 self.files.pipe_file(self._full(path), data)
+        except Exception as error:
+            if isinstance(error, OSError) and error.errno in FULL:
+                raise
+            raise _unavailable(error) from error
         return StoredFile(path, len(data), hashlib.sha256(data).hexdigest())
 
     def read(self, path: str, start: int | None = None, stop: int | None = None) -> bytes:
@@ -127,8 +134,13 @@ def _outages() -> Iterator[None]:
         yield
     except (FileNotFoundError, StoreUnavailable):
         raise
-    except Exception as error:  # Libraries of S3 have errors of their own.
-        raise StoreUnavailable(f"{type(error).__name__}: {error}") from error
+    except Exception as error:
+        raise _unavailable(error) from error
+
+
+def _unavailable(error: Exception) -> StoreUnavailable:
+    """Return the outage behind an error: libraries of S3 have errors of their own."""
+    return StoreUnavailable(f"{type(error).__name__}: {error}")
 
 
 def checkpoint_path(run_id: UUID, attempt: int, generation: int, data: bytes) -> str:

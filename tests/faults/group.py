@@ -39,9 +39,12 @@ class Drill(NamedTuple):
     generations: int
     outage: float
     """Seconds without the database, and of errors of the store."""
+    patience: float
+    """Seconds within which all of them finish after the bad night."""
 
 
-SMALL, FULL = Drill(4, 10, 4, 1, 12, 2.0), Drill(20, 500, 40, 4, 40, 60.0)
+SMALL = Drill(4, 10, 4, 1, 12, outage=2.0, patience=300.0)
+FULL = Drill(20, 500, 40, 4, 40, outage=60.0, patience=3600.0)
 
 
 def spec(seed: int, generations: int) -> dict[str, Any]:
@@ -190,13 +193,26 @@ def drill(product: Installation, size: Drill) -> list[str]:
             hosts.start()
         wait_until(lambda: is_under_way(product), 300, "runs are computed", every=0.3)
         disturb(product, hosts, size)
-        for run, _ in runs:
-            product.wait(run, "finished", seconds=3600)
+        wait_finished(product, [run for run, _ in runs], size.patience)
         if not FAKETIME:
             rich.print("  NOT SHOWN: a host with a wrong clock: no libfaketime on this machine")
         return [*faults(product, runs, expected), *left(product, size)]
     finally:
         hosts.end()
+
+
+def wait_finished(product: Installation, runs: list[str], seconds: float) -> None:
+    """Wait until runs have finished; raise with what holds one up."""
+    deadline = time.monotonic() + seconds
+    for run in runs:
+        try:
+            left = max(deadline - time.monotonic(), 1.0)
+            if product.wait(run, "finished", "paused", seconds=left)["status"] == "paused":
+                raise AssertionError(f"run {run} waits for a person")
+        except (AssertionError, TimeoutError) as error:
+            log = product.get(f"runs/{run}/log")["entries"][-20:]
+            error.add_note(f"{product.read(run)}\n{log}\n{product.get('workers')}")
+            raise
 
 
 def is_under_way(product: Installation) -> bool:

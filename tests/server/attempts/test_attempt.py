@@ -3,6 +3,7 @@
 import errno
 import shutil
 from dataclasses import replace
+from threading import Timer
 
 import pytest
 import reports
@@ -141,12 +142,61 @@ def test_a_worker_that_lost_its_run_ends_silently(held, row, update_rows):
 def test_a_run_without_its_files_pauses_with_the_reason(services, held, row):
     with held() as attempt:
         write(attempt, 1, lambda: b"state")
-    shutil.rmtree(services.settings.data / "artifacts")
+    shutil.rmtree(services.settings.data / "artifacts" / "runs")
     with held() as attempt:
         attempt.restore()
         pytest.fail("the checkpoint was restored")
     assert (row().status, row().generation, row().checkpoint_generation) == ("paused", 1, 1)
     assert "Check MICROCOSMOS_ARTIFACTS_URL" in row().warning
+
+
+@pytest.fixture
+def mount(services):
+    """The folder of the store, whose mount is lost and comes back."""
+    return Mount(services.settings.data / "artifacts")
+
+
+class Mount:
+    def __init__(self, folder):
+        self.folder, self.away = folder, folder.with_name("away")
+
+    def lose(self, empty):
+        self.folder.rename(self.away)
+        self.folder.mkdir() if empty else self.folder.write_text("no folder")
+
+    def restore(self):
+        shutil.rmtree(self.folder) if self.folder.is_dir() else self.folder.unlink()
+        self.away.rename(self.folder)
+
+
+@pytest.mark.parametrize("empty", [True, False])
+def test_a_run_whose_store_is_away_waits_in_the_queue(held, row, mount, empty):
+    with held() as attempt:
+        write(attempt, 1, lambda: b"state")
+    mount.lose(empty)
+    with held() as attempt:
+        attempt.outage_seconds = 0.0
+        attempt.restore()
+        pytest.fail("the checkpoint was restored")
+    mount.restore()
+    assert (row().status, row().generation, row().warning) == ("queued", 1, None)
+    with held() as attempt:
+        assert attempt.restore() == b"state"
+
+
+@pytest.mark.parametrize("empty", [True, False])
+def test_a_run_that_is_done_waits_for_its_store(held, row, mount, empty):
+    with held() as attempt:
+        write(attempt, 1, lambda: b"state")
+        attempt.record(reports.report(2), 1.0)
+        mount.lose(empty)
+        assert not attempt.checkpoint(2, b"the end")
+        assert row().warning.startswith("The checkpoint of generation 2 could not be written")
+        Timer(0.5, mount.restore).start()
+        attempt.end(done=True, generation=2, save=lambda: b"the end")
+        assert attempt.restore() == b"the end"
+    assert (row().status, row().warning) == ("finished", None)
+    assert not any(mount.folder.rglob("*.part"))
 
 
 def test_a_running_run_cannot_be_claimed(held):
