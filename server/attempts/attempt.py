@@ -28,7 +28,7 @@ from ..storage.patience import patiently
 from ..tables import CANCELLED, FAILED, FINISHED, PAUSED, RUNNING, Generation, Run
 from ..workers import totals
 from . import recording
-from .checkpoints import CheckpointUnavailable, add_checkpoint, fall_back, newest_intact
+from .checkpoints import add_checkpoint, fall_back, newest_intact
 from .ending import ended, paused
 
 logger = logging.getLogger(__name__)
@@ -178,8 +178,8 @@ class Attempt:
 
         Raise `OSError` if it cannot be written; the previous one stays.
         """
-        if fault := mark.fault(self.services.sessions, self.services.artifacts):
-            raise StoreUnavailable(fault)  # A lost mount leaves an empty folder.
+        if fault := self.store_fault():
+            raise StoreUnavailable(fault)
         path = checkpoint_path(self.run_id, self.number, generation, data)
         stored = self.services.artifacts.write(path, data)
         with self._current() as (session, run):
@@ -200,8 +200,8 @@ class Attempt:
     def end(self, done: bool, generation: int, save: Callable[[], bytes]) -> None:
         """Checkpoint the last whole generation and end the attempt.
 
-        If the last checkpoint cannot be written, the run pauses: resuming it computes again
-        what was not saved.
+        If the last checkpoint cannot be written, what was not saved has to be computed again:
+        by itself once a store that is away is there again, else when a person resumes the run.
         """
         saved = generation == self.generation or self.checkpoint(
             generation, save(), self.outage_seconds
@@ -212,7 +212,7 @@ class Attempt:
             self.cancel()
         elif self.requested_state == PAUSED:
             self.pause()
-        elif done:
+        elif done and not self.store_fault():
             self.pause(warning=Run.warning)  # It says why: a person has to act.
         else:
             self.requeue()
@@ -239,19 +239,9 @@ class Attempt:
         text = f"{reason.rstrip('.')}. Then resume the run."
         self._update(text, "warning", **paused(), warning=text, **values)
 
-    def leave_unread(self, error: CheckpointUnavailable | StoreUnavailable) -> None:
-        """End an attempt whose checkpoint cannot be read; it does not count.
-
-        The run returns to the queue while the whole store is away: no worker takes it then. It
-        pauses if only its own files are missing, damaged or unreadable.
-        """
-        missing = isinstance(error, CheckpointUnavailable)
-        away = mark.fault(self.services.sessions, self.services.artifacts)
-        if away or (self.interrupted() and not missing):
-            self.requeue()
-        else:
-            unread = f"Its checkpoint cannot be read ({error}). Repair the store"
-            self.pause_until_resumed(str(error) if missing else unread)
+    def store_fault(self) -> str | None:
+        """Return why the store cannot be read and written now; a lost mount is empty."""
+        return mark.fault(self.services.sessions, self.services.artifacts)
 
     @retried
     def requeue(self) -> None:

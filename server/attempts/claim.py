@@ -97,10 +97,24 @@ def claimed(
     except (CheckpointUnavailable, StoreUnavailable) as error:
         logger.error("Run %s: %s", run_id, error)
         with suppress(ClaimLost):
-            attempt.leave_unread(error)
+            _leave_unread(attempt, error)
     except Exception as error:
         logger.exception("Run %s failed", run_id)
         if not attempt.recorded:
             raise NothingComputed from error
         with suppress(ClaimLost):
             attempt.fail(traceback.format_exc())
+
+
+def _leave_unread(attempt: Attempt, error: CheckpointUnavailable | StoreUnavailable) -> None:
+    """End an attempt whose checkpoint cannot be read; it does not count.
+
+    The run returns to the queue while the whole store is away: no worker takes it then. It
+    pauses if only its own files are missing, damaged or unreadable.
+    """
+    missing = isinstance(error, CheckpointUnavailable)
+    if attempt.store_fault() or (attempt.interrupted() and not missing):
+        attempt.requeue()
+    else:
+        unread = f"Its checkpoint cannot be read ({error}). Repair the store"
+        attempt.pause_until_resumed(str(error) if missing else unread)

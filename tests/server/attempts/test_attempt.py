@@ -199,6 +199,20 @@ def test_a_run_that_is_done_waits_for_its_store(held, row, mount, empty):
     assert not any(mount.folder.rglob("*.part"))
 
 
+def test_a_run_whose_end_waits_in_vain_for_its_store_is_queued(held, row, mount):
+    with held() as attempt:
+        write(attempt, 1, lambda: b"state")
+        attempt.record(reports.report(2), 1.0)
+        mount.lose(empty=True)
+        attempt.outage_seconds = 0.0
+        attempt.end(done=True, generation=2, save=lambda: b"the end")
+    mount.restore()
+    assert (row().status, row().checkpoint_generation) == ("queued", 1)
+    assert "has no file `installation`" in row().warning
+    with held() as attempt:
+        assert attempt.restore() == b"state"
+
+
 def test_a_running_run_cannot_be_claimed(held):
     with held("first"), held("second") as attempt:
         assert attempt is None
