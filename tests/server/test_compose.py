@@ -36,6 +36,7 @@ ROOT = Path(__file__).parents[2]
 HEALTH = "server.maintenance.healthcheck"
 OURS = ("microcosmos-server", "microcosmos-worker", "microcosmos-worker-cuda")
 OTHERS = {"JAX_PLATFORMS", "JAX_COMPILATION_CACHE_DIR", "FORWARDED_ALLOW_IPS"}
+OTHERS |= {"AWS_ENDPOINT_URL", "AWS_ACCESS_KEY_ID", "AWS_SECRET_ACCESS_KEY"}  # Of botocore.
 OF_PYTHON = {"PYTHONUNBUFFERED", "PYTHONDONTWRITEBYTECODE", "PYTHONPATH"}
 
 
