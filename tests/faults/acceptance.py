@@ -7,7 +7,8 @@ killed, stopped, paused and resumed, whose archive has to be byte for byte the u
 one, as has that of a second installation, on PostgreSQL and a Redis server; creatures that
 sense and collect energy; searches with derivatives and without; a page that is left open for
 half an hour, or for as many minutes as `MINUTES` says; thousands of malformed files; and a
-search on an emulated older processor; and twenty hosts with 500 runs in a bad night.
+search on an emulated older processor; deaths of jobs and hosts; and twenty hosts with 500
+runs in a bad night.
 Names of parts choose some.
 """
 
@@ -28,6 +29,7 @@ from processors import processors
 from searches import HOURS, METHODS, SEEDS, carry_out, compare, forage, spec
 from slopes import compare_slopes
 from swimming import swimming
+from takeover import takeover
 from uploads import all_cases, send, watched
 from zoo import bodies
 
@@ -129,6 +131,7 @@ PARTS = {
     "bodies": bodies,
     "searches": searches,
     "databases": databases,
+    "takeover": takeover,
     "group": group,
     "cluster": cluster,
     "foraging": forage,
