@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 from ..core.database import now
 from ..schedule import quota
 from ..schedule.fit import fitting
-from ..schedule.order import in_order
+from ..schedule.order import ORDERING, in_order
 from ..schedule.take import runs_of
 from ..services.services import Services
 from ..tables import NORMAL, QUEUED, Run, Worker
@@ -45,7 +45,7 @@ def queue_state(services: Services, session: Session) -> QueueState:
     alive = registry.live(session, services.settings.lease)
     able = [worker for worker in alive if worker.problem is None]
     problem = None if able or not alive else f"Worker {alive[0].name}: {alive[0].problem}."
-    queued = in_order(session)
+    queued = in_order(session, columns=ORDERING)
     return QueueState(
         moment=now(session),
         runs=[run.id for run in queued],
@@ -71,7 +71,7 @@ def ahead(
         created_at=queue.moment,
         queued_at=queue.moment,
     )
-    order = [run.id for run in in_order(session, mine)]
+    order = [run.id for run in in_order(session, mine, columns=ORDERING)]
     return QueueAhead(
         runs_ahead=order.index(mine.id) - queue.taken,
         workers=len(queue.alive),
