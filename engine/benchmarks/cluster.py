@@ -140,7 +140,9 @@ def real(counts: list[int], preset: str) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser()
-    parser.add_argument("--seconds", type=float, nargs="+", default=[0.1, 0.3, 1.0, 3.0, 10.0, 30.0])
+    parser.add_argument(
+        "--seconds", type=float, nargs="+", default=[0.1, 0.3, 1.0, 3.0, 10.0, 30.0]
+    )
     parser.add_argument("--blocks", type=int, default=30)
     parser.add_argument("--helpers", type=int, default=3)
     parser.add_argument("--preset", choices=PRESETS, default="standard")
