@@ -68,6 +68,8 @@ class Heartbeats(threading.Thread):
                 self.beat()
             except SQLAlchemyError as error:
                 log.warning("No heartbeat: the database does not answer: %s", error)
+            except Exception:  # Without this thread the worker would lose every run it takes.
+                log.exception("No heartbeat")
             self._due.wait(self._interval)
             self._due.clear()
 
