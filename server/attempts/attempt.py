@@ -200,8 +200,8 @@ class Attempt:
     def end(self, done: bool, generation: int, save: Callable[[], bytes]) -> None:
         """Checkpoint the last whole generation and end the attempt.
 
-        If the last checkpoint cannot be written, what was not saved has to be computed again:
-        by itself once a store that is away is there again, else when a person resumes the run.
+        If the last checkpoint cannot be written, a later attempt computes again what was not
+        saved: by itself if the store is away, once a person resumes the run if its disk is full.
         """
         saved = generation == self.generation or self.checkpoint(
             generation, save(), self.outage_seconds

@@ -113,7 +113,8 @@ def _leave_unread(attempt: Attempt, error: CheckpointUnavailable | StoreUnavaila
     pauses if only its own files are missing, damaged or unreadable.
     """
     missing = isinstance(error, CheckpointUnavailable)
-    if attempt.store_fault() or (attempt.interrupted() and not missing):
+    stops = not missing and attempt.interrupted()
+    if stops or attempt.store_fault():  # One that stops does not wait for the store.
         attempt.requeue()
     else:
         unread = f"Its checkpoint cannot be read ({error}). Repair the store"
