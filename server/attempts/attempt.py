@@ -201,7 +201,7 @@ class Attempt:
         """Checkpoint the last whole generation and end the attempt.
 
         If the last checkpoint cannot be written, a later attempt computes again what was not
-        saved: by itself if the store is away, once a person resumes the run if its disk is full.
+        saved: by itself if the store is away, else once a person resumes the run.
         """
         saved = generation == self.generation or self.checkpoint(
             generation, save(), self.outage_seconds
