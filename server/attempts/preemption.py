@@ -10,8 +10,8 @@ from sqlalchemy.orm import Session
 from ..core.database import clock, now
 from ..runs.lifecycle import change
 from ..runs.log import note
-from ..schedule.fit import fits
-from ..schedule.order import in_order
+from ..schedule.fit import ASKING, fits
+from ..schedule.order import places
 from ..schedule.quota import exhausted
 from ..schedule.take import idle
 from ..services.services import Services
@@ -31,14 +31,12 @@ def make_room(services: Services) -> list[UUID]:
     with services.sessions.write.begin() as session:
         alive = registry.live(session, services.settings.lease)
         free, moment = idle(session, alive), now(session)
-        over = exhausted(session, set(session.scalars(select(Run.owner).where(*urgent))))
+        over, order = exhausted(session), places(session)
+        queued = select(*ASKING).join(order, order.c.id == Run.id).where(*urgent)
         waiting = [
             run
-            for run in in_order(session)
-            if run.priority == URGENT
-            and run.worker is None
-            and run.owner not in over
-            and not any(fits(run, worker, moment) for worker in free)
+            for run in session.execute(queued.order_by(order.c.place))
+            if run.owner not in over and not any(fits(run, worker, moment) for worker in free)
         ]
         asked = select(func.count()).where(
             Run.status == RUNNING, Run.requested_state.is_not(None)

@@ -3,7 +3,7 @@
 from datetime import datetime, timedelta
 from uuid import UUID
 
-from sqlalchemy import delete, func, select
+from sqlalchemy import Select, delete, func, select
 from sqlalchemy.orm import Session
 
 from ..core.database import insert_or_update, now
@@ -23,9 +23,18 @@ def forget_device_time(session: Session, before: datetime) -> int:
     return len(session.scalars(old).all())
 
 
+def seconds_by_owner(session: Session, days: int) -> Select[tuple[UUID, float]]:
+    """Select each `owner` with its `seconds` of device time in the last days, today among them.
+
+    `NOBODY` owns the runs without an owner.
+    """
+    first = (now(session) - timedelta(days=days - 1)).date()
+    total = func.sum(DeviceUse.seconds).label("seconds")
+    used = select(DeviceUse.owner, total).where(DeviceUse.day >= first)
+    return used.group_by(DeviceUse.owner)
+
+
 def device_seconds(session: Session, days: int) -> dict[UUID | None, float]:
     """Return the device time of each owner in the last days, today among them."""
-    first = (now(session) - timedelta(days=days - 1)).date()
-    total = select(DeviceUse.owner, func.sum(DeviceUse.seconds)).where(DeviceUse.day >= first)
-    found = session.execute(total.group_by(DeviceUse.owner))
+    found = session.execute(seconds_by_owner(session, days))
     return {None if owner == NOBODY else owner: seconds for owner, seconds in found}

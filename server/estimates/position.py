@@ -5,12 +5,13 @@ from dataclasses import dataclass
 from datetime import datetime
 from uuid import UUID, uuid4
 
+from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from ..core.database import now
 from ..schedule import quota
 from ..schedule.fit import fitting
-from ..schedule.order import ORDERING, in_order
+from ..schedule.order import places
 from ..schedule.take import runs_of
 from ..services.services import Services
 from ..tables import NORMAL, QUEUED, Run, Worker
@@ -22,12 +23,12 @@ NO_WORKER = "No worker is alive: start one with `make run` or `python -m worker.
 
 @dataclass(frozen=True)
 class QueueState:
-    """The queued runs, and the workers that take them."""
+    """How many runs are queued, and the workers that take them."""
 
     moment: datetime
-    runs: list[UUID]
-    """In their order: those that a worker has taken, then those that wait."""
+    queued: int
     taken: int
+    """Of the queued runs, those that a worker has: the first places are theirs."""
     alive: list[Worker]
     """Live workers that take runs."""
     having: Mapping[str, UUID]
@@ -45,14 +46,15 @@ def queue_state(services: Services, session: Session) -> QueueState:
     alive = registry.live(session, services.settings.lease)
     able = [worker for worker in alive if worker.problem is None]
     problem = None if able or not alive else f"Worker {alive[0].name}: {alive[0].problem}."
-    queued = in_order(session, columns=ORDERING)
+    counts = select(func.count(Run.worker), func.count()).where(Run.status == QUEUED)
+    taken, queued = session.execute(counts).one()
     return QueueState(
         moment=now(session),
-        runs=[run.id for run in queued],
-        taken=sum(run.worker is not None for run in queued),
+        queued=queued,
+        taken=taken,
         alive=able,
         having=runs_of(session, able),
-        exhausted=quota.exhausted(session, {run.owner for run in queued}),
+        exhausted=quota.exhausted(session),
         problem=problem,
     )
 
@@ -71,9 +73,10 @@ def ahead(
         created_at=queue.moment,
         queued_at=queue.moment,
     )
-    order = [run.id for run in in_order(session, mine, columns=ORDERING)]
+    order = places(session, mine)
+    place = session.execute(select(order.c.place).where(order.c.id == mine.id)).scalar_one()
     return QueueAhead(
-        runs_ahead=order.index(mine.id) - queue.taken,
+        runs_ahead=place - 1 - queue.taken,
         workers=len(queue.alive),
         idle_workers=queue.idle(queue.alive),
     )
@@ -82,16 +85,17 @@ def ahead(
 def reasons(services: Services, session: Session, runs: Sequence[Run]) -> dict[UUID, str]:
     """Return why each of the queued ones waits; read the queue only if there are any."""
     queued = [run for run in runs if run.status == QUEUED]
-    return reasons_in(queue_state(services, session), queued) if queued else {}
-
-
-def reasons_in(queue: QueueState, queued: Sequence[Run]) -> dict[UUID, str]:
-    places = {run_id: place for place, run_id in enumerate(queue.runs)}
-    return {run.id: reason(run, places.get(run.id, 0), queue) for run in queued}
+    if not queued:
+        return {}
+    queue, order = queue_state(services, session), places(session)
+    mine = order.c.id.in_([run.id for run in queued])
+    rows = session.execute(select(order.c.id, order.c.place).where(mine))
+    found = {run_id: place for run_id, place in rows}
+    return {run.id: reason(run, found.get(run.id, 1), queue) for run in queued}
 
 
 def reason(run: Run, place: int, queue: QueueState) -> str:
-    """Return a sentence about a run at this place of the queue, from 0."""
+    """Return a sentence about a run at this place of the queue, from 1."""
     if run.worker is not None:
         return f"Worker {run.worker} is about to start it."
     if not queue.alive:
@@ -101,7 +105,7 @@ def reason(run: Run, place: int, queue: QueueState) -> str:
         return unmet
     if over := queue.exhausted.get(run.owner):
         return over
-    before = max(0, place - queue.taken)
+    before = max(0, place - 1 - queue.taken)
     if queue.idle(fit):
         state = "A worker is free"
     elif len(fit) > 1:

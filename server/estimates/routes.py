@@ -7,9 +7,10 @@ from sqlalchemy import select
 
 from ..auth import tokens
 from ..auth.authorize import MAY_READ
+from ..schedule.order import places
 from ..services.services import ServicesDep, SessionDep
 from ..storage import space
-from ..tables import QUEUED, Run
+from ..tables import Run
 from ..workers.registry import run_brief
 from . import position
 from .schemas import QueuedRun, QueueRead
@@ -25,11 +26,11 @@ def read_queue(
 ) -> QueueRead:
     """Return the number of queued runs, and the first of them with the reasons for waiting."""
     queue = position.queue_state(services, session)
-    first = queue.runs[:limit]
-    queued = select(Run).where(Run.id.in_(first), Run.status == QUEUED)
-    found = {run.id: run for run in session.scalars(queued)}
-    runs = [found[run_id] for run_id in first if run_id in found]
-    reasons = position.reasons_in(queue, runs)
+    order = places(session)
+    first = select(Run, order.c.place).join(order, order.c.id == Run.id)
+    rows = session.execute(first.order_by(order.c.place).limit(limit)).all()
+    reasons = {run.id: position.reason(run, place, queue) for run, place in rows}
+    runs = [run for run, _ in rows]
     names = tokens.owner_names(session, (run.owner for run in runs))
     items = [
         QueuedRun(
@@ -43,4 +44,4 @@ def read_queue(
         for run in runs
     ]
     warning = space.shortage(services.settings, services.artifacts)
-    return QueueRead(total=len(queue.runs), warning=warning, items=items)
+    return QueueRead(total=queue.queued, warning=warning, items=items)

@@ -15,12 +15,20 @@ from ..tables import QUEUED, Run, Worker
 from ..workers import plugins
 
 
+ASKING = (
+    *(Run.id, Run.owner, Run.avoided_worker, Run.plugin_versions, Run.labels),
+    *(Run.memory_bytes, Run.device, Run.device_patience, Run.checkpoint_generation),
+    *(Run.queued_at, Run.released_at),
+)
+"""The columns that decide which worker may take a run."""
+
+
 class Requirement(NamedTuple):
     """Something that a run asks of its worker."""
 
     name: str
     met: Callable[[Any, Worker, datetime], bool]
-    """Takes a run, or its columns as in `order.COLUMNS`, a worker, and the time."""
+    """Takes a run, or its columns `ASKING`, a worker, and the time."""
     explain: Callable[[Run, Sequence[Worker]], str]
     """Returns a sentence about a run that none of these workers meets."""
 

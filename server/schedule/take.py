@@ -12,8 +12,8 @@ from ..core.database import clock, now
 from ..services.services import Services
 from ..tables import QUEUED, RUNNING, Run, Worker
 from ..workers import registry
-from .fit import fits
-from .order import in_order
+from .fit import ASKING, fits
+from .order import places
 from .quota import exhausted
 
 LOCK = 0x6D696372  # "micr": PostgreSQL's advisory locks are numbers.
@@ -46,21 +46,20 @@ def _one_at_a_time(session: Session) -> None:
 
 
 def _next(session: Session, name: str, lease: float) -> UUID | None:
-    waiting = select(Run.id).where(Run.status == QUEUED, Run.worker.is_(None)).limit(1)
+    waiting = (Run.status == QUEUED, Run.worker.is_(None))
     worker = session.get(Worker, name)
     if worker is None or worker.problem is not None:
         return None
-    if session.execute(waiting).one_or_none() is None:
+    if session.execute(select(Run.id).where(*waiting).limit(1)).one_or_none() is None:
         return None
-    queued, moment = in_order(session), now(session)
-    over = exhausted(session, {run.owner for run in queued})
+    over, moment, order = exhausted(session), now(session), places(session)
     others = [
         one for one in idle(session, registry.live(session, lease)) if one.name != worker.name
     ]
-    for run in queued:
+    queued = select(*ASKING).join(order, order.c.id == Run.id).where(*waiting)
+    for run in session.execute(queued.order_by(order.c.place)):
         if (
-            run.worker is None
-            and run.owner not in over
+            run.owner not in over
             and fits(run, worker, moment)
             and not _should_avoid(run, worker, others, moment)
         ):

@@ -5,7 +5,9 @@ from typing import Any
 
 import pytest
 
-from server.schedule.order import in_order
+from sqlalchemy import select
+
+from server.schedule.order import places
 from server.schedule.take import take
 from server.workers import registry
 
@@ -16,7 +18,9 @@ def waiting(services) -> Callable[[], list[str]]:
 
     def waiting() -> list[str]:
         with services.sessions.read() as session:
-            return [str(run.id) for run in in_order(session)]
+            order = places(session)
+            found = session.scalars(select(order.c.id).order_by(order.c.place))
+            return [str(run_id) for run_id in found]
 
     return waiting
 

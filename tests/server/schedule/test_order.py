@@ -1,72 +1,155 @@
 """The order in which runs are taken: fair to owners, true to priorities and interruptions."""
 
+import random
+from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from uuid import UUID, uuid4
 
 import pytest
 from reports import DEMO
+from sqlalchemy import update
 
 from server.attempts.claim import claim
 from server.attempts.leases import end_job, fail_job
 from server.auth import tokens
 from server.auth.device_use import count_device_time
 from server.runs.submission import IdempotentRequest, submit
-from server.schedule.order import in_order, ordered
-from server.tables import HIGH, LOW, NORMAL, URGENT, Run
+from server.tables import HIGH, LOW, NORMAL, RUNNING, URGENT, Run
 
 pytestmark = pytest.mark.postgresql
-ANNE, BERT = uuid4(), uuid4()
+ANNE, BERT, CARL = uuid4(), uuid4(), None
 START = datetime(2026, 1, 1, tzinfo=UTC)
 
 
-def queued(owner, at, priority=NORMAL, *, sweep=False, interrupted=False, worker=None):
-    moment = START + timedelta(minutes=at)
-    return Run(
-        id=uuid4(),
-        owner=owner,
-        sweep=uuid4() if sweep else None,
-        priority=priority,
-        interrupted=interrupted,
-        worker=worker,
-        created_at=moment,
-        queued_at=moment,
-    )
+@dataclass(frozen=True)
+class Queued:
+    """What decides about the place of a run, and its name in these tests."""
+
+    owner: UUID | None
+    minute: int
+    priority: str = NORMAL
+    sweep: bool = False
+    interrupted: bool = False
+    worker: str | None = None
 
 
-def test_owners_take_turns_however_many_runs_one_of_them_has():
-    many = [queued(ANNE, at) for at in range(5)]
-    late = [queued(BERT, 60), queued(BERT, 61)]
+@pytest.fixture
+def ordered(services, waiting):
+    """Submits runs, and returns them in the order in which the database puts them.
+
+    Some owners have running runs, or have used device time.
+    """
+
+    def ordered(queued, running=(), used=None):
+        names = {}
+        for owner in running:
+            create(services, Queued(owner, 0, worker="worker"), status=RUNNING)
+        with services.sessions.write.begin() as session:
+            for owner, seconds in (used or {}).items():
+                count_device_time(session, owner, seconds)
+        for run in queued:
+            names[create(services, run)] = run
+        return [names[run_id] for run_id in waiting()]
+
+    return ordered
+
+
+def create(services, run, **columns):
+    """Submit a run and set what decides about its place; return its id."""
+    made = submit(services, DEMO)[0].id
+    moment = START + timedelta(minutes=run.minute)
+    columns |= {
+        "owner": run.owner,
+        "sweep": uuid4() if run.sweep else None,
+        "priority": run.priority,
+        "interrupted": run.interrupted,
+        "worker": run.worker,
+        "created_at": moment,
+        "queued_at": moment,
+    }
+    with services.sessions.write.begin() as session:
+        session.execute(update(Run).where(Run.id == made).values(columns))
+    return str(made)
+
+
+def test_owners_take_turns_however_many_runs_one_of_them_has(ordered):
+    many = [Queued(ANNE, at) for at in range(5)]
+    late = [Queued(BERT, 60), Queued(BERT, 61)]
     turns = [many[0], late[0], many[1], late[1], *many[2:]]
-    assert ordered([*late, *many], {}, {}) == turns
-    assert ordered([*late, *many], {ANNE: 1}, {}) == [late[0], many[0], late[1], *many[1:]]
+    assert ordered([*late, *many]) == turns
 
 
-def test_of_equal_turns_the_owner_with_less_device_time_goes_first():
-    anne, bert = queued(ANNE, 0), queued(BERT, 60)
-    assert ordered([anne, bert], {}, {ANNE: 10.0, BERT: 5.0}) == [bert, anne]
-    assert ordered([anne, bert], {}, {ANNE: 10.0, BERT: 50.0}) == [anne, bert]
+def test_running_runs_count_as_turns(ordered):
+    many = [Queued(ANNE, at) for at in range(5)]
+    late = [Queued(BERT, 60), Queued(BERT, 61)]
+    turns = [late[0], many[0], late[1], *many[1:]]
+    assert ordered([*late, *many], running=[ANNE]) == turns
 
 
-def test_priorities_order_the_runs_of_one_owner_and_urgent_ones_go_before_all():
-    low, normal, high = (queued(ANNE, at, one) for at, one in enumerate((LOW, NORMAL, HIGH)))
-    other = queued(BERT, 60, LOW)
-    assert ordered([low, normal, high, other], {}, {}) == [high, other, normal, low]
-    urgent = queued(ANNE, 90, URGENT)
-    assert ordered([low, high, other, urgent], {ANNE: 7}, {})[0] is urgent
+@pytest.mark.parametrize(("other", "first"), [(5.0, BERT), (50.0, ANNE)])
+def test_of_equal_turns_the_owner_with_less_device_time_goes_first(ordered, other, first):
+    runs = ordered([Queued(ANNE, 0), Queued(BERT, 60)], used={ANNE: 10.0, BERT: other})
+    assert runs[0].owner == first
 
 
-def test_taken_and_interrupted_runs_come_first_and_count_as_turns():
-    urgent = queued(ANNE, 0, URGENT)
-    lost = queued(BERT, 2, LOW, sweep=True, interrupted=True)
-    taken = queued(BERT, 3, worker="worker")
-    waiting, other = queued(BERT, 1), queued(ANNE, 4)
-    found = ordered([urgent, waiting, lost, taken, other], {}, {})
+def test_priorities_order_the_runs_of_one_owner(ordered):
+    low, normal, high = (Queued(ANNE, at, one) for at, one in enumerate((LOW, NORMAL, HIGH)))
+    other = Queued(BERT, 60, LOW)
+    assert ordered([low, normal, high, other]) == [high, other, normal, low]
+
+
+def test_urgent_runs_go_before_all(ordered):
+    high, other, urgent = Queued(ANNE, 1, HIGH), Queued(BERT, 60), Queued(ANNE, 90, URGENT)
+    assert ordered([high, other, urgent], running=[ANNE] * 3) == [urgent, other, high]
+
+
+def test_taken_and_interrupted_runs_come_first_and_count_as_turns(ordered):
+    urgent = Queued(ANNE, 0, URGENT)
+    lost = Queued(BERT, 2, LOW, sweep=True, interrupted=True)
+    taken = Queued(BERT, 3, worker="worker")
+    waiting, other = Queued(BERT, 1), Queued(ANNE, 4)
+    found = ordered([urgent, waiting, lost, taken, other])
     assert found == [taken, lost, urgent, other, waiting]
 
 
-def test_single_runs_go_before_sweeps_of_the_same_owner():
-    sweep, single = queued(ANNE, 0, sweep=True), queued(ANNE, 60)
-    assert ordered([sweep, single], {}, {}) == [single, sweep]
+def test_single_runs_go_before_sweeps_of_the_same_owner(ordered):
+    sweep, single = Queued(ANNE, 0, sweep=True), Queued(ANNE, 60)
+    assert ordered([sweep, single]) == [single, sweep]
+
+
+def by_the_rules(queued, running, used):
+    """Order runs without a database: a turn is the number of the owner's runs before."""
+
+    def own(run):
+        sweep = run.sweep and not run.interrupted
+        rank = [URGENT, HIGH, NORMAL, LOW].index(run.priority)
+        return run.worker is None, not run.interrupted, rank, sweep, run.minute
+
+    def key(run):
+        before = [one for one in queued if one.owner == run.owner and own(one) < own(run)]
+        turn = running.count(run.owner) + len(before)
+        first = run.worker is None, not run.interrupted, run.priority != URGENT
+        return *first, turn, used.get(run.owner, 0.0), own(run)
+
+    return sorted(queued, key=key)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_mixed_queues_are_in_the_order_that_the_rules_tell(ordered, seed):
+    draw = random.Random(seed)
+    queued = [
+        Queued(
+            owner=draw.choice([ANNE, BERT, CARL]),
+            minute=minute,
+            priority=draw.choice([URGENT, HIGH, NORMAL, NORMAL, LOW]),
+            sweep=draw.random() < 0.3,
+            interrupted=draw.random() < 0.2,
+            worker=draw.choice([None] * 5 + ["worker"]),
+        )
+        for minute in draw.sample(range(1000), 40)
+    ]
+    running, used = draw.choices([ANNE, BERT, CARL], k=4), {ANNE: 3.0, CARL: 1.0}
+    assert ordered(queued, running, used) == by_the_rules(queued, running, used)
 
 
 @pytest.fixture
@@ -79,7 +162,9 @@ def token(services):
     return create
 
 
-def test_the_device_time_of_an_owner_is_counted_by_day(services, token, claim_run, report):
+def test_the_device_time_of_an_owner_is_counted_by_day(
+    services, token, claim_run, report, waiting
+):
     owner = token("anne")
     claim_run().record(report(1), 40.0)
     with services.sessions.write.begin() as session:
@@ -87,9 +172,7 @@ def test_the_device_time_of_an_owner_is_counted_by_day(services, token, claim_ru
         count_device_time(session, owner, 12.0)
     mine = submit(services, DEMO, IdempotentRequest({}, None, owner))[0].id
     nobodys = submit(services, DEMO, IdempotentRequest({}, None, None))[0].id
-    with services.sessions.read() as session:
-        found = [run.id for run in in_order(session)]
-    assert found == [mine, nobodys], "whoever has no token has a run already"
+    assert waiting() == [str(mine), str(nobodys)], "whoever has no token has a run already"
 
 
 @pytest.mark.parametrize("died", [False, True])
