@@ -14,7 +14,6 @@ from microcosmos.sizes import size
 from ..tables import QUEUED, Run, Worker
 from ..workers import plugins
 
-
 ASKING = (
     *(Run.id, Run.owner, Run.avoided_worker, Run.plugin_versions, Run.labels),
     *(Run.memory_bytes, Run.device, Run.device_patience, Run.checkpoint_generation),

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-
 from sqlalchemy import select
 
 from server.schedule.order import places
