@@ -23,7 +23,7 @@ def forget_device_time(session: Session, before: datetime) -> int:
     return len(session.scalars(old).all())
 
 
-def seconds_by_owner(session: Session, days: int) -> Select[tuple[UUID, float]]:
+def seconds_by_owner(session: Session, days: int) -> Select[UUID, float]:
     """Select each `owner` with its `seconds` of device time in the last days, today among them.
 
     `NOBODY` owns the runs without an owner.
