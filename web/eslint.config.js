@@ -13,7 +13,7 @@ const LAYERS = [
   ["replay", "publish"],
   ["archive", "creature"],
   ["run"],
-  ["sweeps"],
+  ["sweeps", "tank"],
   ["compare", "new-run", "runs", "settings", "shares", "workers"],
   ["app"],
 ];

@@ -31,6 +31,9 @@ CORES = 2
 SETTINGS = {"MICROCOSMOS_DEMONSTRATION": "false"}
 WINDOW: ViewportSize = {"width": 1280, "height": 900}
 WALL: ViewportSize = {"width": 1600, "height": 1600}
+PHONE: ViewportSize = {"width": 390, "height": 844}
+SECONDS = 5
+"""In which frames of the tank are counted."""
 TIMES = 5
 REDRAWS = 60
 HOVERS = 30
@@ -132,6 +135,13 @@ def table(browser: Browser, product: Installation, runs: tuple[str, str, str]) -
         ("playing their history", "", lambda: play(browser, largest)),
         ("pointer on a cell to its first frame", "≤ 100 ms", lambda: hover(browser, hundred)),
         (f"gallery of {CREATURES}", "≥ 30 frames/s", lambda: gallery(browser, wall)),
+        ("first moving creature of the tank", "≤ 1.5 s", lambda: tank(browser, product.url)),
+        ("tank, of each frame", "≤ 12 ms", lambda: frames(browser, product.url, WINDOW, 1)),
+        (
+            "the same on a phone, 4 times slower",
+            "≤ 12 ms",
+            lambda: frames(browser, product.url, PHONE, 4),
+        ),
         ("script of a page, gzipped", "≤ 100 kB", lambda: script(browser, product, runs[2])),
     ]
     rows = Table("", "bar", "found", title=f"The page in Chromium on {CORES} cores")
@@ -245,6 +255,35 @@ def gallery(browser: Browser, url: str) -> str:
         after = page.evaluate(BLOCKS, side)
     moving = sum(one != other for one, other in zip(before, after, strict=False))
     return f"{rate:.0f} frames/s, {moving} tiles moving"
+
+
+def tank(browser: Browser, url: str) -> str:
+    """Time from the navigation to the first drawn creatures of the tank."""
+    times = []
+    for _ in range(TIMES):
+        with opened(browser, url) as page:
+            times.append(until_noted(page, "tank") / 1000)
+    return f"{statistics.median(times):.2f} s, slowest {max(times):.2f} s, of {TIMES}"
+
+
+def frames(browser: Browser, url: str, window: ViewportSize, slower: int) -> str:
+    """Time of the page's main thread for each frame of the tank."""
+    with opened(browser, url, window) as page:
+        until_noted(page, "tank")
+        page.wait_for_timeout(3000)  # Their trails grow.
+        count = page.get_by_role("application").first.get_attribute("aria-label") or ""
+        session = page.context.new_cdp_session(page)
+        session.send("Performance.enable")
+        session.send("Emulation.setCPUThrottlingRate", {"rate": slower})
+
+        def busy() -> float:
+            found = session.send("Performance.getMetrics")["metrics"]
+            return next(one["value"] for one in found if one["name"] == "TaskDuration")
+
+        before = busy()
+        rate = page.evaluate(FRAMES, [SECONDS, False])
+        spent = 1000 * (busy() - before) / (SECONDS * rate)
+    return f"{spent:.1f} ms at {rate:.0f} frames/s; {' '.join(count.split()[2:5])}"
 
 
 def script(browser: Browser, product: Installation, run: str) -> str:

@@ -81,6 +81,16 @@ export const readArchivePoses = (id: string, cells: number[], when: { generation
       parseAs: "arrayBuffer",
     }),
   );
+/** The creatures that swim on the first page. */
+export const readTank = (limit: number) => success(client.GET("/tank", { params: { query: { limit } } }));
+/** The stored pose streams of some creatures. */
+export const readTankPoses = (creatures: string[]) =>
+  typed<ArrayBuffer>(
+    client.GET("/tank/poses", {
+      params: { query: { creatures: creatures.join() } },
+      parseAs: "arrayBuffer",
+    }),
+  );
 /** Every elite that ever entered the archive, with columns of named measures. */
 export function readHistory(id: string, measures: string[]) {
   const asked = { ...run(id, joined(measures)), ...AS_COLUMNS };

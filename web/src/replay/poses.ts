@@ -4,7 +4,7 @@ import type { PoseStream } from "../decode/poses";
 import { type Point, chainsOf, splineOf } from "./motion";
 
 /** In smaller squares, in pixels, straight edges cannot be told from a spline and are drawn faster. */
-const SMOOTH_SIDE = 150;
+const SMOOTH_SIDE = 80;
 
 interface Shape {
   chains: number[][];
@@ -83,6 +83,22 @@ const between = (a: Point, b: Point, share: number): Point => [
 function rotation(angle: number): (point: Point) => Point {
   const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
   return ([x, y]) => [cos * x - sin * y, sin * x + cos * y];
+}
+
+/** The largest distance of a node from the mean position, in cells. */
+export const radiusOf = (stream: PoseStream): number => shapeOf(stream).radius;
+
+/** The velocity of the mean position, in cells a step, some steps after the first frame. */
+export function velocityAt(stream: PoseStream, steps: number): Point {
+  const { means, turn } = shapeOf(stream);
+  const { frames, start, stop } = stream.header;
+  const [before, after, , loops] = momentOf(stream, steps);
+  // Nothing is recorded from the last frame to the first: there it has its mean velocity.
+  const [first, last] = after > before ? [before, after] : [0, frames - 1];
+  const between = ((stop - start) / frames) * (last - first);
+  if (!(between > 0)) return [0, 0];
+  const [a, b] = [pointAt(means, first), pointAt(means, last)];
+  return rotation(loops * turn)([(b[0] - a[0]) / between, (b[1] - a[1]) / between]);
 }
 
 type Square = readonly [left: number, top: number, side: number];
