@@ -34,6 +34,7 @@ export const text = {
   rounding: (difference: string) => ` (rounding: ${difference})`,
   download: "Download",
   linkCopied: "Link copied.",
+  sideBySide: "Side by side",
   copyLink: "Copy link",
   jsonAbout: "The creature file with its ancestors, for import into another installation",
   motionCsv: "Motion (CSV)",
