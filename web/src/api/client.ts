@@ -41,8 +41,11 @@ export const readRuns = (query: wire.RunQuery) =>
 export const readRun = (id: string) => typed<wire.Run>(client.GET("/runs/{run_id}", run(id)));
 export const estimateRun = (spec: wire.Spec) =>
   success(client.POST("/runs/estimate", { body: spec as never }));
-export const createRun = (spec: wire.Spec, key: string) =>
-  typed<wire.Run>(client.POST("/runs", { params: keyed(key), body: spec as never }));
+/** Queue a run, with a name if there is one. */
+export function createRun(spec: wire.Spec, key: string, name: string | null) {
+  const params = { ...keyed(key), query: name ? { name } : {} };
+  return typed<wire.Run>(client.POST("/runs", { params, body: spec as never }));
+}
 export function forkRun({ run: id, ...body }: wire.ForkRequest, key: string) {
   const params = { ...run(id).params, ...keyed(key) };
   return typed<wire.Run>(client.POST("/runs/{run_id}/fork", { params, body: body as never }));
