@@ -53,7 +53,11 @@ export function lineOf({ parent }: TreeLayout, creature: number): number[] {
 }
 
 /** Links of a line to second parents: child and parent. */
-export function otherParents(tree: Phylogeny, { row }: TreeLayout, line: readonly number[]): [number, number][] {
+export function otherParents(
+  tree: Phylogeny,
+  { row }: TreeLayout,
+  line: readonly number[],
+): [number, number][] {
   return line.flatMap((child) =>
     parentsOf(tree, child)
       .slice(1)

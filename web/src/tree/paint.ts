@@ -1,7 +1,6 @@
 /** Draw the strokes of a tree on a canvas. */
 
-import type { Phylogeny } from "../decode/phylogeny";
-import { NONE } from "../decode/phylogeny";
+import { type Phylogeny, NONE } from "../decode/phylogeny";
 import type { Theme } from "../ui/canvas";
 import { type Shades, type Shape, radiusOf, shapeOf } from "./shades";
 import { type Strokes, WIDTHS, bendOf, lineIndex } from "./strokes";
@@ -43,7 +42,7 @@ export function paint(
 }
 
 export function traceEdge(
-  path: Pick<Context, "moveTo" | "lineTo" | "bezierCurveTo">,
+  path: Pick<CanvasPath, "moveTo" | "lineTo" | "bezierCurveTo">,
   x: number,
   y: number,
   toX: number,
@@ -80,7 +79,9 @@ function paintDots(
   }
 }
 
-export function traceDot(context: Context, shape: Shape, x: number, y: number, radius: number): void {
+type DotPath = Pick<CanvasPath, "moveTo" | "lineTo" | "arc" | "rect" | "closePath">;
+
+export function traceDot(context: DotPath, shape: Shape, x: number, y: number, radius: number): void {
   const r = radius * 1.15;
   if (shape === "circle") context.arc(x, y, radius, 0, 2 * Math.PI);
   else if (shape === "square") context.rect(x - 0.9 * r, y - 0.9 * r, 1.8 * r, 1.8 * r);

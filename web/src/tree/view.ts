@@ -1,7 +1,6 @@
 /** The visible part of a tree: one zoom level for both axes, and a centre. */
 
-import type { Phylogeny } from "../decode/phylogeny";
-import { NONE } from "../decode/phylogeny";
+import { type Phylogeny, NONE } from "../decode/phylogeny";
 import type { Size } from "../ui/canvas";
 import type { TreeLayout } from "./layout";
 
@@ -33,6 +32,8 @@ export const MARGIN = { x: 44, top: 26, bottom: 40 };
 /** Pixels of a row, and of a gap between parent and child, at the highest zoom. */
 const CLOSE = { row: 92, gap: 130 };
 const GAP_SHARE = 0.25;
+/** Natural logarithm of the enlargement from the whole to the highest zoom, at least. */
+const LEAST_RANGE = 0.7;
 
 export function extentOf({ time, count }: Phylogeny, { parent, row, totalRows }: TreeLayout): Extent {
   let [firstTime, lastTime] = [Infinity, -Infinity];
@@ -96,8 +97,26 @@ function within(centre: number, low: number, high: number, half: number): number
 /** A point of the window, from its upper left corner. */
 export type Place = readonly [x: number, y: number];
 
-export function placeOf({ time, row }: Pick<View, "time" | "row">, { x, y }: Scales, view: View, size: Size): Place {
+export function placeOf(
+  { time, row }: Pick<View, "time" | "row">,
+  { x, y }: Scales,
+  view: View,
+  size: Size,
+): Place {
   return [size.width / 2 + (time - view.time) * x, size.height / 2 + (row - view.row) * y];
+}
+
+/** The change of the zoom level that enlarges rows by a factor, given as its natural logarithm. */
+export function zoomFor(log: number, extent: Extent, size: Size): number {
+  const { x, y } = fitting(extent, size);
+  const close = closest(extent);
+  return log / Math.max(LEAST_RANGE, Math.log(close.y / y), Math.log(close.x / x));
+}
+
+/** The zoom level at which a row has a height, or the nearest to it. */
+export function zoomOf(height: number, extent: Extent, size: Size): number {
+  const [low, high] = [Math.min(fitting(extent, size).y, CLOSE.row), CLOSE.row];
+  return low >= height ? 0 : Math.log(height / low) / Math.log(high / low);
 }
 
 /** The view after a change of zoom that keeps what is at a place there. */

@@ -1,0 +1,164 @@
+/** A tree of life in a window: canvases, keys and pointer, with controls around it. */
+
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { NONE, indexOf, nameAt } from "../decode/phylogeny";
+import { TimeSlider } from "../archive/TimeSlider";
+import { usePoses } from "../store/poses";
+import { navigate, setQuery } from "../store/router";
+import { useTheme } from "../ui/canvas";
+import { count } from "../ui/format";
+import { useGestures } from "./gestures";
+import { press } from "./keys";
+import { type ColourBy, shadesOf } from "./shades";
+import { svgOf } from "./svg";
+import { TreeControls } from "./TreeControls";
+import { TreeCreature } from "./TreeCreature";
+import { TreeLegend } from "./TreeLegend";
+import { type LoadedTree, useArranged, useMachine } from "./useTree";
+import { text } from "./text";
+
+interface Props {
+  buffer: ArrayBuffer;
+  /** The path of the run or creature. */
+  of: string;
+  /** The creature in the middle, if the tree is that of one. */
+  self?: string;
+  query: URLSearchParams;
+}
+
+export function TreeView({ buffer, of, self, query }: Props) {
+  const elements = { port: useRef(null), picture: useRef(null), overlay: useRef(null) };
+  const survivors = query.get("show") === "survivors";
+  const machine = useMachine(elements);
+  const loaded = useArranged(buffer, survivors, machine);
+  const view = useShown(loaded, machine, query, self);
+  return (
+    <>
+      {machine.error && <p class="banner wrong">{text.failed(machine.error)}</p>}
+      <TreeControls
+        {...{ of, survivors }}
+        by={view.by}
+        whole={view.whole}
+        zoom={machine.zoom}
+        stage={() => machine.machine.current!.stage}
+        onDrawing={() => svgOf(machine.machine.current!.stage.scene)}
+      />
+      <div class="tree-window">
+        <TreePort {...{ elements, loaded, view }} machine={machine} />
+        {loaded && <TreeCreature {...loaded} creature={view.focus} hrefOf={view.hrefOf} />}
+      </div>
+      {loaded && (
+        <>
+          <TimeSlider last={view.last} at={view.at} ready onMove={view.setAt} />
+          <TreeLegend tree={loaded.tree} shades={view.shades!} theme={view.theme} collapsed={!view.whole} />
+          <Summary {...loaded} />
+        </>
+      )}
+    </>
+  );
+}
+
+type Machine = ReturnType<typeof useMachine>;
+type ShownView = ReturnType<typeof useShown>;
+
+/** What the address and the pointer choose, passed on to the stage. */
+function useShown(loaded: LoadedTree | null, machine: Machine, query: URLSearchParams, self?: string) {
+  const theme = useTheme();
+  const [at, setAt] = useState<number | null>(null);
+  const [hovered, setHovered] = useState(NONE);
+  const by: ColourBy = query.get("colour") === "operator" ? "operator" : "fitness";
+  const whole = query.get("lines") === "all";
+  const tree = loaded?.tree ?? null;
+  const chosen = query.get("creature") ?? self ?? null;
+  const selected = useMemo(() => placed(loaded, chosen), [loaded, chosen]);
+  const known = hovered !== NONE && hovered < (tree?.count ?? 0) ? hovered : selected;
+  const last = tree && tree.count > 0 ? tree.time[tree.count - 1]! : 0;
+  const names = useMemo(
+    () =>
+      tree ? machine.landmarks.map(({ creature }) => ({ cell: 0, creature: nameAt(tree, creature) })) : [],
+    [machine.landmarks, tree],
+  );
+  const poses = usePoses(null, null, names);
+  const focus = known;
+  useEffect(() => {
+    const { stage, painter } = machine.machine.current!;
+    stage.show({ at: at ?? last, whole, by, theme, focus, poses });
+    if (loaded) stage.load(loaded.tree, loaded, painter);
+  }, [loaded]);
+  useEffect(() => {
+    machine.machine.current!.stage.show({ at: at ?? last, whole, by, theme, focus, poses });
+  });
+  const shades = useMemo(() => tree && shadesOf(tree, by, theme), [tree, by, theme]);
+  const hrefOf = (creature: number) => {
+    const run = tree!.run[creature]!;
+    return `/creatures/${nameAt(tree!, creature)}${run === NONE ? "" : `?run=${tree!.runs[run]}`}`;
+  };
+  return { theme, at, setAt, by, whole, focus, selected, setHovered, last, shades, hrefOf };
+}
+
+/** The row of a creature in the tree as it is arranged. */
+function placed(loaded: LoadedTree | null, name: string | null): number {
+  const found = loaded && name ? indexOf(loaded.tree, name) : NONE;
+  return found !== NONE && loaded!.layout.row[found] !== NONE ? found : NONE;
+}
+
+interface PortProps {
+  elements: Parameters<typeof useMachine>[0];
+  loaded: LoadedTree | null;
+  view: ShownView;
+  machine: Machine;
+}
+
+function TreePort({ elements, loaded, view, machine }: PortProps) {
+  const { port, picture, overlay } = elements;
+  const stage = () => machine.machine.current!.stage;
+  const select = (creature: number) => {
+    view.setHovered(NONE);
+    setQuery({ creature: creature === NONE ? null : nameAt(loaded!.tree, creature) });
+  };
+  useGestures(port, {
+    pan: (by) => stage().pan(by),
+    zoom: (log, at) => stage().zoom(log, at),
+    hover: (at) => view.setHovered(at ? stage().creatureAt(at) : NONE),
+    tap: (at, byTouch) => {
+      const creature = stage().creatureAt(at);
+      // Fingers cannot hover: the first tap selects, the second opens.
+      if (creature === NONE || (byTouch && creature !== view.selected)) select(creature);
+      else navigate(view.hrefOf(creature));
+    },
+  });
+  const onKeyDown = (event: KeyboardEvent) => {
+    if (!loaded || event.ctrlKey || event.metaKey || event.altKey) return;
+    const selection = { selected: view.selected, select, open: (one: number) => navigate(view.hrefOf(one)) };
+    if (press(event, loaded, stage(), selection)) event.preventDefault();
+  };
+  return (
+    <div
+      ref={port}
+      class={`tree-port ${view.focus === NONE ? "" : "over"}`}
+      tabIndex={0}
+      role="application"
+      aria-label={text.label}
+      aria-describedby="tree-creature"
+      aria-busy={!loaded}
+      onKeyDown={onKeyDown}
+    >
+      <canvas ref={picture} class="tree-picture" />
+      <canvas ref={overlay} class="tree-overlay" />
+      {!loaded && <p class="quiet loading">{text.arranging}</p>}
+    </div>
+  );
+}
+
+function Summary({ tree, layout }: LoadedTree) {
+  const [first, now] = useMemo(() => {
+    let [roots, elites] = [0, 0];
+    for (let i = 0; i < tree.count; i++) {
+      if (layout.parent[i] === NONE) roots++;
+      if (tree.lost[i] === NONE && tree.run[i] !== NONE) elites++;
+    }
+    return [roots, elites];
+  }, [tree, layout]);
+  if (tree.count === 1) return <p class="quiet small">{text.one}</p>;
+  return <p class="quiet small">{text.summary(count(tree.count), count(first), count(now))}</p>;
+}

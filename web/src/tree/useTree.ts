@@ -1,0 +1,71 @@
+/** The stage of a tree, with its worker, in the life of a component. */
+
+import type { RefObject } from "preact";
+import { useEffect, useRef, useState } from "preact/hooks";
+import { type Phylogeny, decodePhylogeny } from "../decode/phylogeny";
+import { useSize } from "../ui/canvas";
+import type { Landmark } from "./landmarks";
+import { type Arranged, type Painter, startPainter } from "./painter";
+import { Stage } from "./stage";
+
+export interface Elements {
+  port: RefObject<HTMLDivElement | null>;
+  picture: RefObject<HTMLCanvasElement | null>;
+  overlay: RefObject<HTMLCanvasElement | null>;
+}
+
+/** A tree with the rows of its creatures. */
+export interface LoadedTree extends Arranged {
+  tree: Phylogeny;
+}
+
+/** The stage and its painter, once the canvases exist. */
+export interface Machine {
+  stage: Stage;
+  painter: Painter;
+}
+
+export function useMachine({ port, picture, overlay }: Elements) {
+  const machine = useRef<Machine | null>(null);
+  const arranged = useRef<(found: Arranged) => void>(() => {});
+  const [zoom, setZoom] = useState(0);
+  const [landmarks, setLandmarks] = useState<Landmark[]>([]);
+  const [error, setError] = useState<string | null>(null);
+  const size = useSize(port);
+  useEffect(() => {
+    const stage = new Stage({ picture: picture.current!, overlay: overlay.current! }, (zoom, landmarks) => {
+      setZoom(zoom);
+      setLandmarks(landmarks);
+    });
+    const painter = startPainter({
+      arranged: (found) => arranged.current(found),
+      painted: (picture, bitmap) => stage.painted(picture, bitmap),
+      failed: setError,
+    });
+    machine.current = { stage, painter };
+    return () => {
+      stage.stop();
+      painter.stop();
+    };
+  }, []);
+  useEffect(() => {
+    machine.current!.stage.resize(size);
+  }, [size]);
+  return { machine, arranged, zoom, landmarks, error };
+}
+
+/** Arrange the columns of a tree; null until that is done the first time. */
+export function useArranged(
+  buffer: ArrayBuffer,
+  survivors: boolean,
+  { machine, arranged }: ReturnType<typeof useMachine>,
+): LoadedTree | null {
+  const [loaded, setLoaded] = useState<LoadedTree | null>(null);
+  const sent = useRef<ArrayBuffer | null>(null);
+  useEffect(() => {
+    arranged.current = (found) => setLoaded({ tree: decodePhylogeny(buffer), ...found });
+    machine.current!.painter.arrange({ buffer: sent.current === buffer ? undefined : buffer, survivors });
+    sent.current = buffer;
+  }, [buffer, survivors]);
+  return loaded;
+}
