@@ -1,10 +1,11 @@
 """Queries of births: creatures with their parents and the runs in which they entered."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from operator import itemgetter
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import Row, Select, func, select
+from sqlalchemy import Select, func, select
 from sqlalchemy.orm import Session, aliased
 
 from microcosmos.archive.phylogeny import NONE, Birth
@@ -20,31 +21,30 @@ MAX_CREATURES = 400_000
 Links = Mapping[str, Sequence[str]]
 """Parents by the name of their child, in the order in which it names them."""
 
-_Later = aliased(Elite)
-_LOST = (
-    select(func.min(_Later.generation))
-    .where(
-        _Later.run_id == Elite.run_id,
-        _Later.cell == Elite.cell,
-        _Later.generation > Elite.generation,
-    )
-    .scalar_subquery()
-    .label("lost")
-)
-"""The generation in which an elite's cell went to another; null if it still has it."""
-
 
 def entered(session: Session, run: Run) -> list[Birth]:
     """Return all creatures that ever entered the archive of a run."""
-    columns = (Elite.creature, Elite.generation, Elite.run_id, Creature.operator, _LOST)
-    mine = (recorded_in(run), Elite.creature.is_not(None))
-    counted = select(func.count()).select_from(Elite).where(*mine)
+    mine = recorded_in(run)
+    counted = select(func.count()).select_from(Elite).where(mine)
     refuse_large(session.execute(counted).scalar_one())
-    found = select(*columns, Elite.fitness).join(Creature, Creature.sha256 == Elite.creature)
-    rows = session.execute(found.where(*mine).order_by(Elite.generation, Elite.cell))
-    names = select(Elite.creature).where(*mine)
+    columns = (Elite.cell, Elite.generation, Elite.creature, Elite.fitness, Creature.operator)
+    rows = session.execute(
+        select(*columns)
+        .outerjoin(Creature, Creature.sha256 == Elite.creature)
+        .where(mine)
+        .order_by(Elite.cell, Elite.generation)
+    ).all()
+    names = select(Elite.creature).where(mine, Elite.creature.is_not(None))
     links = select(Parent.child, Parent.parent).where(Parent.child.in_(names))
-    return list(_births(rows, _linked(session, links)))
+    name, next_cell, next_generation = str(run.id), None, 0
+    entries: list[Sequence[Any]] = []
+    for cell, generation, creature, fitness, operator in reversed(rows):
+        lost = next_generation if cell == next_cell else None
+        if creature is not None:
+            entries.append((creature, name, generation, lost, operator, fitness))
+        next_cell, next_generation = cell, generation
+    entries.sort(key=itemgetter(2))
+    return list(_births(entries, _linked(session, links)))
 
 
 def ancestors_of_run(session: Session, run: Run) -> list[Birth]:
@@ -98,6 +98,19 @@ def _parts(names: Iterable[str]) -> Iterator[list[str]]:
         yield listed[first : first + NAMES_PER_QUERY]
 
 
+_Later = aliased(Elite)
+_LOST = (
+    select(func.min(_Later.generation))
+    .where(
+        _Later.run_id == Elite.run_id,
+        _Later.cell == Elite.cell,
+        _Later.generation > Elite.generation,
+    )
+    .scalar_subquery()
+)
+"""The generation in which an elite's cell went to another; null if it still has it."""
+
+
 def _read(session: Session, names: Iterable[str], besides: UUID | None = None) -> list[Birth]:
     """Return births in the first run that each entered, but for one run.
 
@@ -108,12 +121,12 @@ def _read(session: Session, names: Iterable[str], besides: UUID | None = None) -
     recorded = Creature.provenance["generation"].as_integer()
     measured = Creature.measured["fitness"].as_float()
     columns = (
-        Creature.sha256.label("creature"),
-        func.coalesce(Elite.generation, recorded).label("generation"),
-        func.coalesce(Elite.fitness, measured).label("fitness"),
+        Creature.sha256,
         Elite.run_id,
-        Creature.operator,
+        func.coalesce(Elite.generation, recorded),
         _LOST,
+        Creature.operator,
+        func.coalesce(Elite.fitness, measured),
     )
     found: list[Birth] = []
     for some in _parts(names):
@@ -136,20 +149,24 @@ def _linked(session: Session, links: Select[str, str]) -> Links:
     return found
 
 
-def _births(rows: Iterable[Row[*tuple[Any, ...]]], links: Links) -> Iterator[Birth]:
-    """Yield the first entry of each creature; it is lost when its run has it in no cell."""
-    entries: dict[str, list[Any]] = {}
-    for row in rows:
-        entries.setdefault(row.creature, []).append(row)
-    for name, listed in entries.items():
-        first = listed[0]
-        ends = [row.lost for row in listed if row.run_id == first.run_id]
+def _births(entries: Iterable[Sequence[Any]], links: Links) -> Iterator[Birth]:
+    """Yield the first entry of each creature; it is lost when its run has it in no cell.
+
+    An entry has the name, run, generation, the generation in which its cell went to another
+    (None if it still has it), operator and fitness.
+    """
+    listed: dict[str, list[Sequence[Any]]] = {}
+    for entry in entries:
+        listed.setdefault(entry[0], []).append(entry)
+    for name, found in listed.items():
+        _, run, generation, lost, operator, fitness = found[0]
+        ends = [lost] if len(found) == 1 else [one[3] for one in found if one[1] == run]
         yield Birth(
             creature=name,
             parents=links.get(name, ()),
-            run=first.run_id and str(first.run_id),
-            generation=NONE if first.generation is None else first.generation,
+            run=run and str(run),
+            generation=NONE if generation is None else generation,
             lost=NONE if None in ends else max(ends),
-            operator=first.operator,
-            fitness=first.fitness,
+            operator=operator,
+            fitness=fitness,
         )

@@ -72,7 +72,7 @@ export function TreeControls({ of, by, whole, survivors, zoom, stage, onDrawing 
         </button>
       </div>
       <span class="spring" />
-      <span class="links">
+      <span class="tree-files">
         {FILES.map(([kind, name, about]) => (
           <FileLink key={kind} url={phylogenyUrl(of, kind)} name={name} title={about} />
         ))}

@@ -12,21 +12,24 @@ interface Props {
   tree: Phylogeny;
   layout: TreeLayout;
   creature: number;
+  /** The side of the window on which it is shown. */
+  side: "left" | "right";
   hrefOf: (creature: number) => string;
 }
 
 /** Delay between requests while the pointer moves. */
 const HOVER_MS = 150;
 
-export function TreeCreature({ creature, ...props }: Props) {
+export function TreeCreature({ creature, side, ...props }: Props) {
+  const card = creature === NONE ? "" : `tree-card ${side}`;
   return (
-    <section id="tree-creature" class="tree-creature" aria-live="polite" aria-label={text.creature}>
-      {creature === NONE ? <p class="quiet small">{text.hint}</p> : <Facts creature={creature} {...props} />}
+    <section id="tree-creature" class={card} aria-live="polite" aria-label={text.creature}>
+      {creature !== NONE && <Facts creature={creature} {...props} />}
     </section>
   );
 }
 
-function Facts({ tree, layout, creature, hrefOf }: Props) {
+function Facts({ tree, layout, creature, hrefOf }: Omit<Props, "side">) {
   const sha = nameAt(tree, creature);
   const shown = useThrottled(sha, HOVER_MS);
   const { stream } = usePoseStream(shown);

@@ -9,6 +9,7 @@ import { shortId, titleOf } from "../ui/format";
 import { Empty, Loading, NotFound, Page, reasonOf, useTitle } from "../ui/Page";
 import { TreeView } from "./TreeView";
 import { text } from "./text";
+import "../archive/archive.css";
 import "./tree.css";
 
 interface Props {

@@ -32,6 +32,7 @@ export function TreeView({ buffer, of, self, query }: Props) {
   const machine = useMachine(elements);
   const loaded = useArranged(buffer, survivors, machine);
   const view = useShown(loaded, machine, query, self);
+  const stage = () => machine.machine.current!.stage;
   return (
     <>
       {machine.error && <p class="banner wrong">{text.failed(machine.error)}</p>}
@@ -40,12 +41,19 @@ export function TreeView({ buffer, of, self, query }: Props) {
         by={view.by}
         whole={view.whole}
         zoom={machine.zoom}
-        stage={() => machine.machine.current!.stage}
-        onDrawing={() => svgOf(machine.machine.current!.stage.scene)}
+        stage={stage}
+        onDrawing={() => svgOf(stage().scene)}
       />
       <div class="tree-window">
         <TreePort {...{ elements, loaded, view }} machine={machine} />
-        {loaded && <TreeCreature {...loaded} creature={view.focus} hrefOf={view.hrefOf} />}
+        {loaded && (
+          <TreeCreature
+            {...loaded}
+            creature={view.focus}
+            hrefOf={view.hrefOf}
+            side={view.focus !== NONE && stage().isLeft(view.focus) ? "right" : "left"}
+          />
+        )}
       </div>
       {loaded && (
         <>
@@ -82,11 +90,11 @@ function useShown(loaded: LoadedTree | null, machine: Machine, query: URLSearchP
   const focus = known;
   useEffect(() => {
     const { stage, painter } = machine.machine.current!;
-    stage.show({ at: at ?? last, whole, by, theme, focus, poses });
+    stage.show({ at: at ?? Infinity, whole, by, theme, focus, poses });
     if (loaded) stage.load(loaded.tree, loaded, painter);
   }, [loaded]);
   useEffect(() => {
-    machine.machine.current!.stage.show({ at: at ?? last, whole, by, theme, focus, poses });
+    machine.machine.current!.stage.show({ at: at ?? Infinity, whole, by, theme, focus, poses });
   });
   const shades = useMemo(() => tree && shadesOf(tree, by, theme), [tree, by, theme]);
   const hrefOf = (creature: number) => {
@@ -159,6 +167,10 @@ function Summary({ tree, layout }: LoadedTree) {
     }
     return [roots, elites];
   }, [tree, layout]);
-  if (tree.count === 1) return <p class="quiet small">{text.one}</p>;
-  return <p class="quiet small">{text.summary(count(tree.count), count(first), count(now))}</p>;
+  const alone = tree.count === 1 ? text.one : text.summary(count(tree.count), count(first), count(now));
+  return (
+    <p class="quiet small">
+      {alone} {text.hint}
+    </p>
+  );
 }

@@ -7,9 +7,9 @@ import type { Scales, View } from "./view";
 import { placeOf } from "./view";
 
 /** Sides of a body in pixels, when many are shown and when few are; the most that are shown. */
-const [SMALL, LARGE, MOST] = [46, 78, 48];
+const [SMALL, LARGE, MOST] = [44, 60, 60];
 /** Room around a body, as a share of its side: more of the tree is seen when it is far. */
-const [FAR_ROOM, NEAR_ROOM] = [1.9, 1.06];
+const [FAR_ROOM, NEAR_ROOM] = [2.5, 1.04];
 /** Weights of an elite of today, and of fitness, beside that of descendants. */
 const [ALIVE, FIT] = [0.25, 0.75];
 

@@ -12,6 +12,7 @@ import type { TreeLayout } from "./layout";
 import { lineOf, otherParents } from "./nearest";
 import { INKS, traceEdge } from "./paint";
 import type { Shades } from "./shades";
+import { text } from "./text";
 import { type Place, type Scales, type View, MARGIN, placeOf } from "./view";
 
 export interface Overlay {
@@ -36,6 +37,8 @@ export interface Overlay {
 const FONT = "12px system-ui, sans-serif";
 const AXIS = 24;
 const MAX_TICKS = 9;
+/** Pixels at the right end of the axis, for its name. */
+const NAMED = 96;
 
 /** Draw over a cleared canvas. */
 export function drawOverlay(context: CanvasRenderingContext2D, scene: Overlay): void {
@@ -81,13 +84,12 @@ function dashed(context: CanvasRenderingContext2D, x: number, height: number): v
 /** The line of first parents in the ink of the page; links to second parents faintly. */
 function drawLine(
   context: CanvasRenderingContext2D,
-  { tree, layout, scales, theme }: Overlay,
+  { tree, layout, theme }: Overlay,
   line: readonly number[],
   place: (i: number) => Place,
 ): void {
   const { ink, ground } = INKS[theme];
-  const trace = (child: number, parent: number) =>
-    traceEdge(context, ...place(parent), ...place(child), scales.x);
+  const trace = (child: number, parent: number) => traceEdge(context, ...place(parent), ...place(child));
   context.beginPath();
   for (const [child, parent] of otherParents(tree, layout, line)) trace(child, parent);
   context.strokeStyle = ink;
@@ -129,7 +131,7 @@ export function drawBody(
   context.beginPath();
   context.arc(x, y, side / 2, 0, 2 * Math.PI);
   context.fillStyle = ground;
-  context.globalAlpha = 0.88;
+  context.globalAlpha = 0.95;
   context.fill();
   context.globalAlpha = 1;
   context.strokeStyle = creature === focus ? ink : shades.colours[shades.shade[creature]!]!;
@@ -156,10 +158,13 @@ function drawAxis(context: CanvasRenderingContext2D, { view, scales, size, theme
   const most = Math.min(MAX_TICKS, Math.floor(size.width / 80));
   for (const time of ticksOf({ log: false, low, high }, most)) {
     const [x] = placeOf({ time, row: 0 }, scales, view, size);
-    if (!Number.isInteger(time) || time < 0 || x < MARGIN.x / 2 || x > size.width - MARGIN.x / 2) continue;
+    const outside = x < MARGIN.x / 2 || x > size.width - NAMED;
+    if (!Number.isInteger(time) || time < 0 || outside) continue;
     context.fillRect(x - 0.5, size.height - AXIS, 1, 4);
     context.fillText(count(time), x, size.height - AXIS / 2 + 2);
   }
+  context.textAlign = "right";
+  context.fillText(text.generation, size.width - 12, size.height - AXIS / 2 + 2);
 }
 
 /** A ring around the focus, with its name and fitness beside it. */

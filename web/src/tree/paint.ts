@@ -12,14 +12,12 @@ export const INKS = {
   dark: { ink: "#e3ebef", quiet: "#93a5b0", ground: "#08171d" },
 };
 
-/** `generation` is its width in pixels. */
 export function paint(
   context: Context,
   strokes: Strokes,
   tree: Phylogeny,
   shades: Shades,
   theme: Theme,
-  generation: number,
 ): void {
   const { colours } = shades;
   context.lineCap = "round";
@@ -32,7 +30,7 @@ export function paint(
       context.lineWidth = width;
       context.beginPath();
       for (let i = 0; i < line.length; i += 4) {
-        traceEdge(context, line[i]!, line[i + 1]!, line[i + 2]!, line[i + 3]!, generation);
+        traceEdge(context, line[i]!, line[i + 1]!, line[i + 2]!, line[i + 3]!);
       }
       context.stroke();
     });
@@ -47,11 +45,10 @@ export function traceEdge(
   y: number,
   toX: number,
   toY: number,
-  generation: number,
 ): void {
   path.moveTo(x, y);
   if (Math.abs(toY - y) > 0.5) {
-    const { straightFrom, middle } = bendOf(x, y, toX, toY, generation);
+    const { straightFrom, middle } = bendOf(x, y, toX, toY);
     path.bezierCurveTo(middle, y, middle, toY, straightFrom, toY);
   }
   path.lineTo(toX, toY);

@@ -171,6 +171,12 @@ export class Stage {
     this.change(clamped({ ...this.view, ...this.pointOf(creature) }, this.extent, this.size));
   }
 
+  /** True if a creature is in the left half of the window. */
+  isLeft(creature: number): boolean {
+    if (!this.ready) return false;
+    return placeOf(this.pointOf(creature), this.scales, this.view, this.size)[0] < this.size.width / 2;
+  }
+
   stop(): void {
     cancelAnimationFrame(this.frame);
     clearTimeout(this.timer);

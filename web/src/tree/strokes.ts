@@ -31,8 +31,8 @@ const SIZES = [2, 8, 64, 512];
 const [LUMP, DOTS] = [0.75, 5];
 /** Rows that have room for a count, and its length, in pixels. */
 const [COUNTED, COUNT_LENGTH] = [15, 64];
-/** Pixels within which an edge leaves the row of the parent. */
-const BEND = 26;
+/** Pixels within which an edge leaves the row of its parent. */
+const BEND = 34;
 
 export interface Strokes {
   /** Lines by width and shade, four numbers each: x and y of the start, then of the end. */
@@ -137,8 +137,8 @@ function drawCreature(
   if (x - from > COUNT_LENGTH) found.counts.push((from + x) / 2, y, between);
 }
 
-/** The control points of an edge: it bends at its start, where no other creature can be. */
-export function bendOf(x: number, y: number, toX: number, toY: number, generation: number) {
-  const bend = Math.min(BEND, generation, toX - x, Math.abs(toY - y));
+/** The control points of an edge: it bends at its start, where siblings of the child do so too. */
+export function bendOf(x: number, y: number, toX: number, toY: number) {
+  const bend = Math.min(BEND, toX - x, Math.abs(toY - y));
   return { straightFrom: x + bend, middle: x + bend / 2 };
 }

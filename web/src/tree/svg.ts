@@ -45,13 +45,13 @@ const fixed = (value: number) => String(Math.round(10 * value) / 10);
 
 const pathTag = (d: string, attributes: string) => (d ? `<path d="${d}" ${attributes}/>` : "");
 
-function edges({ lines }: Strokes, { shades: { colours }, scales }: Scene): string[] {
+function edges({ lines }: Strokes, { shades: { colours } }: Scene): string[] {
   return WIDTHS.flatMap((width, k) =>
     colours.map((colour, shade) => {
       const line = lines[lineIndex(k, shade, colours.length)]!;
       const path = new PathWriter();
       for (let i = 0; i < line.length; i += 4) {
-        traceEdge(path, line[i]!, line[i + 1]!, line[i + 2]!, line[i + 3]!, scales.x);
+        traceEdge(path, line[i]!, line[i + 1]!, line[i + 2]!, line[i + 3]!);
       }
       return pathTag(path.d, `stroke="${colour}" stroke-width="${width}"`);
     }),
@@ -62,7 +62,7 @@ function links(pairs: readonly [number, number][], scene: Scene): string {
   const path = new PathWriter();
   const place = (i: number) =>
     placeOf({ time: scene.tree.time[i]!, row: scene.layout.row[i]! }, scene.scales, scene.view, scene.size);
-  for (const [child, parent] of pairs) traceEdge(path, ...place(parent), ...place(child), scene.scales.x);
+  for (const [child, parent] of pairs) traceEdge(path, ...place(parent), ...place(child));
   return path.d;
 }
 
@@ -102,7 +102,7 @@ function bodies({
     traceBody(path, stream, steps, [x - inner / 2, y - inner / 2, inner]);
     const colour = shades.colours[shades.shade[creature]!]!;
     return [
-      `<circle cx="${fixed(x)}" cy="${fixed(y)}" r="${fixed(side / 2)}" fill="${INKS[theme].ground}" fill-opacity="0.88" stroke="${colour}" stroke-width="1.5"/>`,
+      `<circle cx="${fixed(x)}" cy="${fixed(y)}" r="${fixed(side / 2)}" fill="${INKS[theme].ground}" fill-opacity="0.95" stroke="${colour}" stroke-width="1.5"/>`,
       pathTag(path.d, `stroke="${BODY_INK[theme]}" stroke-width="${fixed(Math.max(1.3, side / 34))}"`),
     ];
   });

@@ -37,6 +37,6 @@ function painted({ view, scales, size, density, at, whole, by, theme }: Picture)
   const context = canvas.getContext("2d")!;
   context.scale(density, density);
   const scene = { tree, layout, chains, view, scales, size, at, whole, shade, shades: colours.length };
-  paint(context, strokesOf(scene), tree, shades.value, theme, scales.x);
+  paint(context, strokesOf(scene), tree, shades.value, theme);
   return canvas.transferToImageBitmap();
 }

@@ -48,7 +48,7 @@ describe("a view", () => {
 
   it("finds the zoom of a height", () => {
     expect(scalesOf(extent, SIZE, zoomOf(26, extent, SIZE)).y).toBeCloseTo(26, 6);
-    expect(scalesOf(extent, SIZE, 1).y).toBeCloseTo(92, 6);
+    expect(scalesOf(extent, SIZE, 1).y).toBeCloseTo(64, 6);
   });
 });
 

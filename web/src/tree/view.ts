@@ -30,7 +30,7 @@ export interface Extent {
 /** Pixels around the whole tree: room for a body at each end. */
 export const MARGIN = { x: 44, top: 26, bottom: 40 };
 /** Pixels of a row, and of a gap between parent and child, at the highest zoom. */
-const CLOSE = { row: 92, gap: 130 };
+const CLOSE = { row: 64, gap: 110 };
 const GAP_SHARE = 0.25;
 /** Natural logarithm of the enlargement from the whole to the highest zoom, at least. */
 const LEAST_RANGE = 0.7;
