@@ -38,6 +38,10 @@ export function decodePhylogeny(buffer: ArrayBuffer): Phylogeny {
 export const nameAt = ({ creature }: Phylogeny, i: number) =>
   hexadecimal(creature.subarray(i * NAME_BYTES, (i + 1) * NAME_BYTES));
 
+/** True for an elite that still has a cell of its run. */
+export const isElite = ({ lost, run }: Pick<Phylogeny, "lost" | "run">, i: number) =>
+  lost[i] === NONE && run[i] !== NONE;
+
 /** The row of a creature; `NONE` if the tree lacks it. */
 export function indexOf({ creature, count }: Phylogeny, name: string): number {
   const bytes = Uint8Array.from(name.match(/../g) ?? [], (pair) => parseInt(pair, 16));

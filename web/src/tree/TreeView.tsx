@@ -1,7 +1,7 @@
 /** A tree of life in a window: canvases, keys and pointer, with controls around it. */
 
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
-import { NONE, indexOf, nameAt } from "../decode/phylogeny";
+import { NONE, indexOf, isElite, nameAt } from "../decode/phylogeny";
 import { TimeSlider } from "../archive/TimeSlider";
 import { usePoses } from "../store/poses";
 import { navigate, setQuery } from "../store/router";
@@ -9,12 +9,14 @@ import { useTheme } from "../ui/canvas";
 import { count } from "../ui/format";
 import { useGestures } from "./gestures";
 import { press } from "./keys";
+import type { Landmark } from "./landmarks";
 import { type ColourBy, shadesOf } from "./shades";
+import type { Shown, Stage } from "./stage";
 import { svgOf } from "./svg";
 import { TreeControls } from "./TreeControls";
 import { TreeCreature } from "./TreeCreature";
 import { TreeLegend } from "./TreeLegend";
-import { type LoadedTree, useArranged, useMachine } from "./useTree";
+import { type Elements, type LoadedTree, type TreeCanvases, useArranged, useCanvases } from "./useTree";
 import { text } from "./text";
 
 interface Props {
@@ -27,25 +29,25 @@ interface Props {
 }
 
 export function TreeView({ buffer, of, self, query }: Props) {
-  const elements = { port: useRef(null), picture: useRef(null), overlay: useRef(null) };
+  const elements: Elements = { port: useRef(null), picture: useRef(null), overlay: useRef(null) };
   const survivors = query.get("show") === "survivors";
-  const machine = useMachine(elements);
-  const loaded = useArranged(buffer, survivors, machine);
-  const view = useShown(loaded, machine, query, self);
-  const stage = () => machine.machine.current!.stage;
+  const canvases = useCanvases(elements);
+  const loaded = useArranged(buffer, survivors, canvases);
+  const view = useShown(loaded, canvases, query, self);
+  const stage = () => canvases.parts.current!.stage;
   return (
     <>
-      {machine.error && <p class="banner wrong">{text.failed(machine.error)}</p>}
+      {canvases.error && <p class="banner wrong">{text.failed(canvases.error)}</p>}
       <TreeControls
         {...{ of, survivors }}
         by={view.by}
         whole={view.whole}
-        zoom={machine.zoom}
+        zoom={canvases.zoom}
         stage={stage}
         onDrawing={() => svgOf(stage().scene)}
       />
       <div class="tree-window">
-        <TreePort {...{ elements, loaded, view }} machine={machine} />
+        <TreePort {...{ elements, loaded, view, stage }} />
         {loaded && (
           <TreeCreature
             {...loaded}
@@ -66,60 +68,58 @@ export function TreeView({ buffer, of, self, query }: Props) {
   );
 }
 
-type Machine = ReturnType<typeof useMachine>;
 type ShownView = ReturnType<typeof useShown>;
 
-/** What the address and the pointer choose, passed on to the stage. */
-function useShown(loaded: LoadedTree | null, machine: Machine, query: URLSearchParams, self?: string) {
+/** What the address, the slider and the pointer choose, passed on to the stage. */
+function useShown(loaded: LoadedTree | null, canvases: TreeCanvases, query: URLSearchParams, self?: string) {
   const theme = useTheme();
   const [at, setAt] = useState<number | null>(null);
   const [hovered, setHovered] = useState(NONE);
   const by: ColourBy = query.get("colour") === "operator" ? "operator" : "fitness";
   const whole = query.get("lines") === "all";
-  const tree = loaded?.tree ?? null;
-  const chosen = query.get("creature") ?? self ?? null;
+  const tree = loaded?.tree;
+  const chosen = query.get("creature") ?? self;
   const selected = useMemo(() => placed(loaded, chosen), [loaded, chosen]);
-  const known = hovered !== NONE && hovered < (tree?.count ?? 0) ? hovered : selected;
-  const last = tree && tree.count > 0 ? tree.time[tree.count - 1]! : 0;
-  const names = useMemo(
-    () =>
-      tree ? machine.landmarks.map(({ creature }) => ({ cell: 0, creature: nameAt(tree, creature) })) : [],
-    [machine.landmarks, tree],
-  );
-  const poses = usePoses(null, null, names);
-  const focus = known;
+  const focus = hovered === NONE ? selected : hovered;
+  const poses = usePoses(null, null, useNames(loaded, canvases.landmarks));
+  const shown: Shown = { at: at ?? Infinity, whole, by, theme, focus, poses };
   useEffect(() => {
-    const { stage, painter } = machine.machine.current!;
-    stage.show({ at: at ?? Infinity, whole, by, theme, focus, poses });
-    if (loaded) stage.load(loaded.tree, loaded, painter);
+    setHovered(NONE); // Rows are other creatures now.
+    const { stage, painter } = canvases.parts.current!;
+    if (loaded) stage.load(loaded, painter, { ...shown, focus: selected });
   }, [loaded]);
-  useEffect(() => {
-    machine.machine.current!.stage.show({ at: at ?? Infinity, whole, by, theme, focus, poses });
-  });
+  useEffect(() => canvases.parts.current!.stage.show(shown));
   const shades = useMemo(() => tree && shadesOf(tree, by, theme), [tree, by, theme]);
   const hrefOf = (creature: number) => {
     const run = tree!.run[creature]!;
     return `/creatures/${nameAt(tree!, creature)}${run === NONE ? "" : `?run=${tree!.runs[run]}`}`;
   };
+  const last = tree?.time.at(-1) ?? 0;
   return { theme, at, setAt, by, whole, focus, selected, setHovered, last, shades, hrefOf };
 }
 
+/** The creatures with bodies, for their pose streams; no cells of an archive. */
+function useNames(loaded: LoadedTree | null, landmarks: readonly Landmark[]) {
+  return useMemo(() => {
+    if (!loaded) return [];
+    return landmarks.map(({ creature }) => ({ cell: NONE, creature: nameAt(loaded.tree, creature) }));
+  }, [landmarks]);
+}
+
 /** The row of a creature in the tree as it is arranged. */
-function placed(loaded: LoadedTree | null, name: string | null): number {
+function placed(loaded: LoadedTree | null, name: string | undefined): number {
   const found = loaded && name ? indexOf(loaded.tree, name) : NONE;
   return found !== NONE && loaded!.layout.row[found] !== NONE ? found : NONE;
 }
 
 interface PortProps {
-  elements: Parameters<typeof useMachine>[0];
+  elements: Elements;
   loaded: LoadedTree | null;
   view: ShownView;
-  machine: Machine;
+  stage: () => Stage;
 }
 
-function TreePort({ elements, loaded, view, machine }: PortProps) {
-  const { port, picture, overlay } = elements;
-  const stage = () => machine.machine.current!.stage;
+function TreePort({ elements: { port, picture, overlay }, loaded, view, stage }: PortProps) {
   const select = (creature: number) => {
     view.setHovered(NONE);
     setQuery({ creature: creature === NONE ? null : nameAt(loaded!.tree, creature) });
@@ -163,7 +163,7 @@ function Summary({ tree, layout }: LoadedTree) {
     let [roots, elites] = [0, 0];
     for (let i = 0; i < tree.count; i++) {
       if (layout.parent[i] === NONE) roots++;
-      if (tree.lost[i] === NONE && tree.run[i] !== NONE) elites++;
+      if (isElite(tree, i)) elites++;
     }
     return [roots, elites];
   }, [tree, layout]);

@@ -1,6 +1,6 @@
 /** Creatures that are shown as bodies: as many as have room, the most important ones first. */
 
-import { type Phylogeny, NONE } from "../decode/phylogeny";
+import { type Phylogeny, NONE, isElite } from "../decode/phylogeny";
 import type { Size } from "../ui/canvas";
 import type { TreeLayout } from "./layout";
 import type { Scales, View } from "./view";
@@ -18,8 +18,7 @@ export function ranked(tree: Phylogeny, layout: TreeLayout, share: (i: number) =
   const { size, row } = layout;
   const most = Math.log2(1 + size.reduce((known, one) => Math.max(known, one), 1));
   const score = Float64Array.from({ length: tree.count }, (_, i) => {
-    const alive = tree.lost[i] === NONE && tree.run[i] !== NONE;
-    return Math.log2(1 + size[i]!) / most + FIT * share(i) + (alive ? ALIVE : 0);
+    return Math.log2(1 + size[i]!) / most + FIT * share(i) + (isElite(tree, i) ? ALIVE : 0);
   });
   const shown = Int32Array.from({ length: tree.count }, (_, i) => i).filter((i) => row[i] !== NONE);
   return shown.sort((a, b) => score[b]! - score[a]!);

@@ -4,7 +4,7 @@
  * has rows of its own: nothing overlaps, and no edge crosses another.
  */
 
-import { type Phylogeny, NONE } from "../decode/phylogeny";
+import { type Phylogeny, NONE, isElite } from "../decode/phylogeny";
 
 export interface TreeLayout {
   /** The first parent of each creature. */
@@ -140,9 +140,9 @@ function listed(row: Int32Array, totalRows: number) {
 }
 
 /** A 1 for each creature that is an elite now, or whose line leads to one. */
-export function surviving({ lost, run, count }: Phylogeny, parent: Int32Array): Uint8Array {
-  const found = Uint8Array.from({ length: count }, (_, i) => Number(lost[i] === NONE && run[i] !== NONE));
-  for (let i = count - 1; i >= 0; i--) if (found[i] && parent[i] !== NONE) found[parent[i]!] = 1;
+export function surviving(tree: Phylogeny, parent: Int32Array): Uint8Array {
+  const found = Uint8Array.from({ length: tree.count }, (_, i) => Number(isElite(tree, i)));
+  for (let i = tree.count - 1; i >= 0; i--) if (found[i] && parent[i] !== NONE) found[parent[i]!] = 1;
   return found;
 }
 

@@ -1,6 +1,6 @@
 /** Draw the strokes of a tree on a canvas. */
 
-import { type Phylogeny, NONE } from "../decode/phylogeny";
+import { type Phylogeny, isElite } from "../decode/phylogeny";
 import type { Theme } from "../ui/canvas";
 import { type Shades, type Shape, radiusOf, shapeOf } from "./shades";
 import { type Strokes, WIDTHS, bendOf, lineIndex } from "./strokes";
@@ -54,22 +54,21 @@ export function traceEdge(
   path.lineTo(toX, toY);
 }
 
-function paintDots(
-  context: Context,
-  { dots }: Strokes,
-  { operator, lost, run }: Phylogeny,
-  shades: Shades,
-  theme: Theme,
-): void {
+function paintDots(context: Context, { dots }: Strokes, tree: Phylogeny, shades: Shades, theme: Theme): void {
   context.lineWidth = 1.4;
   for (let k = 0; k < dots.length; k += 3) {
     const [x, y, i] = [dots[k]!, dots[k + 1]!, dots[k + 2]!];
     const colour = shades.colours[shades.shade[i]!]!;
-    const alive = lost[i] === NONE && run[i] !== NONE;
     context.beginPath();
-    traceDot(context, shades.by === "operator" ? shapeOf(operator[i]!) : "circle", x, y, radiusOf(shades, i));
+    traceDot(
+      context,
+      shades.by === "operator" ? shapeOf(tree.operator[i]!) : "circle",
+      x,
+      y,
+      radiusOf(shades, i),
+    );
     // An elite of today is filled, one that was lost is hollow.
-    context.fillStyle = alive ? colour : INKS[theme].ground;
+    context.fillStyle = isElite(tree, i) ? colour : INKS[theme].ground;
     context.strokeStyle = colour;
     context.fill();
     context.stroke();

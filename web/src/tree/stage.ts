@@ -100,9 +100,10 @@ export class Stage {
   }
 
   /** Show a tree; the view stays if one was shown before. */
-  load(tree: Phylogeny, found: Arranged, painter: Painter): void {
+  load({ tree, ...found }: Arranged & { tree: Phylogeny }, painter: Painter, shown: Shown): void {
     const first = this.tree === null;
-    [this.tree, this.found, this.painter] = [tree, found, painter];
+    [this.tree, this.found, this.painter, this.shown] = [tree, found, painter, shown];
+    this.landmarks = [];
     this.extent = extentOf(tree, found.layout);
     this.begins = beginsOf(tree);
     this.rank();

@@ -1,6 +1,6 @@
 /** The present view of a tree as SVG. */
 
-import { nameAt } from "../decode/phylogeny";
+import { NONE, isElite, nameAt } from "../decode/phylogeny";
 import { BODY_INK } from "../replay/motion";
 import { traceBody } from "../replay/poses";
 import { shortId } from "../ui/format";
@@ -18,7 +18,7 @@ export function svgOf(scene: Scene): string {
   const { tree, size, theme, shades } = scene;
   const strokes = strokesOf({ ...scene, shade: shades.shade, shades: shades.colours.length });
   const { ink, ground, quiet } = INKS[theme];
-  const line = scene.focus < 0 ? [] : lineOf(scene.layout, scene.focus);
+  const line = scene.focus === NONE ? [] : lineOf(scene.layout, scene.focus);
   const others = otherParents(tree, scene.layout, line);
   const steps = line.slice(1).map((parent, k): [number, number] => [line[k]!, parent]);
   const counts = strokes.counts.flatMap((_, k, all) =>
@@ -74,7 +74,7 @@ function dots({ dots }: Strokes, { tree, shades, theme }: Scene): string[] {
     const shape = shades.by === "operator" ? shapeOf(tree.operator[i]!) : "circle";
     traceDot(path, shape, dots[k]!, dots[k + 1]!, radiusOf(shades, i));
     const colour = shades.colours[shades.shade[i]!]!;
-    const fill = tree.lost[i] === -1 && tree.run[i] !== -1 ? colour : INKS[theme].ground;
+    const fill = isElite(tree, i) ? colour : INKS[theme].ground;
     const title = `<title>${shortId(nameAt(tree, i))}</title>`;
     tags.push(`<path d="${path.d}" fill="${fill}" stroke="${colour}" stroke-width="1.4">${title}</path>`);
   }

@@ -19,14 +19,11 @@ export interface LoadedTree extends Arranged {
   tree: Phylogeny;
 }
 
-/** The stage and its painter, once the canvases exist. */
-export interface Machine {
-  stage: Stage;
-  painter: Painter;
-}
+export type TreeCanvases = ReturnType<typeof useCanvases>;
 
-export function useMachine({ port, picture, overlay }: Elements) {
-  const machine = useRef<Machine | null>(null);
+/** The stage on the canvases and the worker that paints for it. */
+export function useCanvases({ port, picture, overlay }: Elements) {
+  const parts = useRef<{ stage: Stage; painter: Painter } | null>(null);
   const arranged = useRef<(found: Arranged) => void>(() => {});
   const [zoom, setZoom] = useState(0);
   const [landmarks, setLandmarks] = useState<Landmark[]>([]);
@@ -42,29 +39,28 @@ export function useMachine({ port, picture, overlay }: Elements) {
       painted: (picture, bitmap) => stage.painted(picture, bitmap),
       failed: setError,
     });
-    machine.current = { stage, painter };
+    parts.current = { stage, painter };
     return () => {
       stage.stop();
       painter.stop();
     };
   }, []);
-  useEffect(() => {
-    machine.current!.stage.resize(size);
-  }, [size]);
-  return { machine, arranged, zoom, landmarks, error };
+  useEffect(() => parts.current!.stage.resize(size), [size]);
+  return { parts, arranged, zoom, landmarks, error };
 }
 
 /** Arrange the columns of a tree; null until that is done the first time. */
 export function useArranged(
   buffer: ArrayBuffer,
   survivors: boolean,
-  { machine, arranged }: ReturnType<typeof useMachine>,
+  { parts, arranged }: TreeCanvases,
 ): LoadedTree | null {
   const [loaded, setLoaded] = useState<LoadedTree | null>(null);
   const sent = useRef<ArrayBuffer | null>(null);
   useEffect(() => {
-    arranged.current = (found) => setLoaded({ tree: decodePhylogeny(buffer), ...found });
-    machine.current!.painter.arrange({ buffer: sent.current === buffer ? undefined : buffer, survivors });
+    const tree = decodePhylogeny(buffer);
+    arranged.current = (found) => setLoaded({ tree, ...found });
+    parts.current!.painter.arrange({ buffer: sent.current === buffer ? undefined : buffer, survivors });
     sent.current = buffer;
   }, [buffer, survivors]);
   return loaded;
