@@ -54,6 +54,13 @@ def ancestors_of_run(session: Session, run: Run) -> list[Birth]:
     return _read(session, _closure(session, initial, _parents), run.id) if initial else []
 
 
+def initial(session: Session, runs: Iterable[UUID]) -> list[tuple[str, str]]:
+    """Return runs with each of the creatures from which they start."""
+    columns = select(InitialCreature.run_id, InitialCreature.creature)
+    rows = session.execute(columns.where(InitialCreature.run_id.in_(runs)))
+    return [(str(run), creature) for run, creature in rows]
+
+
 def relatives(session: Session, sha: str) -> list[Birth]:
     """Return a creature, all its ancestors and all its descendants, of any runs."""
     above = _closure(session, [sha], _parents)

@@ -63,7 +63,8 @@ def arranged(session: Session, found: list[Birth]) -> Phylogeny:
     """Arrange births, with their runs in the order of creation."""
     named = {UUID(one.run) for one in found if one.run}
     ordered = select(Run.id).where(Run.id.in_(named)).order_by(Run.created_at, Run.id)
-    return phylogeny(found, [str(run) for run in session.scalars(ordered)])
+    runs = [str(run) for run in session.scalars(ordered)]
+    return phylogeny(found, runs, births.initial(session, named))
 
 
 @dataclass(frozen=True)

@@ -63,17 +63,23 @@ class Phylogeny:
         return np.where(self.lost == NONE, NONE, self.time + self.lost - self.generation)
 
 
-def phylogeny(births: Iterable[Birth], runs: Sequence[str]) -> Phylogeny:
-    """Arrange births; `runs` are in the order of their creation.
+def phylogeny(
+    births: Iterable[Birth], runs: Sequence[str], initial: Iterable[tuple[str, str]] = ()
+) -> Phylogeny:
+    """Arrange births; `runs` are in the order of their creation, and `initial` are runs with
+    creatures from which they start.
 
-    A run begins when the last of its ancestors in earlier runs exists. Parents that are not
+    A run begins when all of these and its ancestors in earlier runs exist. Parents that are not
     among the births are left out, and so are links of a creature to its own descendants.
     """
     listed, number = list(births), {name: i for i, name in enumerate(runs)}
     links = _links(listed)
     run = np.array([number.get(one.run or "", NONE) for one in listed], int)
     generation = np.array([one.generation for one in listed], int)
-    begun = _begin(run, generation, links, len(runs))
+    row = {one.creature: i for i, one in enumerate(listed)}
+    starts = [(number[to], row[one]) for to, one in initial if to in number and one in row]
+    above = np.array([*zip(run[links[:, 0]], links[:, 1], strict=True), *starts], int)
+    begun = _begin(run, generation, above.reshape(-1, 2), len(runs))
     early = np.where(run == NONE, 0, begun[run]) + np.maximum(generation, 0)
     time, links = _times(early, links)
     order = sorted(range(len(listed)), key=lambda i: (time[i], listed[i].creature))
@@ -109,13 +115,13 @@ def _links(births: Sequence[Birth]) -> np.ndarray:
     return np.array(found, int).reshape(-1, 2)
 
 
-def _begin(run: np.ndarray, generation: np.ndarray, links: np.ndarray, runs: int) -> np.ndarray:
-    """Return the time at which each run begins."""
+def _begin(run: np.ndarray, generation: np.ndarray, above: np.ndarray, runs: int) -> np.ndarray:
+    """Return the time at which each run begins; `above` are runs, and rows of ancestors."""
     begun = np.zeros(max(runs, 1), int)
-    child, parent = links.T
-    across = (run[parent] < run[child]) & (run[child] != NONE)
-    for number in np.unique(run[child[across]]):
-        above = parent[across & (run[child] == number)]
+    below, ancestor = above.T
+    across = (run[ancestor] < below) & (below != NONE)
+    for number in np.unique(below[across]):
+        above = ancestor[across & (below == number)]
         since = np.where(run[above] == NONE, 0, begun[run[above]])
         begun[number] = (since + np.maximum(generation[above], 0)).max()
     return begun

@@ -59,6 +59,13 @@ def test_a_fork_begins_when_the_creatures_of_its_start_exist():
     assert [found.runs[run] for run in found.run] == ["a", "a", "b", "b", "b", "c"]
 
 
+def test_a_fork_begins_after_an_initial_creature_that_has_no_children_in_it():
+    old = [birth(1, generation=5), birth(2, generation=40)]
+    fork = [birth(3, 1, run="b", generation=1)]
+    found = phylogeny([*old, *fork], ["a", "b"], [("b", sha(1)), ("b", sha(2)), ("c", sha(1))])
+    assert found.time.tolist() == [5, 40, 41]
+
+
 def test_claims_that_contradict_each_other_are_no_links():
     """Provenance stands outside the hash, so that two files can name each other as parents."""
     births = [birth(1, 2), birth(2, 1), birth(3, 3), birth(4, 1), birth(5)]

@@ -29,7 +29,7 @@ export function TreeLegend({ tree, shades: { by, range }, theme, collapsed }: Pr
         <ul class="row tree-operators" aria-label={text.operator}>
           {tree.operators.map((name, i) => (
             <li key={name} class="compact">
-              <Dot shape={shapeOf(i)} colour={operatorColour(i, theme)} />
+              <Dot shape={shapeOf(tree, i)} colour={operatorColour(tree, i, theme)} />
               {name}
             </li>
           ))}

@@ -170,15 +170,17 @@ function drawAxis(context: CanvasRenderingContext2D, { view, scales, size, theme
 /** A ring around the focus, with its name and fitness beside it. */
 function drawLabel(
   context: CanvasRenderingContext2D,
-  { tree, size, theme, focus }: Overlay,
+  { tree, size, theme, focus, landmarks }: Overlay,
   [x, y]: Place,
 ): void {
   const { ink, ground } = INKS[theme];
-  context.beginPath();
-  context.arc(x, y, 6, 0, 2 * Math.PI);
-  context.strokeStyle = ink;
-  context.lineWidth = 2;
-  context.stroke();
+  if (!landmarks.some(({ creature }) => creature === focus)) {
+    context.beginPath();
+    context.arc(x, y, 6, 0, 2 * Math.PI);
+    context.strokeStyle = ink;
+    context.lineWidth = 2;
+    context.stroke();
+  }
   const fitness = tree.fitness[focus]!;
   const name = shortId(nameAt(tree, focus));
   const label = Number.isFinite(fitness) ? `${name} · ${number(fitness)}` : name;

@@ -62,7 +62,7 @@ function paintDots(context: Context, { dots }: Strokes, tree: Phylogeny, shades:
     context.beginPath();
     traceDot(
       context,
-      shades.by === "operator" ? shapeOf(tree.operator[i]!) : "circle",
+      shades.by === "operator" ? shapeOf(tree, tree.operator[i]!) : "circle",
       x,
       y,
       radiusOf(shades, i),

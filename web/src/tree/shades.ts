@@ -15,6 +15,8 @@ const KINDS = {
   dark: ["#6fd3c0", "#f2a15f", "#8cc0f0", "#e59ccb", "#e8d36a", "#b8c6cf"],
 };
 export const SHAPES = ["circle", "square", "diamond", "triangle"] as const;
+/** Operators with colours of their own, the same in every tree; others take those that follow. */
+const KNOWN = ["neat", "random", "crossover", "fork", "iso+line", "copy"];
 export type Shape = (typeof SHAPES)[number];
 
 export interface Shades {
@@ -29,7 +31,8 @@ export interface Shades {
 
 export function shadesOf(tree: Phylogeny, by: ColourBy, theme: Theme): Shades {
   const range = rangeOf(tree.fitness);
-  const colours = by === "fitness" ? fitnessColours(theme) : operatorColours(tree.operators.length, theme);
+  const colours =
+    by === "fitness" ? fitnessColours(theme) : tree.operators.map((_, i) => operatorColour(tree, i, theme));
   const unknown = colours.length;
   const span = range[1] - range[0] || 1;
   const shade = Uint8Array.from({ length: tree.count }, (_, i) => {
@@ -57,13 +60,16 @@ const fitnessColours = (theme: Theme) =>
 export const fitnessColour = (share: number, theme: Theme) =>
   css(viridis(theme === "dark" ? 0.2 + 0.8 * share : 0.88 * share));
 
-const operatorColours = (count: number, theme: Theme) =>
-  Array.from({ length: count }, (_, i) => operatorColour(i, theme));
+function kindOf({ operators }: Pick<Phylogeny, "operators">, operator: number): number {
+  const known = KNOWN.indexOf(operators[operator]!);
+  return known >= 0 ? known : KNOWN.length + operator;
+}
 
-export const operatorColour = (operator: number, theme: Theme) =>
-  KINDS[theme][operator % KINDS[theme].length]!;
+export const operatorColour = (tree: Pick<Phylogeny, "operators">, operator: number, theme: Theme) =>
+  KINDS[theme][kindOf(tree, operator) % KINDS[theme].length]!;
 
-export const shapeOf = (operator: number): Shape => SHAPES[Math.max(0, operator) % SHAPES.length]!;
+export const shapeOf = (tree: Pick<Phylogeny, "operators">, operator: number): Shape =>
+  operator === NONE ? "circle" : SHAPES[kindOf(tree, operator) % SHAPES.length]!;
 
 /** The radius of a dot in pixels: fitness has a size too, so that colour is not its only sign. */
 export function radiusOf({ by, shade, colours }: Shades, i: number): number {

@@ -71,7 +71,7 @@ function dots({ dots }: Strokes, { tree, shades, theme }: Scene): string[] {
   for (let k = 0; k < dots.length; k += 3) {
     const i = dots[k + 2]!;
     const path = new PathWriter();
-    const shape = shades.by === "operator" ? shapeOf(tree.operator[i]!) : "circle";
+    const shape = shades.by === "operator" ? shapeOf(tree, tree.operator[i]!) : "circle";
     traceDot(path, shape, dots[k]!, dots[k + 1]!, radiusOf(shades, i));
     const colour = shades.colours[shades.shade[i]!]!;
     const fill = isElite(tree, i) ? colour : INKS[theme].ground;
