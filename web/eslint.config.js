@@ -14,7 +14,7 @@ const LAYERS = [
   ["archive", "creature"],
   ["run"],
   ["sweeps", "tank"],
-  ["compare", "new-run", "runs", "settings", "shares", "workers"],
+  ["compare", "new-run", "runs", "settings", "shares", "tree", "workers"],
   ["app"],
 ];
 

@@ -104,6 +104,12 @@ export function readReprojection(id: string, axes: string[], measures: string[])
   const asked = { ...run(id, { axes: axes.join(","), ...joined(measures) }), ...AS_COLUMNS };
   return decoded<wire.Reprojection>(client.GET("/runs/{run_id}/archive/reprojection", asked));
 }
+/** All that ever entered the archive of a run with their parents, as columns: see decode/phylogeny.ts. */
+export const readRunPhylogeny = (id: string) =>
+  typed<ArrayBuffer>(client.GET("/runs/{run_id}/phylogeny", { ...run(id), ...AS_COLUMNS }));
+/** A creature with all its ancestors and descendants. */
+export const readCreaturePhylogeny = (sha: string) =>
+  typed<ArrayBuffer>(client.GET("/creatures/{sha}/phylogeny", { ...creature(sha), ...AS_COLUMNS }));
 /** Centroids of the cells of a CVT archive; null before its first checkpoint. */
 export const readCentroids = async (id: string): Promise<number[][] | null> =>
   (await success(client.GET("/runs/{run_id}/archive/centroids", run(id)))).centroids;

@@ -45,6 +45,8 @@ export const text = {
   origin: "Origin",
   ancestors: "Ancestors",
   family: "Parents and children",
+  tree: "Tree of life",
+  treeAbout: "Show this creature in the tree of all its relatives",
   moreAncestors: "Show more ancestors",
   reload: "Reload the page to try again.",
   loadingFamily: "Loading relatives …",

@@ -25,21 +25,29 @@ const MEASURE = "measures.";
 const VERDICTS: (boolean | null)[] = [false, true];
 const HEX = Array.from({ length: 256 }, (_, byte) => byte.toString(16).padStart(2, "0"));
 
+/** The header and the arrays, which are views of the bytes. */
+export function readColumns(buffer: ArrayBuffer) {
+  const { header, start } = readHeader<Header>(buffer, "columns", "microcosmos-columns/1");
+  let at = start;
+  const columns = header.columns.map(({ name, type, shape }) => {
+    const count = shape.reduce((product, size) => product * size, 1);
+    const values: Values = new ARRAYS[type](buffer, at, count);
+    at += Math.ceil(values.byteLength / ALIGNMENT) * ALIGNMENT;
+    return { name, values, shape };
+  });
+  return { header: header as Header & Record<string, unknown>, columns };
+}
+
 /** The document that JSON has in place of these bytes. */
 export function decodeColumns<T>(buffer: ArrayBuffer): T {
-  const { header, start } = readHeader<Header>(buffer, "columns", "microcosmos-columns/1");
-  const { columns } = header;
+  const { header, columns } = readColumns(buffer);
   const found: Record<string, unknown> = { ...header };
   delete found.format;
   delete found.columns;
   const measures: Record<string, (number | null)[]> = {};
-  let at = start;
-  for (const { name, type, shape } of columns) {
-    const count = shape.reduce((product, size) => product * size, 1);
-    const values: Values = new ARRAYS[type](buffer, at, count);
+  for (const { name, values, shape } of columns) {
     if (name.startsWith(MEASURE)) measures[name.slice(MEASURE.length)] = numbers(values);
     else found[name] = decoded(name, values, shape);
-    at += Math.ceil(values.byteLength / ALIGNMENT) * ALIGNMENT;
   }
   return { ...found, measures } as T;
 }
@@ -56,7 +64,7 @@ const numbers = (values: Values) => Array.from(values, (value) => (Number.isNaN(
 const rows = (values: Values, length: number, width: number) =>
   Array.from({ length }, (_, i) => values.subarray(i * width, (i + 1) * width));
 
-function hexadecimal(bytes: Values): string {
+export function hexadecimal(bytes: Values): string {
   let text = "";
   for (const byte of bytes) text += HEX[byte];
   return text;

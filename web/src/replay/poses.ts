@@ -110,13 +110,11 @@ export function velocityAt(stream: PoseStream, steps: number): Point {
 
 type Square = readonly [left: number, top: number, side: number];
 
+/** What bodies and paths are traced on. */
+type Path = Pick<CanvasRenderingContext2D, "beginPath" | "moveTo" | "lineTo" | "bezierCurveTo" | "arc">;
+
 /** Trace the body some steps after its first frame, in the middle of a square; it turns on in each loop. */
-export function traceBody(
-  context: CanvasRenderingContext2D,
-  stream: PoseStream,
-  steps: number,
-  [left, top, side]: Square,
-): void {
+export function traceBody(context: Path, stream: PoseStream, steps: number, [left, top, side]: Square): void {
   const { chains, offsets, radius, turn } = shapeOf(stream);
   const { nodes } = stream.header;
   const [before, after, share, loops] = momentOf(stream, steps);
@@ -138,12 +136,7 @@ export function traceBody(
 }
 
 /** Trace the path of the mean position from a circle at its start to now, in the same square. */
-export function tracePath(
-  context: CanvasRenderingContext2D,
-  stream: PoseStream,
-  steps: number,
-  [left, top, side]: Square,
-): void {
+export function tracePath(context: Path, stream: PoseStream, steps: number, [left, top, side]: Square): void {
   const { means, radius, turn } = shapeOf(stream);
   const { start, stop, frames, moments, steps: whole } = stream.header;
   const [before, after, share, loops] = momentOf(stream, steps);
