@@ -25,6 +25,7 @@ import { RefineButton } from "./RefineButton";
 import { SwimmingBody } from "../replay/SwimmingBody";
 import { ReplayStatus, useReplays } from "../replay/replays";
 import { SpaceTimeCard } from "./SpaceTimeCard";
+import { VerifyCard } from "./VerifyCard";
 import { text } from "./text";
 import "./creature.css";
 import "./details.css";
@@ -102,6 +103,7 @@ export function CreatureView({ creature, query, audit }: ViewProps) {
           <GenomeCard {...{ creature, playhead }} every={replay?.header.every ?? null} />
           <FamilyCard {...{ creature, query }} />
           {creature.measured && <RemeasureCard sha={sha} />}
+          {creature.measured && <VerifyCard sha={sha} measured={creature.measured} />}
           {swims(creature) && audit && <AuditCard {...audit} />}
         </div>
       </div>
