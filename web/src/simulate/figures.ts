@@ -14,13 +14,16 @@ function sum(values: number[]): number {
   return values.reduce((total, value) => fround(total + value), 0);
 }
 
-export const mean = (values: number[]) => fround(sum(values) / values.length);
+/** XLA multiplies by the reciprocal of a constant. */
+const divided = (value: number, by: number) => fround(value * fround(1 / by));
+
+export const mean = (values: number[]) => divided(sum(values), values.length);
 
 /** The standard deviation of a sample. */
 export function deviation(values: number[]): number {
   const middle = mean(values);
   const squares = values.map((value) => fround(fround(value - middle) ** 2));
-  return fround(sqrt(fround(sum(squares) / (values.length - 1))));
+  return fround(sqrt(divided(sum(squares), values.length - 1)));
 }
 
 /** The mean of each figure. */
