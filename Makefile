@@ -115,6 +115,7 @@ bench: peers web
 	$(BIN)/python server/benchmarks/load.py
 	$(BIN)/python web/benchmarks/start.py
 	$(BIN)/python web/benchmarks/page.py
+	$(BIN)/python web/benchmarks/simulate.py
 
 # All parts, or some: make acceptance PARTS=databases
 acceptance: install web

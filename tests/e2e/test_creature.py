@@ -64,7 +64,9 @@ def test_visitors_verify_a_creature_in_their_browser(shared, page, anonymous_pag
         visitor.goto(url)
         card = visitor.get_by_role("region", name="Verification in this browser")
         card.get_by_role("button", name="Verify").click()
-        same = f"All {1 + len(measured['measures'])} numbers equal the recorded ones, bit by bit."
+        same = (
+            f"All {1 + len(measured['measures'])} numbers equal the recorded ones, bit by bit."
+        )
         expect(card.get_by_text(same)).to_be_visible(timeout=SLOW)
         expect(card.get_by_text(re.compile("^40 steps in .* s: .* steps/s.$"))).to_be_visible()
         speed = card.get_by_role("row", name=re.compile("^Speed .* same bits$"))

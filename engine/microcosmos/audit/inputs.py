@@ -42,7 +42,10 @@ def evaluation_inputs(file: Mapping[str, Any]) -> bytes:
         "copies": 1 if scene.world.copies is None else scene.world.copies.count,
         "numbers": {"develop": dict(found.development), "rollout": dict(found.simulation)},
         "trials": [
-            [_simulation(_at(found, trial, placement), arrays) for placement in range(placements)]
+            [
+                _simulation(_at(found, trial, placement), arrays)
+                for placement in range(placements)
+            ]
             for trial in range(trials)
         ],
     }

@@ -16,9 +16,11 @@ from microcosmos.build import build
 
 pytestmark = pytest.mark.optimised
 
-HERE = Path(__file__).parent
-ASSETS = HERE.parents[2] / "web" / "dist" / "assets"
-NODE = shutil.which("node", path=f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}")
+WEB = Path(__file__).parents[3] / "web"
+ASSETS = WEB / "dist" / "assets"
+NODE = shutil.which(
+    "node", path=f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+)
 CREATURES = 20
 
 SMALL = {
@@ -50,7 +52,8 @@ CASES = {
         "task": {"fitness": "energy", "trials": 3},
     },
     "copies": {"world": {"width": 64, "height": 64, "copies": {"count": 2, "spacing": 12}}},
-    "a soft body that repels itself": {"body": {"bend": 0.5}, "world": {"steric": {}}},
+    "a soft body": {"body": {"bend": 0.5}},
+    "a body that repels itself": {"world": {"steric": {}}},
 }
 
 
@@ -66,7 +69,7 @@ def evaluated(tmp_path):
         places = [tmp_path / str(number) for number in range(len(files))]
         for place, content in zip(places, files, strict=True):
             place.write_bytes(content)
-        command = [NODE, HERE / "verify.mjs", ASSETS, *places]
+        command = [NODE, WEB / "scripts" / "evaluate.mjs", ASSETS, *places]
         return json.loads(subprocess.check_output(command))
 
     return run

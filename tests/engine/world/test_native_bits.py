@@ -16,7 +16,9 @@ FLAGS = ["-std=c++17", "-O3", "-ffp-contract=off", "-fno-math-errno", "-Wno-psab
 AVX512 = ["-mavx512f", "-mavx512vl", "-mavx512dq", "-mavx512bw", "-mprefer-vector-width=512"]
 CPU = Path("/proc/cpuinfo")
 WASM = ROOT / "engine" / "kernels" / "wasm.py"
-NODE = shutil.which("node", path=f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}")
+NODE = shutil.which(
+    "node", path=f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+)
 RUN = """
 import { readFileSync } from "node:fs";
 import { WASI } from "node:wasi";

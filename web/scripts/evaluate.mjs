@@ -1,4 +1,4 @@
-/** Evaluate creatures with the built page's worker: `node verify.mjs ASSETS INPUTS ...` prints what it answers. */
+/** Evaluate creatures with the built page's worker: `node evaluate.mjs ASSETS INPUTS ...` prints its answers. */
 
 import { readFileSync, readdirSync } from "node:fs";
 import { join } from "node:path";
