@@ -94,8 +94,9 @@ def _simulation(found: search.Inputs, arrays: Arrays) -> dict[str, Any]:
     }
 
 
-def _place(values: np.ndarray, arrays: Arrays) -> int:
+def _place(array: Any, arrays: Arrays) -> int:
     """Return the place of an array among those of the file, which has each one once."""
+    values = np.asarray(array)
     key = values.dtype.name.encode() + str(values.shape).encode() + values.tobytes()
     name, _ = arrays.setdefault(key, (str(len(arrays)), values))
     return int(name)

@@ -10,7 +10,6 @@ from jaxtyping import Array, Float, Int
 
 from ..filaments import Rest
 from ..genomes import Genotype
-from ..naming import FORMS
 from ..world import native
 from .crossing import whole_units
 from .evaluation import form_of, in_trials, length_of

@@ -1,4 +1,4 @@
-"""The page's worker repeats the evaluations of creatures from the inputs in a file, bit by bit."""
+"""The page's worker repeats evaluations from the inputs in a file, bit by bit."""
 
 import json
 import os
