@@ -1,6 +1,6 @@
 """The evaluation of one creature by the page's kernel beside the native one, on one core.
 
-Prints a table and asserts nothing. The page has to be built, and Node stands for a browser: both
+Prints a table and asserts nothing. The page has to be built. Node stands for a browser: both
 have the same engine. Numbers are microseconds a step, in the best of several evaluations.
 """
 
