@@ -39,10 +39,13 @@ function Verdict({ same }: { same: boolean }) {
   return <span class={`badge ${same ? "finished" : "paused"}`}>{same ? text.identical : text.differs}</span>;
 }
 
+/** Nine digits tell any two numbers of single precision apart. */
+const digits = (row: Row) => (isSame(row) || row.here === null ? 6 : 9);
+
 const COLUMNS: Column<Row>[] = [
   { title: text.number, cell: ({ name }) => text.measures[name]?.[0] ?? words(name) },
-  { title: text.recorded, cell: ({ recorded }) => number(recorded, 6) },
-  { title: text.here, cell: ({ here }) => (here === null ? text.ofPlugin : number(here, 6)) },
+  { title: text.recorded, cell: (row) => number(row.recorded, digits(row)) },
+  { title: text.here, cell: (row) => (row.here === null ? text.ofPlugin : number(row.here, digits(row))) },
   {
     title: text.sameBits,
     unseen: true,
