@@ -17,6 +17,7 @@ import { FactsCard } from "./FactsCard";
 import { FamilyCard } from "./FamilyCard";
 import { ForkLink } from "../ui/links";
 import { GenomeCard } from "./GenomeCard";
+import { LiveCard } from "./LiveCard";
 import { Downloads } from "./Downloads";
 import { PlanCard } from "./PlanCard";
 import { RemeasureCard } from "./RemeasureCard";
@@ -96,6 +97,7 @@ export function CreatureView({ creature, query, audit }: ViewProps) {
             {replay && swims(creature) && <ReplayFitness replay={replay} task={identity.task} />}
             <Downloads sha={sha} />
           </section>
+          {isEvolved(creature) && <LiveCard sha={sha} />}
         </div>
         <div class="stack">
           {replay && <SpaceTimeCard {...{ replay, query, playhead }} />}

@@ -168,6 +168,17 @@ export const text = {
   sameBits: "same bits",
   otherBits: "other bits",
   ofPlugin: "plug-in",
+  live: "Live water",
+  startLive: "Swim on",
+  stopLive: "Stop",
+  liveAbout:
+    "The creature swims on in this browser, with its last strokes again and again. Change the viscosity, and push the water with the pointer.",
+  liveLabel: "The creature swims in live water; a pressed pointer pushes it",
+  notLive: (reason: string) =>
+    `The native kernel does not cover ${reason}, so the creature cannot swim on in this browser.`,
+  diverged: "The simulation diverged. Start it again with a higher viscosity or weaker pushes.",
+  viscosity: (value: string) => `Viscosity ${value}`,
+  stir: "Push the water",
   restAngles: "Rest angles (applied)",
   bodyAngles: "Angles of the body",
   angleUnit: "rad, change from the start",

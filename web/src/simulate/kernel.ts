@@ -13,8 +13,8 @@ export interface Area {
 export type Results = (Area & { name: string })[];
 
 export type Call = "develop" | "rollout" | "summarise";
-/** The operand at a place of a call, whose name the kernel gives. */
-export type Operands = (place: number, name: string) => Area | undefined;
+/** The operand at a place of a call, whose name and number of items the kernel gives. */
+export type Operands = (place: number, name: string, items: number) => Area | undefined;
 
 type Exports = Record<Call, () => void> & {
   memory: WebAssembly.Memory;
@@ -27,6 +27,8 @@ interface Asked {
   numbers: Record<string, number>;
   operands: Operands;
   results: Results;
+  /** Areas that may hold the results. */
+  reused: Results;
 }
 
 /** An instance with a memory of its own, which is freed with it. */
@@ -53,15 +55,20 @@ export class Kernel {
     return this.floats(area).slice();
   }
 
+  /** An array of numbers itself, until the next call. */
+  view(area: Area): Float32Array {
+    return this.floats(area);
+  }
+
   /** A copy of an array of integers in the memory. */
   readIntegers(area: Area): Int32Array {
     return this.integers(area).slice();
   }
 
-  /** Carry out a call; its results are in the memory. */
-  call(name: Call, numbers: Record<string, number>, operands: Operands): Results {
+  /** Carry out a call; its results are in the memory, over those of an earlier call if these are given. */
+  call(name: Call, numbers: Record<string, number>, operands: Operands, reused: Results = []): Results {
     const results: Results = [];
-    this.asked = { numbers, operands, results };
+    this.asked = { numbers, operands, results, reused };
     this.exports[name]();
     return results;
   }
@@ -74,12 +81,13 @@ export class Kernel {
         return found;
       },
       operand: (place: number, name: number, items: number) => {
-        const found = this.asked!.operands(place, this.word(name));
+        const found = this.asked!.operands(place, this.word(name), items);
         if (found?.items !== items) throw new Error(text.wrongArray(this.word(name), items, found?.items));
         return found.address;
       },
       result: (place: number, name: number, items: number) => {
-        const area = this.room(items);
+        const earlier = this.asked!.reused[place];
+        const area = earlier?.items === items ? earlier : this.room(items);
         this.asked!.results[place] = { ...area, name: this.word(name) };
         return area.address;
       },

@@ -1,9 +1,9 @@
 import { beforeAll, describe, expect, it } from "vitest";
 import { crossing } from "./crossing";
-import { repeated } from "./evaluate";
 import { deviation, fitnessOf, mean, overTrials } from "./figures";
 import { Kernel } from "./kernel";
 import address from "./kernel.wasm?url&inline";
+import { repeated } from "./simulation";
 
 const { fround } = Math;
 

@@ -18,14 +18,19 @@ const [KERNEL] = Object.values(
 
 export const isInstalled = KERNEL !== undefined;
 
+/** The compiled kernel. */
+export async function kernelModule(signal?: AbortSignal): Promise<WebAssembly.Module> {
+  const answer = await fetch(KERNEL!, { signal });
+  return WebAssembly.compile(await answer.arrayBuffer());
+}
+
 /** Evaluate a creature; aborting ends the worker. */
 export async function simulate(
   inputs: ArrayBuffer,
   progress: (share: number) => void,
   signal: AbortSignal,
 ): Promise<Evaluated> {
-  const answer = await fetch(KERNEL!, { signal });
-  const module = await WebAssembly.compile(await answer.arrayBuffer());
+  const module = await kernelModule(signal);
   const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
   try {
     return await new Promise((resolve, reject) => {
