@@ -10,7 +10,7 @@ const LAYERS = [
   ["store"],
   ["ui"],
   ["charts"],
-  ["replay", "publish"],
+  ["replay", "publish", "simulate"],
   ["archive", "creature"],
   ["run"],
   ["sweeps", "tank"],

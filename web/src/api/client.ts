@@ -173,6 +173,11 @@ export function importCreature(file: Blob) {
 /** The replay; null while the renderer prepares it. */
 export const readReplay = (sha: string) =>
   whenReady<ArrayBuffer>(client.GET("/creatures/{sha}/replay", { ...creature(sha), parseAs: "arrayBuffer" }));
+/** The inputs of the evaluation of a creature; null while a renderer prepares them. */
+export const readEvaluation = (sha: string) =>
+  whenReady<ArrayBuffer>(
+    client.GET("/creatures/{sha}/evaluation", { ...creature(sha), parseAs: "arrayBuffer" }),
+  );
 /** The pose stream; null while the renderer prepares the replay of a creature without one. */
 export const readPoses = (sha: string, headers = {}) =>
   whenReady<ArrayBuffer>(
