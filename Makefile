@@ -14,7 +14,7 @@ WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist 
 # Tests start hundreds of processes, which need not read all sources anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: run install web wheels style-python style-page test test-all test-long mutants check peers \
+.PHONY: run install web wheels simulator style-python style-page test test-all test-long mutants check peers \
 	bench acceptance fuzz validate pictures docs texts release-check lock
 
 run: install web
@@ -115,6 +115,7 @@ bench: peers web
 	$(BIN)/python server/benchmarks/load.py
 	$(BIN)/python web/benchmarks/start.py
 	$(BIN)/python web/benchmarks/page.py
+	$(BIN)/python web/benchmarks/simulate.py
 
 # All parts, or some: make acceptance PARTS=databases
 acceptance: install web
@@ -152,6 +153,10 @@ docs: install
 wheels: $(INSTALLED)
 	@rm -f dist/microcosmos_kernels-*
 	@$(BIN)/python engine/kernels/wheels.py dist
+
+# The native kernel for the page, which the repository keeps: run it after a change to its sources.
+simulator: $(INSTALLED)
+	@$(BIN)/python engine/kernels/wasm.py web/src/simulate/kernel.wasm
 
 # Install the wheel into an empty environment, with the newest versions of its dependencies.
 release-check: install

@@ -49,11 +49,12 @@ from .specs import routes as experiments
 from .storage import mark
 from .sweeps import routes as sweeps
 from .tables import migrations
+from .tank import routes as tank
 from .workers import routes as workers
 
 ROUTES = (
     *(experiments, runs, forks, deletion, sweeps, details, archives, phylogenies, creatures),
-    *(renderings, shares, events, workers, queue, tokens, health),
+    *(renderings, tank, shares, events, workers, queue, tokens, health),
 )
 
 KEPT_ARCHIVES, KEPT_NETWORKS = 64 << 20, 16 << 20

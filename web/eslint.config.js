@@ -10,10 +10,10 @@ const LAYERS = [
   ["store"],
   ["ui"],
   ["charts"],
-  ["replay", "publish"],
+  ["replay", "publish", "simulate"],
   ["archive", "creature"],
   ["run"],
-  ["sweeps"],
+  ["sweeps", "tank"],
   ["compare", "new-run", "runs", "settings", "shares", "tree", "workers"],
   ["app"],
 ];

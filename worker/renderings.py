@@ -8,7 +8,16 @@ from microcosmos.viz.replay_file import Replay, read_replay
 from microcosmos.viz.strip import preview, strip
 from server.renderings import storage as renderings
 from server.services.services import Services
-from server.tables import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP
+from server.tables import (
+    AUDIT,
+    EVALUATION,
+    GIF,
+    MEASUREMENT,
+    MP4,
+    PREVIEW,
+    REPLAY,
+    STRIP,
+)
 
 PICTURES: dict[str, Callable[[Replay], bytes]] = {
     STRIP: strip,
@@ -31,9 +40,13 @@ def make(services: Services, creature: str, kind: str) -> bytes:
 
         report = audit if kind == AUDIT else measurement
         return json.dumps(report(file), allow_nan=False).encode()
+    if kind == EVALUATION:
+        from microcosmos.audit import evaluation_inputs  # Loads JAX.
+
+        return evaluation_inputs(file)
     if kind == REPLAY:
         from microcosmos.viz.replay import record  # Loads JAX.
 
         return record(file)
-    known = ", ".join((REPLAY, AUDIT, MEASUREMENT, *PICTURES))
+    known = ", ".join((REPLAY, AUDIT, MEASUREMENT, EVALUATION, *PICTURES))
     raise ValueError(f"`kind` of a rendering must be one of {known}; got {kind!r}")

@@ -4,9 +4,21 @@ from fastapi import Request
 from fastapi.responses import JSONResponse, Response
 from sqlalchemy.orm import Session
 
+from microcosmos.archive import columns
+
 from ..services.services import Services
 from ..storage import ranges
-from ..tables import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP, Creature
+from ..tables import (
+    AUDIT,
+    EVALUATION,
+    GIF,
+    MEASUREMENT,
+    MP4,
+    PREVIEW,
+    REPLAY,
+    STRIP,
+    Creature,
+)
 from . import storage
 from .schemas import Rendering
 
@@ -18,8 +30,9 @@ MEDIA_TYPES = {
     GIF: "image/gif",
     MP4: "video/mp4",
     MEASUREMENT: "application/json",
+    EVALUATION: columns.MEDIA_TYPE,
 }
-ON_REQUEST = (REPLAY, STRIP, PREVIEW, GIF, MP4)
+ON_REQUEST = (REPLAY, STRIP, PREVIEW, GIF, MP4, EVALUATION)
 """Renderings that the first request for them enqueues. Audits and measurements are ordered."""
 
 
@@ -31,7 +44,7 @@ def existing(
     if artifact is None:
         return None
     headers = {"Cache-Control": "no-cache"}
-    if kind not in (REPLAY, AUDIT, MEASUREMENT):
+    if kind not in (REPLAY, AUDIT, MEASUREMENT, EVALUATION):
         name = f"creature-{row.sha256[:12]}.{kind.rpartition('.')[2]}"
         headers["Content-Disposition"] = f'inline; filename="{name}"'
     return ranges.file(request, services.artifacts, artifact, headers, MEDIA_TYPES[kind])

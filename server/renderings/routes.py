@@ -14,7 +14,7 @@ from ..core.errors import ProblemError
 from ..core.static_files import FRESH, IMMUTABLE
 from ..creatures.deps import CreatureDep
 from ..services.services import ServicesDep, SessionDep
-from ..tables import AUDIT, MEASUREMENT, PREVIEW, REPLAY
+from ..tables import AUDIT, EVALUATION, MEASUREMENT, PREVIEW, REPLAY
 from . import poses, storage
 from .responses import MEDIA_TYPES, ON_REQUEST, enqueued, existing
 from .schemas import Measurement, Rendering, Verdict
@@ -42,7 +42,7 @@ def _reader(kind: str, *, on_request: bool = True) -> Callable[..., Response]:
             return found
         if not on_request and (share or not storage.is_ordered(services, row.sha256, kind)):
             return Response(status_code=204)
-        if share and kind != REPLAY:
+        if share and kind not in (REPLAY, EVALUATION):
             raise ProblemError(
                 404, "Not found", f"The share has no {storage.NOUNS[kind]} of it."
             )

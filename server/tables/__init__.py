@@ -3,6 +3,7 @@
 from .artifacts import (
     AUDIT,
     CHECKPOINT,
+    EVALUATION,
     GIF,
     MEASUREMENT,
     MP4,

@@ -11,7 +11,7 @@ from .base import Base, Sha256
 
 CHECKPOINT = "checkpoint"
 REPLAY, AUDIT, STRIP, GIF, MP4 = "replay", "audit", "strip.png", "film.gif", "film.mp4"
-PREVIEW, MEASUREMENT = "preview.png", "measurement"
+PREVIEW, MEASUREMENT, EVALUATION = "preview.png", "measurement", "evaluation"
 """Renderings of a creature, by their names in the API."""
 PUBLISHED = "published"
 """The archive file of a share."""

@@ -18,6 +18,10 @@ TOUR_TAKEN = "localStorage.setItem('microcosmos:tour-taken', '1')"
 """Keeps the tour from opening by itself."""
 
 
+ALL_SETTINGS = "localStorage.setItem('microcosmos:all-settings', '1')"
+"""Shows all settings of a new run."""
+
+
 class ProductPage(NamedTuple):
     name: str
     path: str

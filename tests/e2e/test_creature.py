@@ -55,6 +55,46 @@ def test_a_badge_becomes_the_verdict_of_the_audit(shared, page, anonymous_page):
     expect(anonymous_page.locator(".page-head .badge")).to_have_text(shown)
 
 
+def test_visitors_verify_a_creature_in_their_browser(shared, page, anonymous_page):
+    address, run = shared.product.url, shared.finished("voronoi")
+    (sha, *_) = shared.product.get(f"runs/{run}/archive")["creature"]
+    share = page.request.post(f"{address}/api/v1/shares", data={"creature": sha}).json()
+    measured = shared.product.get(f"creatures/{sha}")["measured"]
+    for visitor, url in ((page, f"{address}/creatures/{sha}"), (anonymous_page, share["url"])):
+        visitor.goto(url)
+        card = visitor.get_by_role("region", name="Verification in this browser")
+        card.get_by_role("button", name="Verify").click()
+        same = (
+            f"All {1 + len(measured['measures'])} numbers equal the recorded ones, bit by bit."
+        )
+        expect(card.get_by_text(same)).to_be_visible(timeout=SLOW)
+        expect(card.get_by_text(re.compile("^40 steps in .* s: .* steps/s.$"))).to_be_visible()
+        speed = card.get_by_role("row", name=re.compile("^Speed .* same bits$"))
+        expect(speed).to_be_visible()
+
+
+def test_a_creature_swims_on_in_live_water(shared, page):
+    address, run = shared.product.url, shared.finished("voronoi")
+    (sha, *_) = shared.product.get(f"runs/{run}/archive")["creature"]
+    page.goto(f"{address}/creatures/{sha}")
+    card = page.get_by_role("region", name="Live water")
+    card.get_by_role("button", name="Swim on").click()
+    water = card.get_by_role("img", name="The creature swims in live water")
+    expect(water).to_be_visible(timeout=SLOW)
+    drawn = "water => water.toDataURL()"
+    first = water.evaluate(drawn)
+    page.wait_for_timeout(1000)
+    assert water.evaluate(drawn) != first, "it swims"
+    card.get_by_role("slider").fill("-0.5")
+    expect(card.get_by_text("Viscosity 0.32")).to_be_visible()
+    card.get_by_role("button", name="Speed").press("Enter")
+    card.get_by_role("button", name="Push the water").press("Enter")
+    page.wait_for_timeout(500)
+    expect(card.get_by_role("button", name="Stop")).to_be_visible()
+    card.get_by_role("button", name="Stop").press("Enter")
+    expect(water).to_be_hidden()
+
+
 def child_and_parent(product: Installation, run: str) -> tuple[str, str]:
     """An elite and a parent of it that is kept."""
     for sha in product.get(f"runs/{run}/archive")["creature"]:

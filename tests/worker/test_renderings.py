@@ -11,7 +11,7 @@ import reports
 from microcosmos.archive import creature
 from server.creatures import storage as creatures
 from server.renderings import storage as renderings
-from server.tables import AUDIT, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP
+from server.tables import AUDIT, EVALUATION, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP
 from worker.renderings import make
 
 
@@ -52,6 +52,7 @@ def asked(monkeypatch):
         "audit": {
             "audit": answer("audit", {"verdict": {"trusted": True, "reasons": []}}),
             "measurement": answer("measurement", {"exact": True}),
+            "evaluation_inputs": answer("inputs", b"inputs"),
         },
     }
     for module, functions in engine.items():
@@ -80,6 +81,11 @@ def test_a_damaged_replay_is_made_again_for_a_film(services, known, asked):
     services.artifacts.write(path, b"damaged")
     assert make(services, known, GIF).startswith(b"GIF89a")
     assert asked == [("record", known)]
+
+
+def test_inputs_of_an_evaluation_are_bytes(services, known, asked):
+    assert make(services, known, EVALUATION) == b"inputs"
+    assert asked == [("inputs", known)]
 
 
 def test_audits_and_measurements_are_json_and_other_kinds_refused(services, known, asked):

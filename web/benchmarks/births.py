@@ -8,6 +8,7 @@ import json
 import statistics
 from datetime import timedelta
 from hashlib import sha256
+from urllib.parse import parse_qs, urlsplit
 from uuid import UUID
 
 import numpy as np
@@ -15,7 +16,7 @@ from drive import Installation
 from playwright.sync_api import Page, Route
 from sqlalchemy import insert
 
-from microcosmos.archive.poses import decode
+from microcosmos.archive.poses import batch, decode
 from server.services.services import Services
 from server.tables import FINISHED, Creature, Elite, Parent, Run
 
@@ -130,11 +131,12 @@ def serve_bodies(page: Page, stream: bytes) -> None:
     assert decode(stream).creature == header["creature"]
 
     def answer(route: Route) -> None:
-        name = route.request.url.split("/")[-2]
-        body = stream.replace(header["creature"].encode(), name.encode())
-        route.fulfill(body=body, content_type="application/octet-stream")
+        (names,) = parse_qs(urlsplit(route.request.url).query)["creatures"]
+        own = header["creature"].encode()
+        found = [stream.replace(own, name.encode()) for name in names.split(",")]
+        route.fulfill(body=batch(found), content_type="application/octet-stream")
 
-    page.route("**/creatures/*/poses", answer)
+    page.route("**/tank/poses?*", answer)
 
 
 def drag(page: Page) -> str:

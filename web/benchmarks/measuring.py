@@ -1,4 +1,6 @@
-"""Scripts that measure within the page."""
+"""Scripts that measure within the page, and the work of its main thread."""
+
+from playwright.sync_api import Page
 
 NOTES = """
 window.noted = [];
@@ -44,3 +46,21 @@ BLOCKS = """
 })
 """
 """A hash of each block of the gallery."""
+
+
+def work_of_frames(page: Page, seconds: float, slower: float) -> tuple[float, float]:
+    """Return milliseconds of the main thread for each frame, and frames per second.
+
+    The processor is `slower` by this factor.
+    """
+    session = page.context.new_cdp_session(page)
+    session.send("Performance.enable")
+    session.send("Emulation.setCPUThrottlingRate", {"rate": slower})
+
+    def busy() -> float:
+        found = session.send("Performance.getMetrics")["metrics"]
+        return next(one["value"] for one in found if one["name"] == "TaskDuration")
+
+    before = busy()
+    rate = page.evaluate(FRAMES, [seconds, False])
+    return 1000 * (busy() - before) / (seconds * rate), rate

@@ -20,7 +20,7 @@ from births import body_of, drag, serve_bodies, write_births
 from browser import launched
 from drive import ROOT, Installation, running
 from large import creatures_of, write_run
-from measuring import BLOCKS, FRAMES, NOTES
+from measuring import BLOCKS, FRAMES, NOTES, work_of_frames
 from playwright.sync_api import Browser, Page, ViewportSize
 from playwright.sync_api import TimeoutError as Late
 from rich.console import Console
@@ -33,6 +33,9 @@ CORES = 2
 SETTINGS = {"MICROCOSMOS_DEMONSTRATION": "false"}
 WINDOW: ViewportSize = {"width": 1280, "height": 900}
 WALL: ViewportSize = {"width": 1600, "height": 1600}
+PHONE: ViewportSize = {"width": 390, "height": 844}
+SECONDS = 5
+"""In which frames of the tank are counted."""
 TIMES = 5
 REDRAWS = 60
 HOVERS = 30
@@ -92,6 +95,13 @@ def table(browser: Browser, product: Installation, runs: tuple[str, str, str, st
         ("playing their history", "", lambda: play(browser, largest)),
         ("pointer on a cell to its first frame", "≤ 100 ms", lambda: hover(browser, hundred)),
         (f"gallery of {CREATURES}", "≥ 30 frames/s", lambda: gallery(browser, wall)),
+        ("first moving creature of the tank", "≤ 1.5 s", lambda: tank(browser, product.url)),
+        ("tank, of each frame", "≤ 12 ms", lambda: frames(browser, product.url, WINDOW, 1)),
+        (
+            "the same on a phone, 4 times slower",
+            "≤ 12 ms",
+            lambda: frames(browser, product.url, PHONE, 4),
+        ),
         (f"tree of {BIRTHS:,} births, drawn", "", lambda: grow(browser, births)),
         (
             "frames while it is dragged, at three zooms",
@@ -211,6 +221,25 @@ def gallery(browser: Browser, url: str) -> str:
         after = page.evaluate(BLOCKS, side)
     moving = sum(one != other for one, other in zip(before, after, strict=False))
     return f"{rate:.0f} frames/s, {moving} tiles moving"
+
+
+def tank(browser: Browser, url: str) -> str:
+    """Time from the navigation to the first drawn creatures of the tank."""
+    times = []
+    for _ in range(TIMES):
+        with opened(browser, url) as page:
+            times.append(until_noted(page, "tank") / 1000)
+    return f"{statistics.median(times):.2f} s, slowest {max(times):.2f} s, of {TIMES}"
+
+
+def frames(browser: Browser, url: str, window: ViewportSize, slower: int) -> str:
+    """Time of the page's main thread for each frame of the tank."""
+    with opened(browser, url, window) as page:
+        until_noted(page, "tank")
+        page.wait_for_timeout(3000)  # Their trails grow.
+        count = page.get_by_role("application").first.get_attribute("aria-label") or ""
+        spent, rate = work_of_frames(page, SECONDS, slower)
+    return f"{spent:.1f} ms at {rate:.0f} frames/s; {' '.join(count.split()[2:5])}"
 
 
 def grow(browser: Browser, births: str) -> str:

@@ -15,6 +15,14 @@ namespace microcosmos::ISA {
 // Bytes of all arrays and lists of the process.
 inline std::atomic<int64_t> held{0};
 
+[[noreturn]] inline void no_memory() {
+#if defined(__cpp_exceptions)
+  throw std::bad_alloc();
+#else
+  __builtin_trap();
+#endif
+}
+
 template <class T>
 class Array {
  public:
@@ -22,7 +30,7 @@ class Array {
   explicit Array(size_t count) {
     const size_t bytes = (count * sizeof(T) + 127) / 64 * 64;
     data_ = static_cast<T*>(std::aligned_alloc(64, bytes));
-    if (!data_) throw std::bad_alloc();
+    if (!data_) no_memory();
     std::memset(data_, 0, bytes);
     bytes_ = bytes, held += int64_t(bytes);
   }

@@ -18,7 +18,9 @@ class Stopwatch {
  public:
   explicit Stopwatch(float* seconds) : seconds_(seconds) {}
   // Start again, without counting the time until now.
-  void start() { last_ = Clock::now(); }
+  void start() {
+    if (seconds_ != nullptr) last_ = Clock::now();
+  }
   INLINE void stop(Part part) {
     if (__builtin_expect(seconds_ != nullptr, 0)) {
       const auto now = Clock::now();

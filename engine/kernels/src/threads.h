@@ -3,12 +3,27 @@
 // Every thread runs the same program on its own share: rows of cells, and whole bodies. What one
 // writes and another reads lies on both sides of a `wait`. No sum depends on how many there are.
 #pragma once
+#if !defined(__wasm__)
 #include <atomic>
 #include <system_error>
 #include <thread>
 #include <vector>
+#endif
 
 namespace microcosmos {
+
+#if defined(__wasm__)
+
+// One member: the page has no threads that share memory.
+class Team {
+ public:
+  explicit Team(int) {}
+  int size() const { return 1; }
+  void run(void (*work)(void*, int), void* object) { work(object, 0); }
+  void wait() {}
+};
+
+#else
 
 class Team {
  public:
@@ -74,5 +89,7 @@ class Team {
   void (*work_)(void*, int) = nullptr;
   void* object_ = nullptr;
 };
+
+#endif
 
 }  // namespace microcosmos

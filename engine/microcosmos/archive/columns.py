@@ -15,7 +15,7 @@ LENGTH = struct.Struct("<I")
 
 
 def dump(header: Mapping[str, Any], columns: Mapping[str, np.ndarray]) -> bytes:
-    """Return the bytes of columns: integers of 8 or 32 bits, or floats of 64 bits."""
+    """Return the bytes of columns: integers of 8 or 32 bits, or floats of 32 or 64 bits."""
     described = [
         {"name": name, "type": column.dtype.name, "shape": list(column.shape)}
         for name, column in columns.items()

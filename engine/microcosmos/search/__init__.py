@@ -47,6 +47,7 @@ from .evaluation import (
 )
 from .gradient_report import GradientReport, report_gradient
 from .gradients import Slopes, slopes
+from .inputs import Inputs, NotCovered, inputs
 from .insertion import (
     Elites,
     Inserted,

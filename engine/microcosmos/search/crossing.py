@@ -22,7 +22,7 @@ def crossing(shown: Poses, start: Float[Array, "node 2"]) -> Float[Array, ""]:
     """Return the share of recorded poses in which two edges cross that do not at the start."""
     size, frames = len(shown.edges), len(shown.positions)
     step = min(frames, ceil(frames * size**2 / MOST_PAIRS)) or 1
-    pairs = _apart(shown) & ~_crossed(_whole(start), shown.edges)
+    pairs = _apart(shown) & ~_crossed(whole_units(start), shown.edges)
     positions = shown.positions[step - 1 :: step].astype(jnp.int32) // COARSER
     found = jax.lax.map(lambda at: jnp.any(_crossed(at, shown.edges) & pairs), positions)
     return jnp.mean(found.astype(shown.scale.dtype))
@@ -39,7 +39,7 @@ def _apart(shown: Poses) -> Bool[Array, "edge edge"]:
     return once & there[:, None] & there[None] & ~jnp.any(jnp.stack(shared), 0)
 
 
-def _whole(points: Float[Array, "node 2"]) -> Int[Array, "node 2"]:
+def whole_units(points: Float[Array, "node 2"]) -> Int[Array, "node 2"]:
     """Return places about their mean in whole units, as fine as those of recorded poses."""
     middle = points - points.mean(0, keepdims=True)
     most = LEVELS // COARSER

@@ -110,8 +110,7 @@ def _evaluate(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
     values, shown, valid = _summary(task, driven, end, observed)
     values["crossing"] = crossing(shown, driven.start.positions)
     values["hidden_nodes"], values["connections"] = task.encoding.size(genotype)
-    constant = dict(zip(FORMS, map(jnp.asarray, task.form), strict=True))
-    values |= constant if driven.form is None else driven.form
+    values |= form_of(task, driven)
     dtype = observed.centre.dtype
     measures = jnp.stack([values[name].astype(dtype) for name in task.measures])
     finite = all_finite(measures) & all_finite(genotype)
@@ -134,7 +133,7 @@ def _summary(
         valid = status(driven.world, end, values["mach"])
         return values, poses_of(task, driven, observed), valid
     world, start, clock = driven.world, driven.start, clock_of(driven, len(observed.power))
-    length = _length(task, driven)
+    length = length_of(task, driven)
     values, shown, valid = summarise(world, start, end, observed, clock, task.period, length)
     values["trial_spread"] = jnp.zeros_like(values["speed"])
     return with_plugins(task, driven, end, observed, values), shown, valid
@@ -142,7 +141,7 @@ def _summary(
 
 def motion_of(task: Task, driven: Drive, end: State, observed: Measures) -> dict[str, Any]:
     """Return measures of any actuator's motion."""
-    length = _length(task, driven)
+    length = length_of(task, driven)
     values = motion(driven.world, driven.start, end, observed, length)
     done = strokes(driven, task.period, len(observed.centre))
     values["speed"], values["stride"] = swimming(observed.centre, done, length)
@@ -165,18 +164,25 @@ def with_plugins(
     return values | {measure.name: measure.of(whole) for measure in task.plugin_measures}
 
 
-def _length(task: Task, driven: Drive) -> Scalar | float:
+def length_of(task: Task, driven: Drive) -> Scalar | float:
     """Return the length of the body that was simulated, in cells."""
     return task.length if driven.length is None else driven.length
 
 
 def poses_of(task: Task, driven: Drive, observed: Measures) -> Poses:
     """Return the pose stream of a simulation."""
-    length = _length(task, driven)
+    length = length_of(task, driven)
     last = window(strokes(driven, task.period, len(observed.centre)))
     begun, present = centre(driven.world, driven.start), grown_nodes(driven.world)
     edges = driven.world.rods.edges
     return poses(begun, observed.centre, observed.positions, present, edges, last, length)
+
+
+def form_of(task: Task, driven: Drive) -> Mapping[str, Array]:
+    """Return the measures of the form of the body that was simulated."""
+    if driven.form is not None:
+        return driven.form
+    return dict(zip(FORMS, map(jnp.asarray, task.form), strict=True))
 
 
 def fitness_of(task: Task, values: Mapping[str, Any]) -> Scalar:

@@ -83,17 +83,17 @@ def simulate(
     """
     plain = observer is observe and segment is None and not differentiable
     if plain and is_native(driven):
-        return native.rollout(driven.world, driven.start, _given(driven))
+        return native.rollout(driven.world, driven.start, given_of(driven))
     go_on = partial(rollout, control=driven.control, remember=driven.remember, segment=segment)
     return go_on(driven.world, driven.start, driven.inputs, observer)
 
 
 def is_native(driven: Drive) -> bool:
     """Return whether the native kernel simulates this; see `native.chosen`."""
-    return native.chosen(driven.world, driven.start, _given(driven) is not None)
+    return native.chosen(driven.world, driven.start, given_of(driven) is not None)
 
 
-def _given(driven: Drive) -> Any:
+def given_of(driven: Drive) -> Any:
     """Return rest shapes, or in closed loop the controller; None if only JAX knows it."""
     open_loop = driven.control is follow and driven.remember is keep_memory
     return driven.inputs if open_loop else driven.controller

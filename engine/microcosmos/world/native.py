@@ -115,11 +115,21 @@ def develop(
     actuators carry out, and the controller's time at the end of each step."""
     steps, rods = len(controller.ramp), world.rods
     shapes = [(steps, len(rods.bend)), (steps, len(rods.edges)), (steps,)]
+    found = call(
+        register("develop", instruction_set),
+        shapes,
+        *development_operands(world, state, controller),
+    )
+    return filaments.Rest(found[0], found[1]), found[2]
+
+
+def development_operands(
+    world: World, state: State, controller: Controller
+) -> tuple[list[Array], Numbers]:
+    """Return the operands of a development, in the kernel's order, and its numbers."""
     body, sizes = body_of(world, state, controller)
     commands, numbers = controller_of(controller)
-    target = register("develop", instruction_set)
-    found = call(target, shapes, [*body, *commands], {**sizes, **numbers, "steps": steps})
-    return filaments.Rest(found[0], found[1]), found[2]
+    return [*body, *commands], {**sizes, **numbers, "steps": len(controller.ramp)}
 
 
 def rollout(
@@ -173,10 +183,9 @@ def _rollout(
     if reason:
         raise ValueError(f"the native kernel does not cover {reason}")
     closed = isinstance(given, Controller)
-    steps = len(given.ramp) if closed else len(given.angle)
-    operands, sizes = _operands(world, state, given)
-    options = {**sizes, **_form(world), "steps": steps, **ALONE, **chosen}
-    shapes = _results(world, state, steps if options["observed"] else 0, closed)
+    operands, numbers = rollout_operands(world, state, given)
+    options = {**numbers, **chosen}
+    shapes = _results(world, state, options["steps"] if options["observed"] else 0, closed)
     found = call(register("rollout", instruction_set), shapes, operands, options)
     end = replace(state, populations=tuple(found[:9]), positions=found[9], angles=found[10])
     if state.energy is not None:
@@ -184,10 +193,12 @@ def _rollout(
     return end, found[13:]
 
 
-def _operands(
+def rollout_operands(
     world: World, state: State, given: filaments.Rest | Controller
-) -> tuple[list[Array], dict[str, int]]:
+) -> tuple[list[Array], Numbers]:
+    """Return the operands of a rollout, in the kernel's order, and its numbers."""
     controller = given if isinstance(given, Controller) else None
+    steps = len(given.ramp) if isinstance(given, Controller) else len(given.angle)
     body, sizes = body_of(world, state, controller)
     commands, numbers = controller_of(controller)
     around, features = surroundings_of(world)
@@ -207,8 +218,8 @@ def _operands(
         *rest,
         *commands,
     ]
-    options = {**sizes, **numbers, **features}
-    return operands, {**options, "energetic": state.energy is not None}
+    options = {**sizes, **numbers, **features, **_form(world), **ALONE}
+    return operands, {**options, "steps": steps, "energetic": state.energy is not None}
 
 
 def _form(world: World) -> dict[str, int]:

@@ -15,6 +15,18 @@ SOURCE = ROOT / "engine" / "kernels" / "check" / "evaluations.cpp"
 FLAGS = ["-std=c++17", "-O3", "-ffp-contract=off", "-fno-math-errno", "-Wno-psabi"]
 AVX512 = ["-mavx512f", "-mavx512vl", "-mavx512dq", "-mavx512bw", "-mprefer-vector-width=512"]
 CPU = Path("/proc/cpuinfo")
+WASM = ROOT / "engine" / "kernels" / "wasm.py"
+NODE = shutil.which(
+    "node", path=f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+)
+RUN = """
+import { readFileSync } from "node:fs";
+import { WASI } from "node:wasi";
+const wasi = new WASI({ version: "preview1" });
+const module = new WebAssembly.Module(readFileSync(process.argv[1]));
+wasi.start(new WebAssembly.Instance(module, wasi.getImportObject()));
+"""
+"""Runs a program of WebAssembly."""
 ARM = Path("/usr/aarch64-linux-gnu")
 """The C library of ARM, where Debian's `libc6-arm64-cross` puts it."""
 
@@ -67,6 +79,36 @@ def test_compilers_and_processors_give_the_same_bits(tmp_path, zig):
         print(f"SKIPPED: ARM, there is no {ARM if emulator else 'qemu-aarch64'}")
     assert len(set(map(tuple, found.values()))) == 1, found
     assert found["clang"][1] == "100", "some evaluations did not stay finite"
+
+
+@pytest.fixture(scope="module")
+def webassembly(tmp_path_factory, zig_cache):
+    """A function that builds the kernel for the page, or a program."""
+    place = tmp_path_factory.mktemp("webassembly")
+
+    def built(*program):
+        out = place / "out.wasm"
+        shared = os.environ | {"ZIG_GLOBAL_CACHE_DIR": str(zig_cache)}
+        command = [sys.executable, WASM, out, *program]
+        done = subprocess.run(command, stderr=subprocess.PIPE, text=True, env=shared)
+        if "Zig cannot be fetched" in done.stderr:
+            pytest.skip("Zig cannot be fetched from the package registry")
+        assert done.returncode == 0, done.stderr
+        return out
+
+    return built
+
+
+@pytest.mark.skipif(not NODE, reason="needs node")
+def test_webassembly_gives_the_same_bits(tmp_path, zig, webassembly):
+    native = printed(compiled(zig, tmp_path / "native"))
+    node = [NODE, "--no-warnings", "--input-type=module", "--eval", RUN]
+    assert printed([*node, webassembly(SOURCE)]) == native
+
+
+def test_the_page_has_the_kernel_of_these_sources(webassembly):
+    kept = ROOT / "web" / "src" / "simulate" / "kernel.wasm"
+    assert webassembly().read_bytes() == kept.read_bytes(), "make simulator builds it anew"
 
 
 def test_a_run_goes_on_with_another_instruction_set(tmp_path):

@@ -53,6 +53,7 @@ def test_a_range_beyond_all_numbers_is_ignored(api, services, known):
         ("strip.png", "image/png", b"a picture"),
         ("film.gif", "image/gif", b"a film"),
         ("film.mp4", "video/mp4", b"another film"),
+        ("evaluation", "application/vnd.microcosmos.columns", b"inputs"),
     ],
 )
 def test_each_kind_is_made_once_and_then_kept(api, services, known, kind, media_type, made):

@@ -97,7 +97,7 @@ def test_a_share_shows_its_creature_and_no_other(api, through, shared, known, ot
     document = through(slug, f"creatures/{known}").json()
     assert creature.parse(document)["sha256"] == known
     files = ("/creature.h5", "/network.svg", "/network.json", "/poses.csv")
-    for path in ("", "/verdict", "/ancestors", *files, "/replay", "/poses"):
+    for path in ("", "/verdict", "/ancestors", *files, "/replay", "/poses", "/evaluation"):
         assert through(slug, f"creatures/{known}{path}").status_code in (200, 202), path
         assert through(slug, f"creatures/{other}{path}").status_code == 404, path
     for path in (f"creatures/{known}/children", f"creatures/{known}/audit", "runs", "workers"):

@@ -41,8 +41,11 @@ export const readRuns = (query: wire.RunQuery) =>
 export const readRun = (id: string) => typed<wire.Run>(client.GET("/runs/{run_id}", run(id)));
 export const estimateRun = (spec: wire.Spec) =>
   success(client.POST("/runs/estimate", { body: spec as never }));
-export const createRun = (spec: wire.Spec, key: string) =>
-  typed<wire.Run>(client.POST("/runs", { params: keyed(key), body: spec as never }));
+/** Queue a run, with a name if there is one. */
+export function createRun(spec: wire.Spec, key: string, name: string | null) {
+  const params = { ...keyed(key), query: name ? { name } : {} };
+  return typed<wire.Run>(client.POST("/runs", { params, body: spec as never }));
+}
 export function forkRun({ run: id, ...body }: wire.ForkRequest, key: string) {
   const params = { ...run(id).params, ...keyed(key) };
   return typed<wire.Run>(client.POST("/runs/{run_id}/fork", { params, body: body as never }));
@@ -78,6 +81,16 @@ export const readArchivePoses = (id: string, cells: number[], when: { generation
   typed<ArrayBuffer>(
     client.GET("/runs/{run_id}/archive/poses", {
       ...run(id, { cells: cells.join(), ...when }),
+      parseAs: "arrayBuffer",
+    }),
+  );
+/** The creatures that swim on the first page. */
+export const readTank = (limit: number) => success(client.GET("/tank", { params: { query: { limit } } }));
+/** The stored pose streams of some creatures. */
+export const readTankPoses = (creatures: string[]) =>
+  typed<ArrayBuffer>(
+    client.GET("/tank/poses", {
+      params: { query: { creatures: creatures.join() } },
       parseAs: "arrayBuffer",
     }),
   );
@@ -160,6 +173,11 @@ export function importCreature(file: Blob) {
 /** The replay; null while the renderer prepares it. */
 export const readReplay = (sha: string) =>
   whenReady<ArrayBuffer>(client.GET("/creatures/{sha}/replay", { ...creature(sha), parseAs: "arrayBuffer" }));
+/** The inputs of the evaluation of a creature; null while a renderer prepares them. */
+export const readEvaluation = (sha: string) =>
+  whenReady<ArrayBuffer>(
+    client.GET("/creatures/{sha}/evaluation", { ...creature(sha), parseAs: "arrayBuffer" }),
+  );
 /** The pose stream; null while the renderer prepares the replay of a creature without one. */
 export const readPoses = (sha: string, headers = {}) =>
   whenReady<ArrayBuffer>(

@@ -150,6 +150,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/creatures/{sha}/evaluation": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Evaluation
+         * @description Return the evaluation, or 202 while it is computed.
+         */
+        get: operations["read_evaluation_api_v1_creatures__sha__evaluation_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/creatures/{sha}/film.gif": {
         parameters: {
             query?: never;
@@ -1440,6 +1460,49 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/tank": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Tank
+         * @description Return the best and the most different creatures of the latest runs.
+         */
+        get: operations["read_tank_api_v1_tank_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/tank/poses": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Tank Poses
+         * @description Return the pose streams of creatures, whose names are separated by commas.
+         *
+         *     The length of each stream precedes it, as a little-endian uint32. Creatures without a
+         *     stream are left out.
+         */
+        get: operations["read_tank_poses_api_v1_tank_poses_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/tokens": {
         parameters: {
             query?: never;
@@ -2678,6 +2741,8 @@ export interface components {
             evaluations_per_second: number | null;
             /** Experiment */
             experiment: string;
+            /** Face */
+            face: string | null;
             /** Finished At */
             finished_at: string | null;
             forked_from: components["schemas"]["ForkedFrom"] | null;
@@ -3051,12 +3116,39 @@ export interface components {
              */
             id: string;
         };
+        /**
+         * Swimmer
+         * @description A creature in the tank, from one of its runs.
+         */
+        Swimmer: {
+            /** Creature */
+            creature: string;
+            /** Fitness */
+            fitness: number;
+            /** Generation */
+            generation: number;
+            /**
+             * Run
+             * Format: uuid
+             */
+            run: string;
+        };
         /** TagRead */
         TagRead: {
             /** Runs */
             runs: number;
             /** Tag */
             tag: string;
+        };
+        /**
+         * Tank
+         * @description The best and the most different creatures of the latest runs, each once.
+         */
+        Tank: {
+            /** Runs */
+            runs: components["schemas"]["RunBrief"][];
+            /** Swimmers */
+            swimmers: components["schemas"]["Swimmer"][];
         };
         /**
          * Target
@@ -3527,6 +3619,46 @@ export interface operations {
                 };
                 content: {
                     "application/x-hdf5": unknown;
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_evaluation_api_v1_creatures__sha__evaluation_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/vnd.microcosmos.columns": unknown;
+                };
+            };
+            /** @description Accepted */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Rendering"];
                 };
             };
             /** @description A problem (RFC 9457) */
@@ -6133,6 +6265,68 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["TagRead"][];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_tank_api_v1_tank_get: {
+        parameters: {
+            query?: {
+                limit?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Tank"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_tank_poses_api_v1_tank_poses_get: {
+        parameters: {
+            query: {
+                creatures: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/octet-stream": unknown;
                 };
             };
             /** @description A problem (RFC 9457) */

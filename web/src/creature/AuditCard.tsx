@@ -8,6 +8,7 @@ import { type Column, Table } from "../ui/Table";
 import { TrustBadge } from "../ui/TrustBadge";
 import { CheckCard } from "./CheckCard";
 import { type Check, useCheck } from "./check";
+import { Mark } from "./Mark";
 import { text } from "./text";
 
 /** The address of the card below that of its page. */
@@ -51,8 +52,6 @@ export function AuditCard({ trusted, check }: AuditState) {
   );
 }
 
-const SIGNS = { true: ["✓", text.passed], false: ["✕", text.failed], null: ["", ""] } as const;
-
 const COLUMNS: Column<AuditRow>[] = [
   {
     title: text.figure,
@@ -75,14 +74,6 @@ const COLUMNS: Column<AuditRow>[] = [
   {
     title: text.result,
     unseen: true,
-    cell: ({ passed }) => {
-      const [sign, word] = SIGNS[`${passed}`];
-      return (
-        <span class={`mark-word ${passed === false ? "wrong" : "right"}`} title={word}>
-          <span aria-hidden="true">{sign}</span>
-          <span class="unseen">{word}</span>
-        </span>
-      );
-    },
+    cell: ({ passed }) => passed !== null && <Mark good={passed} word={passed ? text.passed : text.failed} />,
   },
 ];

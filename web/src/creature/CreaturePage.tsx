@@ -17,6 +17,7 @@ import { FactsCard } from "./FactsCard";
 import { FamilyCard } from "./FamilyCard";
 import { ForkLink } from "../ui/links";
 import { GenomeCard } from "./GenomeCard";
+import { LiveCard } from "./LiveCard";
 import { Downloads } from "./Downloads";
 import { PlanCard } from "./PlanCard";
 import { RemeasureCard } from "./RemeasureCard";
@@ -25,6 +26,7 @@ import { RefineButton } from "./RefineButton";
 import { SwimmingBody } from "../replay/SwimmingBody";
 import { ReplayStatus, useReplays } from "../replay/replays";
 import { SpaceTimeCard } from "./SpaceTimeCard";
+import { VerifyCard } from "./VerifyCard";
 import { text } from "./text";
 import "./creature.css";
 import "./details.css";
@@ -53,6 +55,11 @@ export function CreaturePage({ id: sha, query }: Props) {
           <TrustBadge trusted={audit.trusted} href={AUDIT_HASH} />
         )}
         <span class="spring" />
+        {creature && swims(creature) && (
+          <a class="button" href={`/compare?creatures=${sha}`}>
+            {text.sideBySide}
+          </a>
+        )}
         {creature && <PublishButton of={{ creature: sha }} file={creature} title="" />}
         {creature && isEvolved(creature) && <ForkLink run={run} creatures={[sha]} title={text.fork} />}
         {creature && isEvolved(creature) && <RefineButton creature={creature} run={run} />}
@@ -95,6 +102,7 @@ export function CreatureView({ creature, query, audit }: ViewProps) {
             {replay && swims(creature) && <ReplayFitness replay={replay} task={identity.task} />}
             <Downloads sha={sha} />
           </section>
+          {isEvolved(creature) && <LiveCard sha={sha} />}
         </div>
         <div class="stack">
           {replay && <SpaceTimeCard {...{ replay, query, playhead }} />}
@@ -102,6 +110,7 @@ export function CreatureView({ creature, query, audit }: ViewProps) {
           <GenomeCard {...{ creature, playhead }} every={replay?.header.every ?? null} />
           <FamilyCard {...{ creature, query }} />
           {creature.measured && <RemeasureCard sha={sha} />}
+          {creature.measured && <VerifyCard sha={sha} measured={creature.measured} />}
           {swims(creature) && audit && <AuditCard {...audit} />}
         </div>
       </div>

@@ -34,6 +34,7 @@ export const text = {
   rounding: (difference: string) => ` (rounding: ${difference})`,
   download: "Download",
   linkCopied: "Link copied.",
+  sideBySide: "Side by side",
   copyLink: "Copy link",
   jsonAbout: "The creature file with its ancestors, for import into another installation",
   motionCsv: "Motion (CSV)",
@@ -144,6 +145,43 @@ export const text = {
   number: "Number",
   recorded: "Recorded",
   here: "Here",
+  verification: "Verification in this browser",
+  verify: "Verify",
+  verifyAgain: "Verify again",
+  verifyAbout:
+    "Evaluates the creature in this browser with the native kernel, and compares every recorded number bit by bit.",
+  noSimulator:
+    "This installation has no simulator for the browser: there was no compiler when the page was built.",
+  verifying: (share: number) =>
+    share > 0 ? `Simulating: ${Math.round(100 * share)} % …` : "Loading the simulator and its inputs …",
+  notCovered: (reason: string) =>
+    `The native kernel does not cover ${reason}, so this browser cannot verify the creature.`,
+  verified: (known: number, different: number) =>
+    different === 0
+      ? `All ${known} numbers equal the recorded ones, bit by bit.`
+      : `${different} of ${known} numbers ${different === 1 ? "differs" : "differ"}.`,
+  pluginsLeft: (count: number) =>
+    `${count} ${count === 1 ? "number comes" : "numbers come"} from a plug-in, which only a worker can run.`,
+  recordedOn: (device: string) =>
+    device.includes("microcosmos-kernels")
+      ? `Recorded on ${device}.`
+      : `JAX recorded them on ${device}; its rounding differs from the native kernel's.`,
+  took: (steps: string, seconds: string, rate: string) => `${steps} steps in ${seconds} s: ${rate} steps/s.`,
+  comparison: "Numbers, recorded and found here",
+  sameBits: "same bits",
+  otherBits: "other bits",
+  ofPlugin: "plug-in",
+  live: "Live water",
+  startLive: "Swim on",
+  stopLive: "Stop",
+  liveAbout:
+    "The creature swims on in this browser, with its last strokes again and again. Change the viscosity, and push the water with the pointer.",
+  liveLabel: "The creature swims in live water; a pressed pointer pushes it",
+  notLive: (reason: string) =>
+    `The native kernel does not cover ${reason}, so the creature cannot swim on in this browser.`,
+  diverged: "The simulation diverged. Start it again with a higher viscosity or weaker pushes.",
+  viscosity: (value: string) => `Viscosity ${value}`,
+  stir: "Push the water",
   restAngles: "Rest angles (applied)",
   bodyAngles: "Angles of the body",
   angleUnit: "rad, change from the start",

@@ -1,10 +1,10 @@
-/** Columns of archives as bytes: a JSON header, then one little-endian array after another. */
+/** Columns as bytes: a JSON header, then one little-endian array after another. */
 
 import { readHeader } from "./header";
 
 export const COLUMNS = "application/vnd.microcosmos.columns";
 
-type Kind = "uint8" | "int8" | "int32" | "float64";
+type Kind = "uint8" | "int8" | "int32" | "float32" | "float64";
 
 interface Column {
   name: string;
@@ -16,36 +16,41 @@ interface Header {
   columns: Column[];
 }
 
-type Values = Uint8Array | Int8Array | Int32Array | Float64Array;
+export type Values = Uint8Array | Int8Array | Int32Array | Float32Array | Float64Array;
 
 /** Arrays in the byte order of the machine, which is little-endian wherever browsers run. */
-const ARRAYS = { uint8: Uint8Array, int8: Int8Array, int32: Int32Array, float64: Float64Array };
+const ARRAYS = {
+  uint8: Uint8Array,
+  int8: Int8Array,
+  int32: Int32Array,
+  float32: Float32Array,
+  float64: Float64Array,
+};
 const ALIGNMENT = 8;
 const MEASURE = "measures.";
 const VERDICTS: (boolean | null)[] = [false, true];
 const HEX = Array.from({ length: 256 }, (_, byte) => byte.toString(16).padStart(2, "0"));
 
-/** The header and the arrays, which are views of the bytes. */
-export function readColumns(buffer: ArrayBuffer) {
-  const { header, start } = readHeader<Header>(buffer, "columns", "microcosmos-columns/1");
+/** The header without its format, and the columns in their order. */
+export function readColumns<T extends object>(buffer: ArrayBuffer) {
+  const { header, start } = readHeader<T & Header>(buffer, "columns", "microcosmos-columns/1");
+  const { columns: described, format: _, ...document } = header as T & Header & { format: string };
   let at = start;
-  const columns = header.columns.map(({ name, type, shape }) => {
+  const columns = described.map(({ name, type, shape }) => {
     const count = shape.reduce((product, size) => product * size, 1);
     const values: Values = new ARRAYS[type](buffer, at, count);
     at += Math.ceil(values.byteLength / ALIGNMENT) * ALIGNMENT;
-    return { name, values, shape };
+    return { name, shape, values };
   });
-  return { header: header as Header & Record<string, unknown>, columns };
+  return { document, columns };
 }
 
 /** The document that JSON has in place of these bytes. */
 export function decodeColumns<T>(buffer: ArrayBuffer): T {
-  const { header, columns } = readColumns(buffer);
-  const found: Record<string, unknown> = { ...header };
-  delete found.format;
-  delete found.columns;
+  const { document, columns } = readColumns<object>(buffer);
+  const found: Record<string, unknown> = { ...document };
   const measures: Record<string, (number | null)[]> = {};
-  for (const { name, values, shape } of columns) {
+  for (const { name, shape, values } of columns) {
     if (name.startsWith(MEASURE)) measures[name.slice(MEASURE.length)] = numbers(values);
     else found[name] = decoded(name, values, shape);
   }

@@ -29,7 +29,7 @@ export interface Phylogeny {
 const NAME_BYTES = 32;
 
 export function decodePhylogeny(buffer: ArrayBuffer): Phylogeny {
-  const { header, columns } = readColumns(buffer);
+  const { document: header, columns } = readColumns<Record<string, unknown>>(buffer);
   const arrays = Object.fromEntries(columns.map(({ name, values }) => [name, values]));
   const { runs, operators } = header as unknown as Pick<Phylogeny, "runs" | "operators">;
   return { runs, operators, count: arrays.time!.length, ...arrays } as unknown as Phylogeny;

@@ -3,7 +3,7 @@
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { NONE, indexOf, isElite, nameAt } from "../decode/phylogeny";
 import { TimeSlider } from "../replay/TimeSlider";
-import { usePoses } from "../store/poses";
+import { readTankBatch, usePoses } from "../store/poses";
 import { navigate, setQuery } from "../store/router";
 import { useTheme } from "../ui/canvas";
 import { count } from "../ui/format";
@@ -81,7 +81,7 @@ function useShown(loaded: LoadedTree | null, canvases: TreeCanvases, query: URLS
   const chosen = query.get("creature") ?? self;
   const selected = useMemo(() => placed(loaded, chosen), [loaded, chosen]);
   const focus = hovered === NONE ? selected : hovered;
-  const poses = usePoses(null, null, useNames(loaded, canvases.landmarks));
+  const poses = usePoses(readTankBatch, useNames(loaded, canvases.landmarks));
   const shown: Shown = { at: at ?? Infinity, whole, by, theme, focus, poses };
   useEffect(() => {
     setHovered(NONE); // Rows are other creatures now.
@@ -98,11 +98,11 @@ function useShown(loaded: LoadedTree | null, canvases: TreeCanvases, query: URLS
   return { theme, at, setAt, by, whole, focus, selected, setHovered, last, shades, hrefOf };
 }
 
-/** The creatures with bodies, for their pose streams; no cells of an archive. */
+/** The creatures with bodies, for their pose streams. */
 function useNames(loaded: LoadedTree | null, landmarks: readonly Landmark[]) {
   return useMemo(() => {
     if (!loaded) return [];
-    return landmarks.map(({ creature }) => ({ cell: NONE, creature: nameAt(loaded.tree, creature) }));
+    return landmarks.map(({ creature }) => ({ creature: nameAt(loaded.tree, creature) }));
   }, [landmarks]);
 }
 

@@ -1,0 +1,227 @@
+// The kernel's calls: their numbers, and their operands and results in the order of `world.native`
+// and `search.summary`, whatever carries them.
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "rollout.h"
+#include "summary.h"
+
+namespace microcosmos {
+
+// The sizes of a body and its controller; what is wrong with them, if anything is.
+template <class Numbers>
+std::string read_body(Rollout& r, Numbers number) {
+  r.steps = number("steps"), r.bodies = number("bodies");
+  r.nodes = number("nodes"), r.edges = number("edges"), r.joints = number("joints");
+  r.matched = number("matched"), r.laid_out = number("laid_out");
+  r.commands = Commands(number("commands"));
+  r.recurrent = number("recurrent"), r.senses = number("senses"), r.waves = number("waves");
+  r.actuated = number("actuated"), r.rows = number("rows"), r.links = number("links");
+  r.inputs = number("inputs"), r.sites = number("sites"), r.timers = number("timers");
+  r.terms = number("terms");
+  if (!number.error.empty()) return number.error;
+  if (r.commands < GIVEN || r.commands > SERIES) return "there is no such controller";
+  for (int32_t one : {r.steps, r.edges, r.joints, r.rows, r.links, r.sites, r.timers, r.terms})
+    if (one < 0) return "a count is negative";
+  if (r.nodes < 1 || r.bodies < 1) return "a world has at least one node";
+  if (r.bodies > r.nodes) return "a body has at least one node";
+  if ((r.actuated || r.matched) && !r.laid_out) return "there is no layout";
+  if (r.timers > 2 || (r.waves && r.timers != 2)) return "a timer has one or two numbers";
+  if (r.sites > r.rows) return "a network has an input for each site";
+  const int inputs = r.sites + r.timers * (r.waves ? 2 : 1) + r.senses;
+  if (r.commands == NETWORK && (r.inputs != inputs || r.rows < inputs + 2))
+    return "a network has an input for each that it is given, and two outputs";
+  return "";
+}
+
+// The sizes and the form of a world; what is wrong with them, if anything is.
+template <class Numbers>
+std::string read_world(Rollout& r, Numbers number) {
+  r.height = number("height"), r.width = number("width");
+  r.iterations = number("iterations");
+  r.sweeps = number("sweeps"), r.layers = number("layers");
+  r.projection = Projection(number("projection"));
+  r.delta = Delta(number("delta"));
+  r.fixed_magic = number("magic");
+  r.soft = number("soft");
+  r.fluid = number("fluid"), r.repelled = number("repelled"), r.energetic = number("energetic");
+  r.driven = number("driven"), r.varied = number("varied"), r.walled = number("walled"),
+  r.barred = number("barred"), r.damped = number("damped"), r.observed = number("observed"),
+  r.timed = number("timed"), r.threads = number("threads");
+  if (!number.error.empty()) return number.error;
+  if (r.height < 4 || r.width < 4) return "a world has at least 4 cells along each axis";
+  if (r.threads < 1 || r.threads > 1024) return "there is at least one thread, and at most 1024";
+  if (!r.observed && r.commands != GIVEN) return "what is commanded is observed";
+  if (r.iterations < 1 || r.layers < 1 || r.layers > 2 || r.sweeps < 0)
+    return "iterations, sweeps or layers";
+  if (r.delta < 0 || r.delta > HAT) return "there is no such delta";
+  if (r.projection < NOTHING || r.projection > FORCE_AND_TORQUE)
+    return "there is no such projection";
+  return "";
+}
+
+// The numbers of each call; what is wrong with them, if anything is.
+template <class Numbers>
+std::string read_rollout(Rollout& r, Numbers number) {
+  const std::string wrong = read_body(r, number);
+  return wrong.empty() ? read_world(r, number) : wrong;
+}
+
+template <class Numbers>
+std::string read_development(Rollout& r, Numbers number) {
+  const std::string wrong = read_body(r, number);
+  if (!wrong.empty()) return wrong;
+  if (r.commands == GIVEN || r.senses) return "there is nothing to develop";
+  r.matched = true;  // Nothing is swept.
+  return "";
+}
+
+template <class Numbers>
+std::string read_summary(Observed& o, Numbers number) {
+  o.height = number("height"), o.width = number("width"), o.steps = number("steps");
+  o.nodes = number("nodes"), o.edges = number("edges"), o.joints = number("joints");
+  o.bodies = number("bodies"), o.energetic = number("energetic");
+  if (!number.error.empty()) return number.error;
+  for (int32_t one : {o.height, o.width, o.steps, o.nodes, o.bodies})
+    if (one < 1) return "a motion has at least one step of one node in one cell";
+  return "";
+}
+
+inline int64_t when(bool holds, int64_t count) { return holds ? count : 0; }
+
+// Name the arrays of a body at its start. What is absent has no items.
+template <class Arrays>
+void name_body(Arrays& a, Rollout& r) {
+  const int64_t N = r.nodes, E = r.edges, J = r.joints, laid = r.laid_out;
+  a.in("positions", &r.positions, {N, 2}), a.in("angles", &r.angles, {E});
+  a.in("edges", &r.ends, {E, 2}), a.in("joints", &r.pairs, {J, 2});
+  a.in("member", &r.member, {N}), a.in("piece", &r.piece, {N}), a.in("present", &r.present, {N});
+  a.in("layout angles", &r.layout_angle, {laid * E});
+  a.in("layout rest angles", &r.layout_rest_angle, {laid * J});
+  a.in("turned", &r.turned, {laid * E, J}), a.in("placed", &r.placed, {laid * N, E});
+}
+
+// Name the arrays of a controller.
+template <class Arrays>
+void name_controller(Arrays& a, Rollout& r) {
+  const int64_t N = r.nodes, E = r.edges, J = r.joints, T = r.steps;
+  const int64_t R = r.rows, L = r.links, K = r.terms;
+  const bool network = r.commands == NETWORK, series = r.commands == SERIES;
+  const bool controlled = network || series;
+  a.in("bounds of the controller", &r.control, {BOUND_COUNT});
+  a.in("activations", &r.activation, {R}), a.in("biases", &r.bias, {R});
+  a.in("sources", &r.source, {L}), a.in("targets", &r.target, {L}), a.in("weights", &r.weight, {L});
+  a.in("timer", &r.timer, {when(network, T), r.timers}),
+      a.in("ramp", &r.ramp, {when(controlled, T)});
+  a.in("sites", &r.site, {r.sites, when(network, N)});
+  a.in("lags", &r.lag, {when(network && r.waves, N)});
+  a.in("nodes of joints", &r.joint_node, {when(network, J)});
+  a.in("gains of joints", &r.gain, {when(network, J)});
+  a.in("rest angles of the body", &r.body_angle, {when(controlled, J)});
+  a.in("rest lengths of the body", &r.body_length, {when(controlled, E)});
+  a.in("basis", &r.basis, {when(series, T), K}), a.in("genes", &r.genes, {K, when(series, J + E)});
+}
+
+// Name the arrays of a rollout.
+template <class Arrays>
+void name_rollout(Arrays& a, Rollout& r) {
+  const int64_t H = r.height, W = r.width, N = r.nodes, E = r.edges, J = r.joints;
+  const bool closed = r.commands != GIVEN, energetic = r.energetic;
+  const int64_t T = when(r.observed, r.steps), given = when(!closed, r.observed ? T : 1);
+  const int64_t swept = !r.matched, B = r.bodies;
+  for (int i = 0; i < 9; i++) a.in("a plane", &r.populations[i], {H, W});
+  name_body(a, r);
+  a.in("colours of edges", &r.edge_colour, {swept * E});
+  a.in("colours of joints", &r.joint_colour, {swept * J});
+  a.in("stretch", &r.stretch, {E}), a.in("shear", &r.shear, {E}), a.in("bend", &r.bend, {J});
+  a.in("parameters", &r.parameters, {STEP_LENGTHS + r.iterations});
+  a.in("energy", &r.energy, {when(energetic, H), W});
+  a.in("collected", &r.collected, {when(energetic, N)});
+  a.in("smoothing across rows", &r.smoothing_x, {when(r.repelled, 2), H});
+  a.in("smoothing along rows", &r.smoothing_y, {when(r.repelled, 2), W});
+  a.in("uniform force", &r.uniform_force, {when(r.driven, 2)});
+  a.in("forces across rows", &r.force_x, {when(r.varied, H), W});
+  a.in("forces along rows", &r.force_y, {when(r.varied, H), W});
+  a.in("walls", &r.walls, {when(r.walled, H), W});
+  a.in("displacements across rows", &r.away_x, {when(r.barred, H), W});
+  a.in("displacements along rows", &r.away_y, {when(r.barred, H), W});
+  a.in("strength of the sponge", &r.sponge, {when(r.damped, H), W});
+  a.in("velocity of the sponge", &r.sponge_velocity, {when(r.damped, 2)});
+  a.in("rest angles", &r.given_angle, {given, J});
+  a.in("rest lengths", &r.given_length, {given, E});
+  name_controller(a, r);
+  for (int i = 0; i < 9; i++) a.out("a plane", &r.end_populations[i], {H, W});
+  a.out("positions", &r.end_positions, {N, 2}), a.out("angles", &r.end_angles, {E});
+  a.out("energy", &r.end_energy, {when(energetic, H), W});
+  a.out("collected", &r.end_collected, {when(energetic, N)});
+  a.out("rest angles", &r.rest_angle, {when(closed, T), J});
+  a.out("rest lengths", &r.rest_length, {when(closed, T), E});
+  a.out("centre", &r.centre, {T, 2}), a.out("path", &r.path, {T, N, 2});
+  a.out("speed", &r.speed, {T}), a.out("node speed", &r.node_speed, {T});
+  a.out("held", &r.held, {T}), a.out("heading", &r.heading, {T});
+  a.out("curvature", &r.curvature, {T, J}), a.out("power", &r.power, {T});
+  a.out("force", &r.force, {T, B, 2}), a.out("seconds", &r.seconds, {PART_COUNT});
+  a.out("memory", &r.memory, {1});
+  a.end();
+}
+
+// Name the arrays of a development.
+template <class Arrays>
+void name_development(Arrays& a, Rollout& r) {
+  name_body(a, r);
+  name_controller(a, r);
+  a.out("rest angles", &r.rest_angle, {r.steps, r.joints});
+  a.out("rest lengths", &r.rest_length, {r.steps, r.edges});
+  a.out("clock", &r.clock, {r.steps});
+  a.end();
+}
+
+// Name the arrays of a summary.
+template <class Arrays>
+void name_summary(Arrays& a, Observed& o) {
+  const int64_t H = o.height, W = o.width, N = o.nodes, E = o.edges, J = o.joints, T = o.steps;
+  for (int i = 0; i < 9; i++) a.in("a plane", &o.populations[i], {H, W});
+  a.in("positions", &o.positions, {N, 2}), a.in("angles", &o.angles, {E});
+  a.in("edges", &o.ends, {E, 2}), a.in("joints", &o.pairs, {J, 2});
+  a.in("present", &o.present, {N}), a.in("collected", &o.collected, {when(o.energetic, N)});
+  a.in("rest angles", &o.rest_angle, {T, J}), a.in("rest lengths", &o.rest_length, {T, E});
+  a.in("centre", &o.centre, {T, 2}), a.in("path", &o.path, {T, N, 2});
+  a.in("speed", &o.speed, {T}), a.in("node speed", &o.node_speed, {T});
+  a.in("held", &o.held, {T}), a.in("heading", &o.heading, {T});
+  a.in("curvature", &o.curvature, {T, J}), a.in("power", &o.power, {T});
+  a.in("force", &o.force, {T, o.bodies, 2}), a.in("clock", &o.clock, {T});
+  a.in("scales", &o.scales, {3});
+  a.out("places", &o.places, {PLACES, 2});
+  a.out("frames", &o.frames, {FRAMES, N, 2});
+  a.out("shown", &o.shown, {SHOWN});
+  a.out("measures", &o.measures, {MEASURE_COUNT});
+  a.end();
+}
+
+inline bool within(const int32_t* values, int64_t count, int32_t least, int64_t limit) {
+  for (int64_t i = 0; i < count; i++)
+    if (values[i] < least || values[i] >= limit) return false;
+  return true;
+}
+
+// Whether graphs refer to nothing that is not there.
+inline bool sound(const Rollout& r) {
+  const bool colours = r.matched || (within(r.edge_colour, r.edges, 0, r.edges) &&
+                                     within(r.joint_colour, r.joints, 0, r.joints));
+  const bool network =
+      r.commands != NETWORK ||
+      (within(r.activation, r.rows, -1, 9) && within(r.activation, r.inputs, -1, 0) &&
+       within(r.source, r.links, -1, r.rows) && within(r.target, r.links, 0, r.rows) &&
+       within(r.joint_node, r.joints, 0, r.nodes));
+  return colours && network && within(r.ends, 2 * r.edges, 0, r.nodes) &&
+         within(r.pairs, 2 * r.joints, 0, r.edges) && within(r.member, r.nodes, 0, r.bodies) &&
+         within(r.piece, r.nodes, 0, r.nodes) && within(r.present, r.nodes, 0, 2);
+}
+
+inline bool sound(const Observed& o) {
+  return within(o.ends, 2 * o.edges, 0, o.nodes) && within(o.pairs, 2 * o.joints, 0, o.edges) &&
+         within(o.present, o.nodes, 0, 2);
+}
+
+}  // namespace microcosmos

@@ -1,0 +1,51 @@
+import { describe, expect, it } from "vitest";
+import { type Plane, pushed, quantised, velocities, vorticity } from "./water";
+
+const SIZE: [number, number] = [16, 12];
+const CELLS = SIZE[0] * SIZE[1];
+const still = (): Plane[] => Array.from({ length: 9 }, () => new Float32Array(CELLS));
+const total = (plane: Plane) => plane.reduce((sum, value) => sum + value, 0);
+
+/** A plane of a function of x and y. */
+const planeOf = (of: (x: number, y: number) => number) =>
+  Float32Array.from({ length: CELLS }, (_, cell) => of(Math.floor(cell / SIZE[1]), cell % SIZE[1]));
+
+describe("a push", () => {
+  it("gives the water its velocity and adds no mass", () => {
+    const water = still();
+    pushed(water, SIZE, [8, 6], [0.03, -0.02]);
+    const [x, y] = velocities(water);
+    expect(x[8 * SIZE[1] + 6]).toBeCloseTo(0.03, 6);
+    expect(y[8 * SIZE[1] + 6]).toBeCloseTo(-0.02, 6);
+    expect(water.map(total).reduce((sum, one) => sum + one)).toBeCloseTo(0, 6);
+    expect(x[0]).toBe(0);
+  });
+
+  it("crosses the edges of the world", () => {
+    const [inside, across] = [still(), still()];
+    pushed(inside, SIZE, [8, 6], [0.03, 0]);
+    pushed(across, SIZE, [-24, 18], [0.03, 0]);
+    expect(total(velocities(across)[0])).toBeCloseTo(total(velocities(inside)[0]), 6);
+    expect(velocities(across)[0][8 * SIZE[1] + 6]).toBeCloseTo(0.03, 6);
+  });
+});
+
+describe("the vorticity", () => {
+  it("is the slope of a shear flow", () => {
+    const wave = (x: number) => 0.05 * Math.sin((2 * Math.PI * x) / SIZE[0]);
+    const found = vorticity([planeOf(() => 0), planeOf(wave)], SIZE);
+    const slope = 0.05 * Math.sin((2 * Math.PI) / SIZE[0]);
+    expect(found[5]).toBeCloseTo(slope, 6);
+    expect(vorticity([planeOf((_, y) => 0.01 * y), planeOf(() => 0)], SIZE)[5 * SIZE[1] + 5]).toBeCloseTo(
+      -0.01,
+    );
+  });
+});
+
+describe("levels", () => {
+  it("span the largest value, and have its scale", () => {
+    const [levels, scale] = quantised([Float32Array.of(0.5, -1), Float32Array.of(0, 0.25)]);
+    expect([...levels]).toEqual([64, -127, 0, 32]);
+    expect(scale).toBe(1);
+  });
+});
