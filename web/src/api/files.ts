@@ -40,15 +40,6 @@ export async function downloadFile(url: string): Promise<void> {
   if (sharedSlug) setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
 
-/** Save a text that the page made as a file. */
-export function saveText(text: string, name: string, type: string): void {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([text], { type }));
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
-}
-
 export const archiveUrl = (id: string, kind: "h5" | "csv") => `${ROOT}/runs/${id}/archive.${kind}`;
 export const resultsUrl = (id: string) => `${ROOT}/runs/${id}/results.csv`;
 export type PhylogenyFile = "csv" | "nwk";

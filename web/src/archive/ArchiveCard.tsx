@@ -9,7 +9,7 @@ import { containerOf, measureOf, objectiveOf } from "./axes";
 import { ArchiveMap } from "./ArchiveMap";
 import { BinElites } from "./BinElites";
 import { MapOptions, ReprojectionFigures, Slices } from "./MapOptions";
-import { TimeSlider } from "./TimeSlider";
+import { TimeSlider } from "../replay/TimeSlider";
 import { count } from "../ui/format";
 import { Segments } from "../ui/Select";
 import { Tour } from "../ui/Tour";

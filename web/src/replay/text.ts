@@ -21,4 +21,14 @@ export const text = {
   retrying: (note: string) => `${note} Trying again …`,
   firstReplay: "The first replay takes longest.",
   density: "density",
+  history: {
+    play: "Play the history",
+    pause: "Pause the history",
+    shown: "Generation shown",
+    newestOf: (shown: number) => `newest, ${shown}`,
+    generationOf: (shown: number, last: number) => `${shown} of ${last}`,
+    loading: "Loading …",
+    moment: (generation: string) => `generation ${generation}`,
+    newest: "Newest",
+  },
 };

@@ -1,11 +1,12 @@
 /** Controls above a tree: colours, what is shown, zoom, files. */
 
-import { type PhylogenyFile, phylogenyUrl, saveText } from "../api/files";
+import { type PhylogenyFile, phylogenyUrl } from "../api/files";
 import { setQuery } from "../store/router";
 import { FileLink } from "../ui/links";
 import { Check, Segments, Select } from "../ui/Select";
 import type { ColourBy } from "./shades";
 import type { Stage } from "./stage";
+import { saveText } from "./svg";
 import { ZOOM_STEP } from "./keys";
 import { text } from "./text";
 

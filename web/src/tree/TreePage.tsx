@@ -9,7 +9,6 @@ import { shortId, titleOf } from "../ui/format";
 import { Empty, Loading, NotFound, Page, reasonOf, useTitle } from "../ui/Page";
 import { TreeView } from "./TreeView";
 import { text } from "./text";
-import "../archive/archive.css";
 import "./tree.css";
 
 interface Props {
@@ -18,7 +17,7 @@ interface Props {
 }
 
 /** Interval of updates: the tree of a run that goes on grows. */
-const REFRESH_MS = 15_000;
+const REFRESH_MS = 30_000;
 
 export function RunTreePage({ id, query }: Props) {
   const { error } = useFetched(() => applyResponse("response", api.readRun(id)), [id]);

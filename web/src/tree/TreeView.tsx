@@ -2,7 +2,7 @@
 
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { NONE, indexOf, isElite, nameAt } from "../decode/phylogeny";
-import { TimeSlider } from "../archive/TimeSlider";
+import { TimeSlider } from "../replay/TimeSlider";
 import { readTankBatch, usePoses } from "../store/poses";
 import { navigate, setQuery } from "../store/router";
 import { useTheme } from "../ui/canvas";

@@ -151,3 +151,12 @@ export class PathWriter {
     this.parts.push(command + numbers.map(fixed).join(" "));
   }
 }
+
+/** Save a text that the page made as a file. */
+export function saveText(text: string, name: string, type: string): void {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([text], { type }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+}

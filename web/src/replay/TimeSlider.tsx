@@ -2,9 +2,10 @@
 
 import { useEffect, useState } from "preact/hooks";
 import { count } from "../ui/format";
-import { useClock } from "../replay/clock";
-import { IconButton, TimeRange } from "../replay/timeControls";
+import { useClock } from "./clock";
+import { IconButton, TimeRange } from "./timeControls";
 import { text } from "./text";
+import "./replay.css";
 
 interface Props {
   /** The newest generation. */
@@ -47,22 +48,23 @@ export function TimeSlider({ last, at, ready, onMove }: Props) {
     <div class="time-slider">
       <IconButton
         icon={playing ? "pause" : "play"}
-        label={playing ? text.pauseHistory : text.playHistory}
-        title={playing ? text.pause : text.playArchive}
+        label={playing ? text.history.pause : text.history.play}
         disabled={last === 0}
         onClick={playing ? () => setPlaying(false) : play}
       />
       <TimeRange
-        label={text.shownGeneration}
-        valueText={at === null ? text.newestOf(shown) : text.generationOf(shown, last)}
+        label={text.history.shown}
+        valueText={at === null ? text.history.newestOf(shown) : text.history.generationOf(shown, last)}
         last={last}
         value={shown}
         disabled={last === 0}
         onScrub={scrub}
       />
-      <output class="moment quiet small">{!ready ? text.loading : text.moment(count(shown))}</output>
+      <output class="moment quiet small">
+        {!ready ? text.history.loading : text.history.moment(count(shown))}
+      </output>
       <button class="small-button" disabled={at === null} onClick={() => scrub(last)}>
-        {text.newest}
+        {text.history.newest}
       </button>
     </div>
   );
