@@ -36,6 +36,7 @@ from .maintenance.metrics import CountRequests, Metrics
 from .maintenance.reconcile import reconciling
 from .notifications import routes as notifications
 from .notifications.notifier import notifying
+from .phylogenies import routes as phylogenies
 from .renderings import routes as renderings
 from .runs import detail_routes as details
 from .runs import routes as runs
@@ -48,11 +49,12 @@ from .specs import routes as experiments
 from .storage import mark
 from .sweeps import routes as sweeps
 from .tables import migrations
+from .tank import routes as tank
 from .workers import routes as workers
 
 ROUTES = (
-    *(experiments, runs, forks, deletion, sweeps, details, archives, creatures, renderings),
-    *(shares, events, workers, queue, tokens, health),
+    *(experiments, runs, forks, deletion, sweeps, details, archives, phylogenies, creatures),
+    *(renderings, tank, shares, events, workers, queue, tokens, health),
 )
 
 KEPT_ARCHIVES, KEPT_NETWORKS = 64 << 20, 16 << 20

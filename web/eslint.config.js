@@ -13,8 +13,8 @@ const LAYERS = [
   ["replay", "publish", "simulate"],
   ["archive", "creature"],
   ["run"],
-  ["sweeps"],
-  ["compare", "new-run", "runs", "settings", "shares", "workers"],
+  ["sweeps", "tank"],
+  ["compare", "new-run", "runs", "settings", "shares", "tree", "workers"],
   ["app"],
 ];
 

@@ -2,7 +2,6 @@
 
 import csv
 import io
-import struct
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
@@ -10,7 +9,7 @@ from fastapi.responses import Response
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from microcosmos.archive import export
+from microcosmos.archive import export, poses
 
 from ..attempts.checkpoints import last_checkpoint
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, ShareAccessDep
@@ -30,7 +29,6 @@ BINARY = sends("application/octet-stream", {404: {}})
 
 POSE_CELLS = 1000
 """About 10 MB."""
-LENGTH = struct.Struct("<I")
 
 
 @router.get("/archive", **archive_answers(ArchiveRead), dependencies=[MAY_READ_SHARED])
@@ -95,9 +93,8 @@ def read_poses(
     if len(numbers) > POSE_CELLS:
         raise invalid_field("cells", f"at most {POSE_CELLS:,} cells", f"{len(numbers):,}")
     as_of = run.generation if generation is None else min(generation, run.generation)
-    found = filter(None, session.scalars(elites.poses(run, as_of, numbers)))
-    content = b"".join(LENGTH.pack(len(stream)) + stream for stream in found)
-    return Response(content, media_type="application/octet-stream")
+    found = session.scalars(elites.poses(run, as_of, numbers))
+    return Response(poses.batch(found), media_type="application/octet-stream")
 
 
 @router.get("/archive/centroids", dependencies=[MAY_READ_SHARED])

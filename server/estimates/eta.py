@@ -1,6 +1,6 @@
 """Estimate the time of a run from earlier runs of its kind on a device of a live worker."""
 
-from collections.abc import Collection, Hashable, Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from math import log
 from statistics import median
@@ -61,31 +61,40 @@ def speeds_of(
     One query serves all specs, which share an experiment. Without live workers any device
     counts.
     """
-    models = {worker.device.partition(" (")[0] for worker in live}  # Without sizes.
     recent = _recent(session, specs[0].experiment)
     measured = {kind: _measured(recent, kind) for kind in {_kind(spec) for spec in specs}}
-    return [_similar(measured[_kind(spec)], spec, models) for spec in specs]
+    return [_similar(measured[_kind(spec)], spec, live) for spec in specs]
 
 
-def _similar(measured: Sequence[Measured], spec: Spec, models: Collection[str]) -> Speed | None:
-    found = [
-        one for one in measured if not models or any(model in one.device for model in models)
-    ]
-    same = [one for one in found if one.device == found[0].device]
+def _similar(measured: Sequence[Measured], spec: Spec, live: Sequence[Worker]) -> Speed | None:
+    found = [(one, model) for one in measured if (model := _model_of(one.device, live))]
+    same = [one for one, _ in found if one.device == found[0][0].device]
     if not same:
         return None
     cell_steps = estimate(spec).cell_steps / spec.generations
     nearest = sorted(same, key=lambda one: abs(log(one.cell_steps / cell_steps)))[
         :MAX_SIMILAR_RUNS
     ]
-    device = nearest[0].device
-    # The model alone, without platform and software.
-    named = [model for model in models if model in device] or [device.split(", ")[1]]
     return Speed(
-        device=named[0],
+        device=found[0][1],
         rates=tuple(one.rate for one in nearest),
         startup_seconds=median(one.startup_seconds for one in nearest),
     )
+
+
+def _model_of(device: str, live: Sequence[Worker]) -> str | None:
+    """Return the model of a live worker's device that is of the kind of a run's `device`.
+
+    The native kernel's kind names no model: its bits are the same on all. A kind of older
+    software still tells the speed, if it names the model. Without live workers any kind does.
+    """
+    if not live:
+        return device.split(", ")[1]  # Without platform and software.
+    for worker in live:
+        model = worker.device.partition(" (")[0]  # Without sizes.
+        if device in worker.device_kinds or model in device:
+            return model
+    return None
 
 
 def _recent(session: Session, experiment: str) -> Sequence[Row[Run, float]]:

@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Sequence
+from typing import Any
 from uuid import UUID
 
 from sqlalchemy import and_, or_, select
@@ -10,7 +11,7 @@ from sqlalchemy.orm import Session
 from ..auth import tokens
 from ..estimates import position
 from ..services.services import Services
-from ..tables import FAILED, RUNNING, Generation, Run
+from ..tables import FAILED, RUNNING, Elite, Generation, Run
 from ..workers.registry import progress
 from .curves import thinned
 from .schemas import ForkedFrom, RunRead
@@ -25,8 +26,16 @@ def read_runs(
     curves = _curves(session, runs)
     reasons = position.reasons(services, session, runs) if queue else {}
     names = tokens.owner_names(session, (run.owner for run in runs))
+    faces = _faces(session, runs)
     return [
-        _read(run, curves[run.id], reasons.get(run.id), names.get(run.owner)) for run in runs
+        _read(
+            run,
+            curves[run.id],
+            waiting_reason=reasons.get(run.id),
+            owner=names.get(run.owner),
+            face=faces.get(run.id),
+        )
+        for run in runs
     ]
 
 
@@ -51,18 +60,30 @@ def _curves(session: Session, runs: Sequence[Run]) -> dict[UUID, list[Generation
     return curves
 
 
-def _read(run: Run, curve: list[Generation], reason: str | None, owner: str | None) -> RunRead:
+def _faces(session: Session, runs: Sequence[Run]) -> dict[UUID, str]:
+    """Return the best creature of each run that has one."""
+    best = (
+        select(Elite.creature)
+        .where(Elite.run_id == Run.id, Elite.fitness.is_not(None))
+        .order_by(Elite.fitness.desc(), Elite.cell.desc())
+        .limit(1)
+        .scalar_subquery()
+    )
+    evolved = Run.id.in_([run.id for run in runs if run.best is not None])
+    return {run: face for run, face in session.execute(select(Run.id, best).where(evolved))}
+
+
+def _read(run: Run, curve: list[Generation], **more: Any) -> RunRead:
     generations, evaluations = _rates(run, curve)
     remaining = max(0, run.generations - run.generation)
     fork = None
     if run.n_initial is not None:
         fork = ForkedFrom(run=run.forked_from, creatures=run.n_initial)
     columns = {column.key: getattr(run, column.key) for column in Run.__table__.columns}
-    columns |= {"error": run.error if run.status == FAILED else None, "owner": owner}
+    columns["error"] = run.error if run.status == FAILED else None
     columns["forked_from"] = fork
     return RunRead(
-        **{name: columns[name] for name in RunRead.model_fields if name in columns},
-        waiting_reason=reason,
+        **{name: columns[name] for name in RunRead.model_fields if name in columns} | more,
         progress=progress(run),
         eta_seconds=remaining / generations if generations and run.status == RUNNING else None,
         evaluations_per_second=evaluations,

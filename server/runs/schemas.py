@@ -147,6 +147,8 @@ class RunRead(RunBrief):
     qd_score: float | None
     coverage: float | None
     best: float | None
+    face: str | None
+    """The best creature that ever was an elite of the run; None before the first."""
     corrected_qd_score: float | None
     """After reevaluation of the elites, the last time; None without."""
     corrected_coverage: float | None

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from sqlalchemy import BigInteger, ForeignKey
+from sqlalchemy import BigInteger, ForeignKey, Index
 from sqlalchemy.orm import Mapped, mapped_column
 
 from .base import Base, Place, RunKey, Sha256
@@ -53,6 +53,7 @@ class Elite(Base):
     """
 
     __tablename__ = "elites"
+    __table_args__ = (Index(None, "run_id", "fitness", "cell"),)
 
     run_id: Mapped[RunKey]
     cell: Mapped[Place]

@@ -18,6 +18,10 @@ TOUR_TAKEN = "localStorage.setItem('microcosmos:tour-taken', '1')"
 """Keeps the tour from opening by itself."""
 
 
+ALL_SETTINGS = "localStorage.setItem('microcosmos:all-settings', '1')"
+"""Shows all settings of a new run."""
+
+
 class ProductPage(NamedTuple):
     name: str
     path: str
@@ -72,6 +76,7 @@ def searched(http: httpx.Client, run: dict[str, Any] | None) -> Iterator[Product
         archive = http.get(f"/runs/{run['id']}/archive").raise_for_status().json()
         best = max(range(len(archive["cell"])), key=lambda i: archive["fitness"][i])
         yield ProductPage("tour", f"/runs/{run['id']}", "Explain")
+        yield ProductPage("tree", f"/runs/{run['id']}/tree")
         yield ProductPage("gallery", f"/runs/{run['id']}?view=gallery")
         yield ProductPage("creature", f"/creatures/{archive['creature'][best]}?run={run['id']}")
 

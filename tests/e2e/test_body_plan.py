@@ -2,6 +2,7 @@
 
 import re
 
+from pages import ALL_SETTINGS
 from plans import FINS, ROOT, plan_identity
 from playwright.sync_api import Page, expect
 
@@ -12,6 +13,7 @@ NO_ROOM = FINS | {"number": 2, "angle": 0.0, "mirrored": False}
 
 
 def test_an_encoding_with_plans_brings_a_body_that_grows(page, idle):
+    page.add_init_script(ALL_SETTINGS)
     page.goto(f"{idle.product.url}/new?preset=quality-diversity/standard")
     encoding = choice(page, "Control", "Encoding")
     builder = choice(page, "Body", "Builder")

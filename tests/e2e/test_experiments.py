@@ -3,7 +3,7 @@
 import re
 
 import pages
-from pages import stage, start_run, the_map
+from pages import ALL_SETTINGS, stage, start_run, the_map
 from playwright.sync_api import Page, expect
 
 SLOW = 300_000
@@ -17,6 +17,7 @@ def test_a_population_is_started_watched_and_explored(shared, page):
 
 
 def submit_a_small_population(page: Page, address: str) -> None:
+    page.add_init_script(ALL_SETTINGS)
     page.goto(f"{address}/new")
     page.get_by_role("radio", name=re.compile("^Neuroevolution")).check()
     presets = page.get_by_role("group", name=re.compile("^Neuroevolution"))
@@ -33,7 +34,8 @@ def submit_a_small_population(page: Page, address: str) -> None:
 def watch_it_end(page: Page) -> None:
     ended = page.get_by_text("Ended after generation 4: it used its budget of 128 evaluations")
     expect(ended).to_be_visible(timeout=SLOW)
-    expect(page.get_by_role("heading", name="Neuroevolution")).to_be_visible()
+    named = page.get_by_role("heading", name="Neuroevolution demo, generations 12, batch 16")
+    expect(named).to_be_visible()
     expect(page.get_by_role("img", name=re.compile("Into empty cells over"))).to_be_visible()
     scores = page.get_by_role("img", name=re.compile("QD score .* re-evaluated [0-9]"))
     expect(scores).to_be_visible()

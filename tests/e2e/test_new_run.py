@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 import reports
+from pages import ALL_SETTINGS, start_run
 from playwright.sync_api import Locator, Page, expect
 
 from microcosmos.archive import creature
@@ -23,6 +24,7 @@ SPEC = {"experiment": "gaits", "swimmers": ["ray", "cilia"], "period": 240}
 
 @pytest.fixture
 def new(page: Page, idle, complaints: list[str]) -> Iterator[Page]:
+    page.add_init_script(ALL_SETTINGS)
     page.goto(f"{idle.product.url}/new")
     expect(page.get_by_label("Estimate", exact=True)).to_be_visible()
     yield page
@@ -96,6 +98,8 @@ def a_wrong_value_is_named(page: Page) -> None:
     nodes = field(page, "Body", "Nodes")
     nodes.fill("2")
     expect(page.get_by_text("Needs at least 3.")).to_be_visible()
+    page.get_by_role("button", name="Set it to 3").click()
+    expect(nodes).to_have_value("3")
     nodes.fill("60")
     expect(page.get_by_text(re.compile("World.width must be at least 69"))).to_be_visible()
     page.get_by_role("button", name="Start run").click()
@@ -196,6 +200,32 @@ def a_run_is_started_by_keyboard_alone(new: Page, address: str) -> None:
     new.keyboard.press("ControlOrMeta+Enter")
     new.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"))
     assert new.evaluate("sessionStorage.length") == 0
+
+
+def test_a_run_is_started_from_the_essentials_and_named_by_what_differs(page, idle):
+    page.goto(f"{idle.product.url}/new?preset=quality-diversity/demo")
+    essentials = page.get_by_role("group", name="The essentials", exact=True)
+    expect(essentials.get_by_role("combobox", name="Body")).to_have_value("chain")
+    assert essentials.locator("input, select").count() <= 9
+    expect(page.get_by_role("group", name="World", exact=True)).to_have_count(0)
+    essentials.get_by_label("Viscosity").fill("0.2")
+    name = page.get_by_label("Name of the run")
+    expect(name).to_have_attribute("placeholder", "Demo, viscosity 0.2")
+    start_run(page)
+    expect(page.get_by_role("heading", level=1)).to_contain_text("Demo, viscosity 0.2")
+
+
+def test_all_settings_are_searched_and_an_error_among_them_is_seen(page, idle):
+    page.goto(f"{idle.product.url}/new?preset=quality-diversity/demo")
+    page.get_by_role("button", name="All settings").click()
+    page.get_by_role("searchbox", name="Find a setting").fill("magic")
+    expect(page.get_by_role("combobox", name="Magic")).to_be_visible()
+    expect(page.locator(".spec-form .entry")).to_have_count(1)
+    page.get_by_role("searchbox", name="Find a setting").fill("")
+    field(page, "World", "Width").fill("3")
+    expect(page.get_by_role("button", name="All settings")).to_be_disabled()
+    page.get_by_role("button", name="Set it to 16").click()
+    expect(field(page, "World", "Width")).to_have_value("16")
 
 
 def creature_file() -> dict[str, Any]:

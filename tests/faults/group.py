@@ -4,7 +4,6 @@ Hosts are worker processes with settings of their own. What must hold is read fr
 alone: the log, the curves and the archives.
 """
 
-import os
 import signal
 import sqlite3
 import subprocess
@@ -13,16 +12,17 @@ import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
-from datetime import datetime
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import psycopg
+import record
 import redis
 import rich
 from databases import POSTGRES, Missing, service_settings
 from drive import ROOT, SHORT, Installation, kill_job, running, wait_until
 from small_spec import SMALL_SCENE
+from webhook import SECRET, Receiver
 
 FAKETIME = sorted(Path("/usr/lib").glob("*/faketime/libfaketime.so.1"))
 
@@ -148,11 +148,7 @@ def disturb(product: Installation, hosts: Hosts, size: Drill) -> None:
 
 
 def say(what: str) -> None:
-    rich.print(f"  {what}, {load()}")
-
-
-def load() -> str:
-    return f"load {os.getloadavg()[0]:.1f}"
+    rich.print(f"  {what}, {record.load()}")
 
 
 def queue_others(product: Installation, size: Drill) -> None:
@@ -165,8 +161,11 @@ def queue_others(product: Installation, size: Drill) -> None:
         answer.raise_for_status()
 
 
-def drill(product: Installation, size: Drill) -> list[str]:
-    """Carry out a drill, and return what is wrong in its record."""
+def drill(product: Installation, size: Drill, told: Receiver) -> list[str]:
+    """Carry out a drill, and return what is wrong in its record.
+
+    `told` receives what the installation tells about its runs.
+    """
     hosts = Hosts(product)
     try:
         hosts.start()
@@ -196,7 +195,11 @@ def drill(product: Installation, size: Drill) -> list[str]:
         wait_finished(product, [run for run, _ in runs], size.patience)
         if not FAKETIME:
             rich.print("  NOT SHOWN: a host with a wrong clock: no libfaketime on this machine")
-        return [*faults(product, runs, expected), *left(product, size)]
+        return [
+            *record.faults(product, runs, expected),
+            *record.left(product, size.queued - size.finishing),
+            *record.told(product, [run for run, _ in runs], told),
+        ]
     finally:
         hosts.end()
 
@@ -220,55 +223,9 @@ def is_under_way(product: Installation) -> bool:
     return any(one["generation"] >= 2 for one in found)
 
 
-def left(product: Installation, size: Drill) -> list[str]:
-    """Return what is wrong with the runs that nobody may take."""
-    queue = product.get("queue", limit=200)
-    reasons = {one["waiting_reason"].partition(";")[0] for one in queue["items"]}
-    waiting = size.queued - size.finishing
-    if queue["total"] == waiting and reasons == {"Waits for a worker with the label nowhere"}:
-        return []
-    return [f"{queue['total']} of {waiting} runs wait, for {reasons}"]
-
-
-def faults(
-    product: Installation, runs: list[tuple[str, int]], expected: dict[int, Any]
-) -> list[str]:
-    """Return what is wrong with the record of runs."""
-    found, again = [], []
-    for run, seed in runs:
-        record = product.get(f"runs/{run}")
-        curves = product.get(f"runs/{run}/generations")["generation"]
-        log = product.get(f"runs/{run}/log")["entries"]
-        attempts = [one["attempt"] for one in log]
-        if curves != list(range(1, record["generations"] + 1)):
-            found.append(f"{run}: generations {curves}")
-        if attempts != sorted(attempts):
-            found.append(f"{run}: attempts {attempts}")
-        if product.results(run) != expected[seed]:
-            found.append(f"{run}: it differs from the undisturbed one")
-        if record["error"] or any("Failed" in one["text"] for one in log):
-            found.append(f"{run}: it has failed: {record['error']}")
-        again += resumptions(log)
-    attempts = [product.get(f"runs/{run}")["attempt"] for run, _ in runs]
-    median = sorted(again)[len(again) // 2] if again else 0.0
-    rich.print(
-        f"  {len(runs)} runs, {sum(attempts)} attempts; {len(again)} resumed after a median of "
-        f"{median:.1f} s, at most {max(again, default=0.0):.1f} s; {load()}"
-    )
-    return found
-
-
-def resumptions(log: list[dict[str, Any]]) -> Iterator[float]:
-    """Yield the seconds from the end of an attempt to the beginning of the next."""
-    ended: float | None = None
-    for entry in log:
-        at = datetime.fromisoformat(entry["at"]).timestamp()
-        if entry["text"].startswith("Attempt ") and " begins " in entry["text"]:
-            if ended is not None:
-                yield at - ended
-            ended = None
-        elif " failed" in entry["text"] or entry["text"].startswith("Worker stopped"):
-            ended = at
+def telling(url: str) -> dict[str, str]:
+    """The settings with which an installation tells a receiver about its runs."""
+    return {"MICROCOSMOS_WEBHOOK_URL": url, "MICROCOSMOS_WEBHOOK_SECRET": SECRET}
 
 
 def group(_: Installation) -> bool:
@@ -284,8 +241,12 @@ def group(_: Installation) -> bool:
         for name, services in (("SQLite", {}), ("PostgreSQL and a Redis server", elsewhere)):
             rich.print(f"group drill on {name}: {FULL}")
             settings = SHORT | {"MICROCOSMOS_LEASE": "20", "WORKERS": "0"} | services
-            with running(folder / name, settings) as product:
-                wrong = drill(product, FULL)
+            receiver = Receiver()
+            with (
+                receiver.serve() as url,
+                running(folder / name, settings | telling(url)) as product,
+            ):
+                wrong = drill(product, FULL, receiver)
             print(*wrong, sep="\n")
             good.append(not wrong)
     return all(good)

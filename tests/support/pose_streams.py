@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from microcosmos.archive.poses import MOMENTS, PoseStream, quantised
+from microcosmos.archive.poses import MOMENTS, PoseStream, decode, quantised
 
 
 def stream(positions, length, edges=None, strokes=2):
@@ -23,3 +23,13 @@ def stream(positions, length, edges=None, strokes=2):
         length=length,
         creature="",
     )
+
+
+def unpacked(content: bytes) -> list[PoseStream]:
+    """The streams of a batch, each of which follows its length."""
+    found = []
+    while content:
+        stop = 4 + int.from_bytes(content[:4], "little")
+        found.append(decode(content[4:stop]))
+        content = content[stop:]
+    return found

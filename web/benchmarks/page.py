@@ -16,9 +16,11 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "faults"))
 
+from births import body_of, drag, serve_bodies, write_births
 from browser import launched
 from drive import ROOT, Installation, running
 from large import creatures_of, write_run
+from measuring import BLOCKS, FRAMES, NOTES, work_of_frames
 from playwright.sync_api import Browser, Page, ViewportSize
 from playwright.sync_api import TimeoutError as Late
 from rich.console import Console
@@ -31,6 +33,9 @@ CORES = 2
 SETTINGS = {"MICROCOSMOS_DEMONSTRATION": "false"}
 WINDOW: ViewportSize = {"width": 1280, "height": 900}
 WALL: ViewportSize = {"width": 1600, "height": 1600}
+PHONE: ViewportSize = {"width": 390, "height": 844}
+SECONDS = 5
+"""In which frames of the tank are counted."""
 TIMES = 5
 REDRAWS = 60
 HOVERS = 30
@@ -38,51 +43,7 @@ TILE = 56
 """Side of a tile in pixels; a hundred creatures are visible in the window of the gallery."""
 PATIENCE_MS = 20_000
 CREATURES = 10 if os.environ.get("SMALL") else 100
-
-NOTES = """
-window.noted = [];
-localStorage.setItem("microcosmos:tour-taken", "1");
-new PerformanceObserver((list) => {
-  for (const { name, entryType, startTime, duration } of list.getEntries())
-    window.noted.push({ name, entryType, startTime, duration });
-}).observe({ entryTypes: ["mark", "measure"] });
-addEventListener("pointermove", ({ timeStamp }) => (window.moved = timeStamp), true);
-"""
-FRAMES = """
-([seconds, moving]) => new Promise((resolve) => {
-  const map = moving && document.querySelector("[role=application]");
-  const { left, top, width, height } = map ? map.getBoundingClientRect() : {};
-  const times = [];
-  requestAnimationFrame(function step(now) {
-    const turn = times.length / 40;
-    const clientX = left + width * (0.5 + 0.4 * Math.cos(turn));
-    const clientY = top + height * (0.5 + 0.4 * Math.sin(1.3 * turn));
-    const event = { clientX, clientY, bubbles: true, pointerType: "mouse" };
-    if (map) map.dispatchEvent(new PointerEvent("pointermove", event));
-    times.push(now);
-    if (now - times[0] < 1000 * seconds) requestAnimationFrame(step);
-    else resolve(1000 * (times.length - 1) / (now - times[0]));
-  });
-})
-"""
-"""Frames per second over some seconds, with the pointer at another cell in each if it moves."""
-BLOCKS = """
-(side) => [...document.querySelectorAll("[data-gallery] canvas")].flatMap((canvas) => {
-  const { width, height } = canvas;
-  const copy = new OffscreenCanvas(width, height).getContext("2d");
-  copy.drawImage(canvas, 0, 0);
-  const words = [];
-  for (let k = 0; k < side * side; k++) {
-    const [x, y] = [(k % side) * width / side, Math.floor(k / side) * height / side];
-    const { data } = copy.getImageData(x, y, width / side, height / side);
-    let word = 0;
-    for (let i = 0; i < data.length; i++) word = (31 * word + data[i]) | 0;
-    words.push(word);
-  }
-  return words;
-})
-"""
-"""A hash of each block of the gallery."""
+BIRTHS = 1000 if os.environ.get("SMALL") else 100_000
 
 
 def main() -> None:
@@ -96,7 +57,7 @@ def main() -> None:
             Console(width=110).print(table(browser, product, runs))
 
 
-def prepare(product: Installation) -> tuple[str, str, str]:
+def prepare(product: Installation) -> tuple[str, str, str, str]:
     """Carry out a search, and fill archives with what it found."""
     found = searched(product)
     services = connect(Settings(data=product.folder))
@@ -106,6 +67,7 @@ def prepare(product: Installation) -> tuple[str, str, str]:
         write_run(services, found, 100, 10_000, creatures),
         write_run(services, found, 256, 65_536, creatures),
         write_run(services, found, side, side**2, creatures),
+        write_births(services, found, BIRTHS),
     )
     services.close()
     return runs
@@ -122,9 +84,10 @@ def searched(product: Installation) -> str:
     return run
 
 
-def table(browser: Browser, product: Installation, runs: tuple[str, str, str]) -> Table:
-    first, largest, hundred = (f"{product.url}/runs/{run}" for run in runs)
+def table(browser: Browser, product: Installation, runs: tuple[str, str, str, str]) -> Table:
+    first, largest, hundred, births = (f"{product.url}/runs/{run}" for run in runs)
     wall = f"{hundred}?view=gallery&tile={TILE}"
+    body = body_of(product, runs[2])
     measures: list[tuple[str, str, Callable[[], str]]] = [
         ("first paint of a run with 10,000 cells", "≤ 1 s", lambda: paint(browser, first)),
         ("redraw of 65,536 cells", "≤ 16 ms", lambda: redraw(browser, largest)),
@@ -132,6 +95,19 @@ def table(browser: Browser, product: Installation, runs: tuple[str, str, str]) -
         ("playing their history", "", lambda: play(browser, largest)),
         ("pointer on a cell to its first frame", "≤ 100 ms", lambda: hover(browser, hundred)),
         (f"gallery of {CREATURES}", "≥ 30 frames/s", lambda: gallery(browser, wall)),
+        ("first moving creature of the tank", "≤ 1.5 s", lambda: tank(browser, product.url)),
+        ("tank, of each frame", "≤ 12 ms", lambda: frames(browser, product.url, WINDOW, 1)),
+        (
+            "the same on a phone, 4 times slower",
+            "≤ 12 ms",
+            lambda: frames(browser, product.url, PHONE, 4),
+        ),
+        (f"tree of {BIRTHS:,} births, drawn", "", lambda: grow(browser, births)),
+        (
+            "frames while it is dragged, at three zooms",
+            "≤ 12 ms",
+            lambda: pan(browser, births, body),
+        ),
         ("script of a page, gzipped", "≤ 100 kB", lambda: script(browser, product, runs[2])),
     ]
     rows = Table("", "bar", "found", title=f"The page in Chromium on {CORES} cores")
@@ -247,6 +223,43 @@ def gallery(browser: Browser, url: str) -> str:
     return f"{rate:.0f} frames/s, {moving} tiles moving"
 
 
+def tank(browser: Browser, url: str) -> str:
+    """Time from the navigation to the first drawn creatures of the tank."""
+    times = []
+    for _ in range(TIMES):
+        with opened(browser, url) as page:
+            times.append(until_noted(page, "tank") / 1000)
+    return f"{statistics.median(times):.2f} s, slowest {max(times):.2f} s, of {TIMES}"
+
+
+def frames(browser: Browser, url: str, window: ViewportSize, slower: int) -> str:
+    """Time of the page's main thread for each frame of the tank."""
+    with opened(browser, url, window) as page:
+        until_noted(page, "tank")
+        page.wait_for_timeout(3000)  # Their trails grow.
+        count = page.get_by_role("application").first.get_attribute("aria-label") or ""
+        spent, rate = work_of_frames(page, SECONDS, slower)
+    return f"{spent:.1f} ms at {rate:.0f} frames/s; {' '.join(count.split()[2:5])}"
+
+
+def grow(browser: Browser, births: str) -> str:
+    """Time from the navigation to the drawn tree, once the server has it."""
+    times = []
+    for _ in range(TIMES):
+        with opened(browser, f"{births}/tree") as page:
+            times.append(until_noted(page, "tree") / 1000)
+    return f"{statistics.median(times[1:]):.2f} s, the first time {times[0]:.2f} s"
+
+
+def pan(browser: Browser, births: str, stream: bytes) -> str:
+    """Work in the frames of a drag, with bodies."""
+    with opened(browser, births) as page:
+        serve_bodies(page, stream)
+        page.goto(f"{births}/tree")
+        until_noted(page, "tree")
+        return drag(page)
+
+
 def script(browser: Browser, product: Installation, run: str) -> str:
     """Size of the scripts that each page loads, gzipped."""
     files = (ROOT / "web" / "dist").rglob("*.js")
@@ -254,6 +267,7 @@ def script(browser: Browser, product: Installation, run: str) -> str:
     archive = product.http.get(f"/api/v1/runs/{run}/archive").raise_for_status().json()
     paths = {
         "a run": f"/runs/{run}",
+        "a tree": f"/runs/{run}/tree",
         "a creature": f"/creatures/{archive['creature'][0]}?run={run}",
         "a new run": "/new",
         "a comparison": f"/compare?runs={run}",

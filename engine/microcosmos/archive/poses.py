@@ -6,7 +6,7 @@ The layout is described in `docs/formats.md`.
 import csv as csv_module
 import json
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO, StringIO
 from typing import Any
@@ -134,6 +134,11 @@ def decode(data: bytes) -> PoseStream:
         scale=header["scale"],
         length=header["length"],
     )
+
+
+def batch(streams: Iterable[bytes | None]) -> bytes:
+    """Return pose streams one after another, each after its length, without absent ones."""
+    return b"".join(_LENGTH.pack(len(one)) + one for one in streams if one)
 
 
 def quantised(positions: np.ndarray) -> tuple[np.ndarray, tuple[float, float], float]:

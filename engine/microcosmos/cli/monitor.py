@@ -97,6 +97,16 @@ def pull(
 
 
 @server_command(RUNS)
+def phylogeny(
+    client: Client,
+    id: Id,
+    newick: Annotated[bool, Option("--newick", help="Print Newick instead.")] = False,
+) -> None:
+    """Print the tree of a run as a table in the ALife phylogeny standard."""
+    print(client.run(id).phylogeny("nwk" if newick else "csv"), end="")
+
+
+@server_command(RUNS)
 def sweep(
     client: Client,
     id: Id,

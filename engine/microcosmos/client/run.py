@@ -155,6 +155,11 @@ class Run(Record):
         """Return every insertion into the archive up to the last checkpoint, with parents."""
         return lineage(self._connection.ask("GET", f"{self._path}/archive.h5").content)
 
+    def phylogeny(self, form: str = "csv") -> str:
+        """Return all that ever entered, below ancestors in other runs: the ALife phylogeny
+        standard's table (`csv`), or Newick (`nwk`)."""
+        return self._connection.ask("GET", f"{self._path}/phylogeny.{form}").text
+
     def log(self, after: int | None = None, limit: int = 500) -> list[dict[str, Any]]:
         """Return the newest log entries, or those after an entry."""
         found = self._connection.read(f"{self._path}/log", after=after, limit=limit)

@@ -6,10 +6,10 @@ from uuid import UUID
 import numpy as np
 import pytest
 from answers import detail, errors, fields
+from pose_streams import unpacked
 from reports import archive_file, audit
 
 from microcosmos.archive import file
-from microcosmos.archive.poses import PoseStream, decode
 from microcosmos.spec import parse
 from server.archives import reading, routes
 from server.attempts.claim import claim
@@ -82,7 +82,7 @@ def test_the_pose_streams_of_cells_come_at_once(api, run_id, services, record):
         archive = api.get(path, params=then).json()
         names = dict(zip(archive["cell"], archive["creature"], strict=True))
         answer = api.get(f"{path}/poses", params={"cells": "5,3,200", **then})
-        assert [one.creature for one in streams(answer.content)] == [names[x] for x in cells]
+        assert [one.creature for one in unpacked(answer.content)] == [names[x] for x in cells]
     assert services.jobs.renderings.count == 0
 
 
@@ -93,15 +93,6 @@ def test_streams_of_too_many_or_malformed_cells_are_refused(api, run_id):
     assert (error["field"], error["needed"]) == ("cells", "at most 1,000 cells")
     for cells in ("", "a", "1,,2", "-1"):
         assert api.get(path, params={"cells": cells}).status_code == 422, cells
-
-
-def streams(content: bytes) -> list[PoseStream]:
-    found = []
-    while content:
-        stop = 4 + int.from_bytes(content[:4], "little")
-        found.append(decode(content[4:stop]))
-        content = content[stop:]
-    return found
 
 
 def test_a_run_without_checkpoint_has_no_file_and_a_grid_no_centroids(api, run_id):

@@ -121,6 +121,15 @@ def test_a_file_is_pulled_under_the_runs_name(command, run_id, tmp_path, attempt
     assert "existing folder" in command("pull", str(run_id), "--out", "no/x", code=1).stderr
 
 
+def test_the_tree_of_a_run_is_printed(command, run_id, record):
+    record(1, {5: 1.0, 3: 2.0})
+    head, *rows = command("phylogeny", str(run_id)[:8]).stdout.splitlines()
+    assert head.startswith("id,ancestor_list,origin_time,destruction_time,taxon_label")
+    names = sorted(row.split(",")[4] for row in rows)
+    trees = command("phylogeny", str(run_id), "--newick").stdout.splitlines()
+    assert sorted(trees) == [f"{name}:1;" for name in names]
+
+
 def test_creatures_are_imported_with_their_hashes(command, client, identity, tmp_path):
     file = creature.document(identity(3), None, None)
     (tmp_path / "one.json").write_text(json.dumps(file))

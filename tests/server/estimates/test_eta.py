@@ -78,6 +78,18 @@ def test_only_runs_of_this_experiment_and_device_count(api, services, spec, swee
     assert ask(api, spec)["speed"]["device"] == "AMD EPYC"
 
 
+def test_runs_of_the_native_kernel_count_for_workers_that_have_it(
+    api, services, spec, measured
+):
+    kernel = "cpu, microcosmos 0.1.0, jax 0.10.2, microcosmos-kernels 0.1.0"
+    measured(spec, 0.5, device=kernel)
+    cpu = ("AMD EPYC (2 threads)", 1 << 40, "busy")
+    registry.report(services.sessions, "without", *cpu)
+    assert ask(api, spec)["seconds"] is None
+    registry.report(services.sessions, "with", *cpu, device_kinds=[kernel])
+    assert ask(api, spec)["speed"]["device"] == "AMD EPYC"
+
+
 def test_estimates_do_not_mix_runs_with_and_without_fluid(api, measured):
     def fold(fluid):
         return {"experiment": "folding", "world": {"width": 96, "height": 96, "fluid": fluid}}

@@ -5,14 +5,12 @@ import json
 import logging
 import time
 from base64 import b64encode
-from contextlib import contextmanager
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from threading import Thread
 
 import httpx
 import jsonschema
 import pytest
 from pydantic import SecretStr, ValidationError
+from webhook import KEY, SECRET, Receiver
 
 from server.attempts.attempt import Attempt
 from server.core.database import clock
@@ -23,41 +21,6 @@ from server.runs.lifecycle import change
 from server.settings import Settings, explain
 from server.tables import Notification, Run
 from server.workers import totals
-
-KEY = b"0123456789abcdef0123456789abcdef"
-SECRET = f"whsec_{b64encode(KEY).decode()}"
-
-
-class Receiver:
-    """A real HTTP server that keeps what it is sent and gives the `answers`, then 204."""
-
-    def __init__(self, answers=()):
-        self.answers, self.got = list(answers), []
-
-    @contextmanager
-    def serve(self):
-        receiver = self
-
-        class Handler(BaseHTTPRequestHandler):
-            def do_POST(self):
-                body = self.rfile.read(int(self.headers["Content-Length"]))
-                receiver.got.append((self.path, dict(self.headers), body))
-                status, *place = receiver.answers.pop(0) if receiver.answers else (204,)
-                self.send_response(status)
-                for one in place:
-                    self.send_header("Location", one)
-                self.end_headers()
-
-            def log_message(self, *_):
-                pass
-
-        server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
-        Thread(target=server.serve_forever, daemon=True).start()
-        try:
-            yield f"http://127.0.0.1:{server.server_port}"
-        finally:
-            server.shutdown()
-            server.server_close()
 
 
 @pytest.fixture
@@ -76,10 +39,6 @@ def told(receiver, services, monkeypatch):
 
 def make_due(update_rows):
     update_rows(Notification, due_at=clock())
-
-
-def events(receiver):
-    return [json.loads(body) for _, _, body in receiver.got]
 
 
 def test_a_receiver_that_fails_twice_is_told_once(
@@ -167,7 +126,7 @@ def test_who_must_act_is_told_and_who_acted_is_not(
     act(attempt)
     while send_next(told):
         pass
-    assert [one["type"] for one in events(receiver)] == kinds
+    assert [one["type"] for _, one in receiver.events()] == kinds
 
 
 def test_cancelled_and_extended_runs_are_told_each_time_they_end(
@@ -179,7 +138,7 @@ def test_cancelled_and_extended_runs_are_told_each_time_they_end(
     api.post(f"runs/{run_id}/cancel")
     while send_next(told):
         pass
-    assert [one["type"] for one in events(receiver)] == ["run.finished", "run.cancelled"]
+    assert [one["type"] for _, one in receiver.events()] == ["run.finished", "run.cancelled"]
     assert len({headers["webhook-id"] for _, headers, _ in receiver.got}) == 2
 
 
@@ -224,7 +183,7 @@ def test_a_server_sends_by_itself_and_without_a_webhook_discards(
         settings["reconcile_interval"] = 0.05
         with serve(**settings, public_url="https://box.example/"):
             eventually(lambda: receiver.got and count(Notification) == 0)
-        (event,) = events(receiver)
+        ((_, event),) = receiver.events()
         assert event["data"]["url"] == f"https://box.example/runs/{event['data']['run']}"
         with serve(reconcile_interval=0.05) as address:
             run = attempt.services.sessions.read().query(Run).one()
@@ -270,4 +229,4 @@ def test_the_command_tries_the_webhook(receiver, monkeypatch, capsys):
             trial.main()
         trial.main()
     assert "accepted" in capsys.readouterr().out
-    assert [one["type"] for one in events(receiver)] == ["run.finished"] * 2
+    assert [one["type"] for _, one in receiver.events()] == ["run.finished"] * 2

@@ -41,8 +41,11 @@ export const readRuns = (query: wire.RunQuery) =>
 export const readRun = (id: string) => typed<wire.Run>(client.GET("/runs/{run_id}", run(id)));
 export const estimateRun = (spec: wire.Spec) =>
   success(client.POST("/runs/estimate", { body: spec as never }));
-export const createRun = (spec: wire.Spec, key: string) =>
-  typed<wire.Run>(client.POST("/runs", { params: keyed(key), body: spec as never }));
+/** Queue a run, with a name if there is one. */
+export function createRun(spec: wire.Spec, key: string, name: string | null) {
+  const params = { ...keyed(key), query: name ? { name } : {} };
+  return typed<wire.Run>(client.POST("/runs", { params, body: spec as never }));
+}
 export function forkRun({ run: id, ...body }: wire.ForkRequest, key: string) {
   const params = { ...run(id).params, ...keyed(key) };
   return typed<wire.Run>(client.POST("/runs/{run_id}/fork", { params, body: body as never }));
@@ -81,6 +84,16 @@ export const readArchivePoses = (id: string, cells: number[], when: { generation
       parseAs: "arrayBuffer",
     }),
   );
+/** The creatures that swim on the first page. */
+export const readTank = (limit: number) => success(client.GET("/tank", { params: { query: { limit } } }));
+/** The stored pose streams of some creatures. */
+export const readTankPoses = (creatures: string[]) =>
+  typed<ArrayBuffer>(
+    client.GET("/tank/poses", {
+      params: { query: { creatures: creatures.join() } },
+      parseAs: "arrayBuffer",
+    }),
+  );
 /** Every elite that ever entered the archive, with columns of named measures. */
 export function readHistory(id: string, measures: string[]) {
   const asked = { ...run(id, joined(measures)), ...AS_COLUMNS };
@@ -91,6 +104,12 @@ export function readReprojection(id: string, axes: string[], measures: string[])
   const asked = { ...run(id, { axes: axes.join(","), ...joined(measures) }), ...AS_COLUMNS };
   return decoded<wire.Reprojection>(client.GET("/runs/{run_id}/archive/reprojection", asked));
 }
+/** All that ever entered the archive of a run with their parents, as columns: see decode/phylogeny.ts. */
+export const readRunPhylogeny = (id: string) =>
+  typed<ArrayBuffer>(client.GET("/runs/{run_id}/phylogeny", { ...run(id), ...AS_COLUMNS }));
+/** A creature with all its ancestors and descendants. */
+export const readCreaturePhylogeny = (sha: string) =>
+  typed<ArrayBuffer>(client.GET("/creatures/{sha}/phylogeny", { ...creature(sha), ...AS_COLUMNS }));
 /** Centroids of the cells of a CVT archive; null before its first checkpoint. */
 export const readCentroids = async (id: string): Promise<number[][] | null> =>
   (await success(client.GET("/runs/{run_id}/archive/centroids", run(id)))).centroids;

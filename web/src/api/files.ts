@@ -40,8 +40,20 @@ export async function downloadFile(url: string): Promise<void> {
   if (sharedSlug) setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
 
+/** Save a text that the page made as a file. */
+export function saveText(text: string, name: string, type: string): void {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([text], { type }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+}
+
 export const archiveUrl = (id: string, kind: "h5" | "csv") => `${ROOT}/runs/${id}/archive.${kind}`;
 export const resultsUrl = (id: string) => `${ROOT}/runs/${id}/results.csv`;
+export type PhylogenyFile = "csv" | "nwk";
+/** `of` is the path of a run or a creature. */
+export const phylogenyUrl = (of: string, kind: PhylogenyFile) => `${ROOT}${of}/phylogeny.${kind}`;
 export type PictureFormat = "strip.png" | "film.gif" | "film.mp4";
 export const pictureUrl = (sha: string, kind: PictureFormat) => `${ROOT}/creatures/${sha}/${kind}`;
 export const posesUrl = (sha: string, kind: "csv" | "npz") => `${ROOT}/creatures/${sha}/poses.${kind}`;

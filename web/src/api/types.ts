@@ -13,6 +13,7 @@ export type Schema = { [keyword: string]: Json };
 export type Run = With<Wire["RunRead"], { spec: Spec; summary: Values | null }>;
 /** The state of a run; the spec may be missing if it was sent before. */
 export type RunEvent = Omit<Run, "spec"> & { spec?: Spec };
+export type Tank = Wire["Tank"];
 export type RunPage = With<Wire["RunPage"], { items: Run[] }>;
 export type RunChange = Partial<
   Pick<Run, "name" | "tags" | "note" | "priority" | "labels" | "may_yield" | "device_patience">

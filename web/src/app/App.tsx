@@ -26,6 +26,8 @@ const PAGES: Record<string, FunctionComponent<{ id: string; query: URLSearchPara
   run: lazy(async () => (await import("../run/RunPage")).RunPage),
   sweep: lazy(async () => (await import("../sweeps/SweepPage")).SweepPage),
   creature: lazy(async () => (await import("../creature/CreaturePage")).CreaturePage),
+  "run-tree": lazy(async () => (await import("../tree/TreePage")).RunTreePage),
+  "creature-tree": lazy(async () => (await import("../tree/TreePage")).CreatureTreePage),
 };
 const SignInPage = lazy(async () => (await import("../settings/SettingsPage")).SignInPage);
 

@@ -1,11 +1,12 @@
 /** The archive as a gallery of moving creatures, placed by their descriptors. */
 
 import type { ComponentChildren, RefObject } from "preact";
-import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useMemo, useRef, useState } from "preact/hooks";
 import { useSteps } from "../replay/clock";
-import { usePoses } from "../store/poses";
+import * as api from "../api/client";
+import { type ReadBatch, type Visible, usePoses } from "../store/poses";
 import { setQuery } from "../store/router";
-import { type Size, useSize, px, useTheme } from "../ui/canvas";
+import { type Size, useOnScreen, useSize, px, useTheme } from "../ui/canvas";
 import { AxisLabels, ColourLegend } from "./labels";
 import type { MapAxis } from "./axes";
 import { type ArchiveViewProps, tileUnder, useBinFocus } from "./binFocus";
@@ -131,7 +132,7 @@ function Tiles({ run, at, projection, selected: cells, ...props }: TilesProps) {
     [tiles, side, scroll, size.width, size.height],
   );
   const visible = bins.map((bin) => tiles.get(bin)!).map(({ cell, elite }) => ({ cell, ...elite }));
-  const poses = usePoses(run, at, visible);
+  const poses = usePoses(run === null ? null : batchOf(run, at), visible);
   const selected = useMemo(() => binsOf(cells, projection), [cells, projection]);
   const picture = { shape, side, tiles, bins, colouring, poses, theme, marked, selected };
   useSteps(useOnScreen(canvas), (steps) => {
@@ -139,6 +140,17 @@ function Tiles({ run, at, projection, selected: cells, ...props }: TilesProps) {
     if (element && size.width > 0) drawGallery(element, size, picture, scroll, steps);
   });
   return <canvas ref={canvas} style={px({ ...size })} />;
+}
+
+/** Reads the pose streams of a run's cells; `at` is null for the newest. */
+function batchOf(run: string, at: number | null): ReadBatch<Visible & { cell: number }> {
+  const when = at === null ? {} : { generation: at };
+  return (elites) =>
+    api.readArchivePoses(
+      run,
+      elites.map(({ cell }) => cell),
+      when,
+    );
 }
 
 interface RailProps {
@@ -170,14 +182,4 @@ function scrollToTile(port: HTMLElement, [left, top]: [number, number], side: nu
     left: Math.min(left, Math.max(scrollLeft, left + side - clientWidth)),
     top: Math.min(top, Math.max(scrollTop, top + side - clientHeight)),
   });
-}
-
-function useOnScreen(element: RefObject<HTMLElement | null>): boolean {
-  const [visible, setVisible] = useState(false);
-  useEffect(() => {
-    const observer = new IntersectionObserver(([entry]) => setVisible(entry!.isIntersecting));
-    observer.observe(element.current!);
-    return () => observer.disconnect();
-  }, [element]);
-  return visible;
 }

@@ -57,6 +57,9 @@ function ForkByName({ run, names }: { run: string; names: string[] }) {
   return <ForkLink run={run} creatures={names} title={text.fork(names.length)} />;
 }
 
+/** So many creatures swim side by side. */
+const MAX_SIDE_BY_SIDE = 6;
+
 interface Props extends Selection {
   run: Run;
   of: Of;
@@ -85,6 +88,11 @@ export function SelectionBar({ run, of, elites, at, selected, onSelect }: Props)
         />
       )}
       {creatures > 0 && of === "history" && <ForkByName run={run.id} names={[...names]} />}
+      {selected.size > 1 && creatures > 1 && creatures <= MAX_SIDE_BY_SIDE && (
+        <a class="button" href={`/compare?creatures=${[...names].join()}`}>
+          {text.sideBySide}
+        </a>
+      )}
       {selected.size > 0 && <button onClick={() => setSelection(new Set())}>{text.clearSelection}</button>}
     </div>
   );

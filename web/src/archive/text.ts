@@ -58,6 +58,7 @@ export const text = {
   selected: (creatures: string) => `${creatures} selected`,
   fork: (creatures: number) =>
     `Start a new run from ${creatures === 1 ? "this creature" : "these creatures"}`,
+  sideBySide: "Side by side",
   clearSelection: "Clear selection",
   sliceFrom: (axis: string) => `${axis}, from`,
   sliceTo: (axis: string) => `${axis}, to`,

@@ -18,9 +18,15 @@ import { Card, Empty, Page } from "../ui/Page";
 import { Table } from "../ui/Table";
 import { Term } from "../ui/Term";
 import { shortId, titleOf, DASH, count, duration, number } from "../ui/format";
+import { CreaturesPage } from "./CreaturesPage";
 import { text } from "./text";
 
+/** Runs, or creatures if the address names them. */
 export function ComparePage({ query }: { query: URLSearchParams }) {
+  return query.has("creatures") ? <CreaturesPage query={query} /> : <RunsCompared query={query} />;
+}
+
+function RunsCompared({ query }: { query: URLSearchParams }) {
   const requested = [...new Set((query.get("runs") ?? "").split(",").filter(Boolean))];
   const ids = requested.slice(0, MAX_LINES);
   const { value: curves, error } = useCurvesOf(ids);

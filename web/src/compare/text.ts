@@ -1,4 +1,4 @@
-/** Texts of the comparison of runs. */
+/** Texts of the comparison of runs, and of creatures side by side. */
 
 export const text = {
   runs: "Runs",
@@ -22,5 +22,40 @@ export const text = {
   differences: "Differences of the specs",
   noDifferences: "All specs are the same.",
   field: "Field",
+  sideBySide: "Side by side",
+  creatures: "Creatures",
+  tooManyCreatures: (limit: number, requested: number) =>
+    `At most ${limit} creatures swim side by side. The first ${limit} of ${requested} are shown.`,
+  recording: (count: number) =>
+    count === 1
+      ? "The motion of one of them is being recorded …"
+      : `The motion of ${count} is being recorded …`,
+  addCreature: "Name or address of a creature",
+  addCreatureHint: "Paste a creature's name or address",
+  add: "Add",
+  addNamed: (name: string, fitness: string) => `Add ${name}, fitness ${fitness}`,
+  suggested: "Add one of the latest runs",
+  lane: (name: string, lengths: string) => `${name}   ${lengths} body lengths`,
+  race: (count: number) =>
+    count === 1
+      ? "A creature that swims to the right"
+      : `${count} creatures that swim to the right, in lanes`,
+  raceAbout:
+    "All start at one moment on one line, at one scale. Each repeats its last two recorded strokes; what comes after them is not simulated. The lines are a body length apart, that of the longest.",
+  play: "Play",
+  pause: "Pause",
+  restart: "From the start",
+  pace: "Pace",
+  picture: "Picture (PNG)",
+  film: "Film",
+  filming: "Recording …",
+  fileName: "creatures",
+  fact: "Fact",
+  facts: "Facts of the creatures",
+  factDifferences: "What differs",
+  allFacts: "Show all",
+  onlyDifferences: "Show differences",
+  commonGenes: "Connections shared with the first",
+  of: (some: number, all: number) => `${some} of ${all}`,
   tableOf: (corner: string) => `${corner}s of the runs`,
 };

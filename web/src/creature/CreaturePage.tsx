@@ -55,6 +55,11 @@ export function CreaturePage({ id: sha, query }: Props) {
           <TrustBadge trusted={audit.trusted} href={AUDIT_HASH} />
         )}
         <span class="spring" />
+        {creature && swims(creature) && (
+          <a class="button" href={`/compare?creatures=${sha}`}>
+            {text.sideBySide}
+          </a>
+        )}
         {creature && <PublishButton of={{ creature: sha }} file={creature} title="" />}
         {creature && isEvolved(creature) && <ForkLink run={run} creatures={[sha]} title={text.fork} />}
         {creature && isEvolved(creature) && <RefineButton creature={creature} run={run} />}

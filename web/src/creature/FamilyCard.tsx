@@ -34,8 +34,14 @@ export function FamilyCard({ creature, query }: Props) {
   const more = value?.[0].more && back < MAX_DEPTH && (
     <button onClick={() => setQuery({ back: String(back + DEPTH_STEP) })}>{text.moreAncestors}</button>
   );
+  const actions = (
+    <>
+      {more}
+      {!sharedSlug && <TreeLink sha={sha} run={run} />}
+    </>
+  );
   return (
-    <Card id="family" title={sharedSlug ? text.ancestors : text.family} actions={more}>
+    <Card id="family" title={sharedSlug ? text.ancestors : text.family} actions={actions}>
       {error && (
         <p class="banner wrong">
           {error} {text.reload}
@@ -56,6 +62,17 @@ export function FamilyCard({ creature, query }: Props) {
     </Card>
   );
 }
+
+/** The tree of the run that led here, with this creature; else that of the creature across runs. */
+const TreeLink = ({ sha, run }: { sha: string; run: string | null }) => (
+  <a
+    class="button"
+    href={run ? `/runs/${run}/tree?creature=${sha}` : `/creatures/${sha}/tree`}
+    title={text.treeAbout}
+  >
+    {text.tree}
+  </a>
+);
 
 /** Credits of the ancestors with their licences, without those of the creature itself. */
 function creditOf(ancestors: Relative[], { credit }: Creature): string[] {

@@ -27,7 +27,7 @@ export function RefineButton({ creature, run }: Props) {
         creature: creature as unknown as Json,
         ...(archive !== undefined && { archive }),
       };
-      const made = await applyResponse("change", api.createRun(spec, newIdempotencyKey()));
+      const made = await applyResponse("change", api.createRun(spec, newIdempotencyKey(), null));
       navigate(`/runs/${made.id}`);
     } catch (error) {
       showFailure(error);

@@ -69,7 +69,7 @@ const numbers = (values: Values) => Array.from(values, (value) => (Number.isNaN(
 const rows = (values: Values, length: number, width: number) =>
   Array.from({ length }, (_, i) => values.subarray(i * width, (i + 1) * width));
 
-function hexadecimal(bytes: Values): string {
+export function hexadecimal(bytes: Values): string {
   let text = "";
   for (const byte of bytes) text += HEX[byte];
   return text;

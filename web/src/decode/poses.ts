@@ -13,6 +13,8 @@ interface Header {
   origin: [number, number];
   /** Cells of one unit. */
   scale: number;
+  /** The length of the body at rest, in cells. */
+  length: number;
   /** Steps before the first recorded stroke. */
   start: number;
   /** Steps at the last frame. */

@@ -1,24 +1,20 @@
 /** The editor of a spec, as a form or as JSON, with a drawing and the estimated cost. */
 
-import { useMemo, useRef, useState } from "preact/hooks";
+import { useRef, useState } from "preact/hooks";
 import type { Experiment, Json } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { useListener } from "../store/polling";
 import type { Draft } from "../store/draft";
-import { Segments } from "../ui/Select";
 import { BodyDrawing } from "./BodyDrawing";
 import { CostDetails, Costs } from "./Costs";
 import type { DraftState } from "./draftState";
 import { type EditorState, useEditor } from "./editorState";
 import { ForkCard } from "./ForkCard";
-import { JsonView } from "./form/JsonView";
-import { Outline, SpecForm, partsOf } from "./form/SpecForm";
 import { isSweep } from "./sweep";
-import { SweepCard, goToSweep } from "./SweepCard";
+import { SpecView, type View } from "./SpecView";
+import { SweepCard } from "./SweepCard";
 import { text } from "./text";
 import "./form/form.css";
-
-type View = "form" | "json";
 
 interface Props {
   draft: DraftState;
@@ -72,46 +68,6 @@ export function Editor(props: Props) {
     </form>
   );
 }
-
-interface SpecProps extends Props {
-  editor: EditorState;
-  illegible: string | null;
-  onProblem: (problem: string | null) => void;
-}
-
-function SpecView({ editor, illegible, onProblem, draft, current, view, show, open, replacing }: SpecProps) {
-  const { form, state, forking, errors } = editor;
-  const parts = useMemo(() => partsOf(form), [form]);
-  return (
-    <>
-      <div class="spec-bar">
-        <Segments label={text.specView} choices={VIEWS} value={view} onSelect={show} />
-        {view === "form" && <Outline parts={parts} state={state} />}
-        {!forking && (
-          <button type="button" class="plain wide-only" onClick={goToSweep}>
-            {text.severalRuns}
-          </button>
-        )}
-      </div>
-      {view === "form" && <SpecForm parts={parts} state={state} />}
-      {view === "json" && (
-        <JsonView
-          key={draft.revision}
-          spec={current.spec}
-          errors={illegible ? [] : errors}
-          onText={(text) => open(text, "", true)}
-          onProblem={onProblem}
-          replace={replacing}
-        />
-      )}
-    </>
-  );
-}
-
-const VIEWS = [
-  ["form", text.form],
-  ["json", text.json],
-] as const;
 
 interface SubmitProps {
   editor: EditorState;

@@ -13,49 +13,42 @@ import { type Section, formOf } from "./form/fields";
 import { type Note, withPartner } from "./form/partners";
 import { withoutInitial } from "./initialCreatures";
 import { type SweepForm, isSweep, useSweepForm } from "./sweep";
+import { useNaming } from "./naming";
 import { text } from "./text";
 import { applyResponse } from "../store/store";
 import { navigate } from "../store/router";
 import { newIdempotencyKey } from "../ui/forms";
 
 export function useEditor(draft: DraftState, current: Draft, experiment: Experiment) {
-  const { spec, base } = current;
-  const forking = base.fork !== undefined;
+  const { spec } = current;
+  const forking = current.base.fork !== undefined;
   const form = useMemo(() => {
     const whole = formOf(experiment.schema);
     return forking ? withoutInitial(whole) : whole;
   }, [experiment, forking]);
   const localErrors = useMemo(() => schemaErrors(form, spec), [form, spec]);
   const check = useEstimate(localErrors.length === 0 ? spec : null, api.estimateRun);
-  const drawing = useRef<Drawing | null>(null);
-  if (check.estimate) drawing.current = check.estimate.drawing;
+  const drawing = useLast<Drawing>(check.estimate?.drawing);
   const sweep = useSweepForm(form, spec, experiment);
   const fork = useFork(current);
   const sweepRequest = forking ? null : sweep.request;
   const sweepCheck = useEstimate(localErrors.length === 0 ? sweepRequest : null, api.estimateSweep);
+  const naming = useNaming(current.base.name, spec as Json, form, draft.changed);
   const alternative = useMemo(() => sweepRequest && { sweep: sweepRequest }, [sweepRequest]);
-  const submission = useSubmission(spec, fork.request ?? alternative);
+  const submission = useSubmission(spec, fork.request ?? alternative, naming.chosen);
   const refused = (submission.refusal?.errors ?? []).map(fieldError);
   const errors = [...localErrors, ...(sweepRequest ? specErrors(refused) : refused), ...check.errors].filter(
     ({ field }) => !forking || !isForkField(field),
   );
-  const [closed, close] = useClosed(form);
-  const state: FormState = {
-    document: spec as Json,
-    original: base.spec as Json,
-    changed: draft.changed,
-    messages: messagesByPath(errors, form, spec),
-    ...usePartners(draft, form, base.spec as Json, spec as Json),
-    closed,
-    close,
-  };
+  const state = useFormState(draft, form, current, errors);
   const invalidSweep = !forking && isSweep(sweep) && !sweepRequest && hasProblems(sweep);
-  const blocked = localErrors.length > 0 || invalidSweep ? text.hasErrors : null;
-  const problem = submission.refusal?.problem ?? blocked ?? check.problem ?? sweepCheck.problem;
+  const blocked = localErrors.length > 0 || invalidSweep ? text.hasErrors : check.problem;
+  const problem = submission.refusal?.problem ?? blocked ?? sweepCheck.problem;
   return {
-    ...{ form, state, errors, refused, forking, fork, sweep, check, submission, invalidSweep, problem },
+    ...{ form, state, errors, refused, forking, fork, naming },
+    ...{ sweep, check, submission, invalidSweep, problem },
     /** The last drawing, which stays while values are typed. */
-    drawing: drawing.current,
+    drawing,
     sweepErrors: sweepCheck.errors,
     estimate: sweepRequest ? sweepCheck.estimate : check.estimate,
     runs: sweepRequest ? sweep.total : 1,
@@ -63,6 +56,28 @@ export function useEditor(draft: DraftState, current: Draft, experiment: Experim
 }
 
 export type EditorState = ReturnType<typeof useEditor>;
+
+/** The last value that was there. */
+function useLast<T>(value: T | undefined): T | null {
+  const last = useRef<T | null>(null);
+  if (value !== undefined) last.current = value;
+  return last.current;
+}
+
+/** What the fields of the form show, and how they change it. */
+function useFormState(draft: DraftState, form: Section, current: Draft, errors: FieldError[]): FormState {
+  const [document, original] = [current.spec as Json, current.base.spec as Json];
+  const [closed, close] = useClosed(form);
+  return {
+    document,
+    original,
+    changed: draft.changed,
+    messages: messagesByPath(errors, form, document),
+    ...usePartners(draft, form, original, document),
+    closed,
+    close,
+  };
+}
 
 /** Changes of the spec, after which the form may change another choice too. */
 function usePartners(
@@ -112,7 +127,7 @@ export type Alternative = { sweep: SweepRequest } | { fork: ForkRequest };
 type Refusal = ReturnType<typeof serverErrors> & { requested: Spec | Alternative };
 
 /** Send the spec, or another request; the same request sent again after a lost answer has the same key. */
-export function useSubmission(spec: Spec, alternative: Alternative | null) {
+export function useSubmission(spec: Spec, alternative: Alternative | null, name: string | null) {
   const requested = alternative ?? spec;
   const [busy, setBusy] = useState(false);
   const [refusal, setRefusal] = useState<Refusal | null>(null);
@@ -122,7 +137,7 @@ export function useSubmission(spec: Spec, alternative: Alternative | null) {
     if (sent.current?.requested !== requested) sent.current = { requested, key: newIdempotencyKey() };
     setBusy(true);
     try {
-      const page = await submit(spec, alternative, sent.current.key);
+      const page = await submit(spec, alternative, sent.current.key, name);
       discardDraft();
       navigate(page);
     } catch (error) {
@@ -134,9 +149,14 @@ export function useSubmission(spec: Spec, alternative: Alternative | null) {
   return { start, busy, refusal: refusal?.requested === requested ? refusal : null };
 }
 
-async function submit(spec: Spec, request: Alternative | null, key: string): Promise<string> {
+async function submit(
+  spec: Spec,
+  request: Alternative | null,
+  key: string,
+  name: string | null,
+): Promise<string> {
   if (request && "sweep" in request) return `/sweeps/${(await api.createSweep(request.sweep, key)).id}`;
-  const made = request ? api.forkRun(request.fork, key) : api.createRun(spec, key);
+  const made = request ? api.forkRun(request.fork, key) : api.createRun(spec, key, name);
   return `/runs/${(await applyResponse("change", made)).id}`;
 }
 

@@ -22,8 +22,8 @@ export function useClock(running: boolean, tick: (seconds: number) => void): voi
   }, [running]);
 }
 
-/** Simulated steps per second in small previews, the same for all creatures. */
-export const STEPS_PER_SECOND = 80;
+/** Simulated steps per second in small previews, the same for all creatures: some two seconds a stroke. */
+export const STEPS_PER_SECOND = 200;
 
 /** Draw after each render, and in every frame while running; `steps` are the simulated steps so far. */
 export function useSteps(running: boolean, draw: (steps: number) => void): void {

@@ -11,7 +11,8 @@ const whole = decodePoses(poseBytes({ ...header, strokes: 0 }));
 function traced(trace: typeof traceBody, of: typeof stream, steps: number): number[][] {
   const points: number[][] = [];
   const add = (x: number, y: number) => points.push([x, y]);
-  const context = { beginPath: () => {}, arc: () => {}, moveTo: add, lineTo: add };
+  const spline = (...[, , , , x, y]: number[]) => add(x!, y!);
+  const context = { beginPath: () => {}, arc: () => {}, moveTo: add, lineTo: add, bezierCurveTo: spline };
   trace(context as never, of, steps, [0, 0, 100]);
   return points;
 }

@@ -4,7 +4,7 @@ import type { PoseStream } from "../decode/poses";
 import { type Point, chainsOf, splineOf } from "./motion";
 
 /** In smaller squares, in pixels, straight edges cannot be told from a spline and are drawn faster. */
-const SMOOTH_SIDE = 150;
+const SMOOTH_SIDE = 80;
 
 interface Shape {
   chains: number[][];
@@ -62,14 +62,21 @@ function turnOf({ header: { frames, nodes, strokes } }: PoseStream, offsets: Flo
 /** Two frames, the share of the way between them, and how often all frames have been played. */
 type Moment = readonly [before: number, after: number, share: number, loops: number];
 
-/** The frames around a time in steps; strokes repeat, and other frames start again after the last. */
-export function momentOf({ header }: PoseStream, steps: number): Moment {
-  const { frames, start, stop, strokes } = header;
+/** The steps from frame to frame, and those of all frames, after which they repeat. */
+export function loopOf({ header: { frames, start, stop, strokes } }: PoseStream): {
+  every: number;
+  steps: number;
+} {
   const every = (stop - start) / frames || 1;
-  const loop = Math.max(1, strokes > 0 ? frames : frames - 1);
-  const time = (steps / every) % loop;
+  return { every, steps: every * Math.max(1, strokes > 0 ? frames : frames - 1) };
+}
+
+/** The frames around a time in steps; strokes repeat, and other frames start again after the last. */
+export function momentOf(stream: PoseStream, steps: number): Moment {
+  const { every, steps: loop } = loopOf(stream);
+  const time = (steps % loop) / every;
   const before = Math.floor(time);
-  return [before, (before + 1) % frames, time - before, Math.floor(steps / every / loop)];
+  return [before, (before + 1) % stream.header.frames, time - before, Math.floor(steps / loop)];
 }
 
 /** A point of consecutive (frame, point, 2) values. */
@@ -85,15 +92,29 @@ function rotation(angle: number): (point: Point) => Point {
   return ([x, y]) => [cos * x - sin * y, sin * x + cos * y];
 }
 
+/** The largest distance of a node from the mean position, in cells. */
+export const radiusOf = (stream: PoseStream): number => shapeOf(stream).radius;
+
+/** The velocity of the mean position, in cells a step, some steps after the first frame. */
+export function velocityAt(stream: PoseStream, steps: number): Point {
+  const { means, turn } = shapeOf(stream);
+  const { frames } = stream.header;
+  const [before, after, , loops] = momentOf(stream, steps);
+  // Nothing is recorded from the last frame to the first: there it has its mean velocity.
+  const [first, last] = after > before ? [before, after] : [0, frames - 1];
+  const between = loopOf(stream).every * (last - first);
+  if (!(between > 0)) return [0, 0];
+  const [a, b] = [pointAt(means, first), pointAt(means, last)];
+  return rotation(loops * turn)([(b[0] - a[0]) / between, (b[1] - a[1]) / between]);
+}
+
 type Square = readonly [left: number, top: number, side: number];
 
+/** What bodies and paths are traced on. */
+type Path = Pick<CanvasRenderingContext2D, "beginPath" | "moveTo" | "lineTo" | "bezierCurveTo" | "arc">;
+
 /** Trace the body some steps after its first frame, in the middle of a square; it turns on in each loop. */
-export function traceBody(
-  context: CanvasRenderingContext2D,
-  stream: PoseStream,
-  steps: number,
-  [left, top, side]: Square,
-): void {
+export function traceBody(context: Path, stream: PoseStream, steps: number, [left, top, side]: Square): void {
   const { chains, offsets, radius, turn } = shapeOf(stream);
   const { nodes } = stream.header;
   const [before, after, share, loops] = momentOf(stream, steps);
@@ -115,12 +136,7 @@ export function traceBody(
 }
 
 /** Trace the path of the mean position from a circle at its start to now, in the same square. */
-export function tracePath(
-  context: CanvasRenderingContext2D,
-  stream: PoseStream,
-  steps: number,
-  [left, top, side]: Square,
-): void {
+export function tracePath(context: Path, stream: PoseStream, steps: number, [left, top, side]: Square): void {
   const { means, radius, turn } = shapeOf(stream);
   const { start, stop, frames, moments, steps: whole } = stream.header;
   const [before, after, share, loops] = momentOf(stream, steps);

@@ -74,6 +74,11 @@ function Header({ run, title }: { run: Run; title: string }) {
       {hasArchive(run) && run.generation > 0 && !run.deleted_at && (
         <PublishButton of={{ run: run.id }} title={run.name ?? ""} />
       )}
+      {hasArchive(run) && run.generation > 0 && !run.deleted_at && (
+        <a class="button" href={`/runs/${run.id}/tree`} title={text.treeAbout}>
+          {text.tree}
+        </a>
+      )}
       {hasArchive(run) && !!run.coverage && !run.deleted_at && <ForkLink run={run.id} title={text.fork} />}
       {refusal && !run.deleted_at && <span class="quiet small">{refusal}</span>}
       {!refusal && !run.deleted_at && <CommandButtons {...{ run, title }} name={title} />}

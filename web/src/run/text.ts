@@ -57,6 +57,8 @@ export const text = {
   noSuchRun: "Run not found",
   runs: "Runs",
   sweep: "Sweep",
+  tree: "Tree of life",
+  treeAbout: "Show all creatures that ever entered the archive, with their parents",
   fork: "Start a new run from the creatures of this run",
   pictures: "Pictures",
   species: "Species",

@@ -1,6 +1,8 @@
 /** A run in the list: status, labels edited in place, result and actions. */
 
 import type { Experiment, Run } from "../api/types";
+import type { PoseStream } from "../decode/poses";
+import { SwimmingBody } from "../replay/SwimmingBody";
 import { useRefusal } from "../store/principal";
 import { useStore } from "../store/store";
 import { editRun, restore, addTag, removeNote, removeTag } from "../store/commands";
@@ -17,13 +19,15 @@ import { useDisclosure } from "../ui/forms";
 
 interface Props {
   id: string;
+  /** The pose stream of its best creature. */
+  face: PoseStream | null;
   experiments: Experiment[];
   selected: boolean;
   knownTags: string;
   onSelect: () => void;
 }
 
-export function RunRow({ id, experiments, selected, knownTags, onSelect }: Props) {
+export function RunRow({ id, face, experiments, selected, knownTags, onSelect }: Props) {
   const run = useStore((state) => state.runs.get(id)!);
   const title = titleOf(run, experiments);
   const name = `${title} ${shortId(run.id)}`;
@@ -36,6 +40,9 @@ export function RunRow({ id, experiments, selected, knownTags, onSelect }: Props
         {!run.deleted_at && (
           <input type="checkbox" aria-label={text.compareRun(name)} checked={selected} onChange={onSelect} />
         )}
+      </td>
+      <td class="face">
+        <SwimmingBody stream={face} onWater />
       </td>
       <th scope="row">
         <RowTitle {...{ run, title, name, readOnly }} />

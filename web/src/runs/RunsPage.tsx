@@ -6,11 +6,13 @@ import type { Experiment, RunQuery } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { useExperiments } from "../store/fetch";
 import { loadMoreRuns, useRunList, useTags } from "../store/runList";
-import { useStore } from "../store/store";
+import { readTankBatch, usePoses } from "../store/poses";
+import { useEach, useStore } from "../store/store";
 import { useSweeps } from "../store/sweeps";
 import { showFailure } from "../store/toasts";
 import { setQuery } from "../store/router";
 import { hasTakenTour } from "../archive/tour";
+import { Tank } from "../tank/Tank";
 import { Empty, Page } from "../ui/Page";
 import { Heading } from "../ui/Table";
 import {
@@ -59,30 +61,33 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
   const hasSweeps = grouped && (sweeps?.items.length ?? 0) > 0;
   const empty = fetched && listed.length === 0 && !hasSweeps;
   return (
-    <Page
-      title={query.deleted ? text.bin : text.runs}
-      actions={<HeaderLinks bin={query.deleted ?? false} />}
-      error={error}
-      loading={!fetched && listed.length === 0}
-    >
-      <Welcome />
-      {(listed.length > 0 || hasSweeps || isFiltered(query)) && (
-        <Filters query={query} experiments={experiments} tags={tags} onChange={setQuery} />
-      )}
-      {selected.length > 0 && <CompareBar ids={selected} onClear={() => setSelected([])} />}
-      {empty && <NothingListed query={query} />}
-      {query.sweep && <SweepBanner sweep={query.sweep} />}
-      {hasSweeps && (
-        <SweepRows page={sweeps!} onMore={maxSweeps < MAX_SWEEPS ? () => setMaxSweeps(MAX_SWEEPS) : null} />
-      )}
-      {listed.length > 0 && <Table {...{ query, listed, experiments, selected }} onSelect={choose} />}
-      <datalist id={TAGS_ID}>
-        {tags.map((tag) => (
-          <option key={tag} value={tag} />
-        ))}
-      </datalist>
-      {next && <LoadMore query={listedQuery} />}
-    </Page>
+    <>
+      {!query.deleted && <Tank />}
+      <Page
+        title={query.deleted ? text.bin : text.runs}
+        actions={<HeaderLinks bin={query.deleted ?? false} />}
+        error={error}
+        loading={!fetched && listed.length === 0}
+      >
+        <Welcome />
+        {(listed.length > 0 || hasSweeps || isFiltered(query)) && (
+          <Filters query={query} experiments={experiments} tags={tags} onChange={setQuery} />
+        )}
+        {selected.length > 0 && <CompareBar ids={selected} onClear={() => setSelected([])} />}
+        {empty && <NothingListed query={query} />}
+        {query.sweep && <SweepBanner sweep={query.sweep} />}
+        {hasSweeps && (
+          <SweepRows page={sweeps!} onMore={maxSweeps < MAX_SWEEPS ? () => setMaxSweeps(MAX_SWEEPS) : null} />
+        )}
+        {listed.length > 0 && <Table {...{ query, listed, experiments, selected }} onSelect={choose} />}
+        <datalist id={TAGS_ID}>
+          {tags.map((tag) => (
+            <option key={tag} value={tag} />
+          ))}
+        </datalist>
+        {next && <LoadMore query={listedQuery} />}
+      </Page>
+    </>
   );
 }
 
@@ -112,12 +117,20 @@ interface TableProps {
 }
 
 function Table({ query, listed, experiments, selected, onSelect }: TableProps) {
+  const faces = useEach(listed, ({ runs }, id) => runs.get(id)?.face ?? null);
+  const poses = usePoses(
+    readTankBatch,
+    faces.filter((face) => face !== null).map((creature) => ({ creature })),
+  );
   return (
     <table class="runs">
       <thead>
         <tr>
           <th scope="col">
             <span class="unseen">{text.compare}</span>
+          </th>
+          <th scope="col">
+            <span class="unseen">{text.face}</span>
           </th>
           {COLUMNS.map(({ title, key, falling = false }) => (
             <Heading
@@ -133,10 +146,11 @@ function Table({ query, listed, experiments, selected, onSelect }: TableProps) {
         </tr>
       </thead>
       <tbody>
-        {listed.map((id) => (
+        {listed.map((id, i) => (
           <RunRow
             key={id}
             id={id}
+            face={(faces[i] && poses.get(faces[i])) || null}
             experiments={experiments}
             selected={selected.includes(id)}
             knownTags={TAGS_ID}

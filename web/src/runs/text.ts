@@ -10,6 +10,7 @@ export const text = {
   tag: "Tag",
   order: "Order",
   showAll: "Show all",
+  face: "Best creature",
   compareRun: (name: string) => `Compare ${name}`,
   sweepOf: (name: string) => `Sweep of ${name}`,
   sweep: "sweep",

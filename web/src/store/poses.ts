@@ -1,4 +1,4 @@
-/** Pose streams of visible creatures: those of an archive in batches, others one at a time. */
+/** Pose streams of visible creatures: in batches where the server has them, others one at a time. */
 
 import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
@@ -6,18 +6,22 @@ import { type PoseStream, decodePoseBatch, decodePoses } from "../decode/poses";
 import { setNewest } from "./cache";
 import { poll, usePolled } from "./polling";
 
-/** Cells of a batch. */
+/** Creatures of a batch. */
 const BATCH = 100;
 /** The renderer works in order, so a hovered cell waits for at most this number of requests. */
 const MAX_REQUESTS = 8;
 /** A gallery requests nothing while it is scrolled. */
 const DEBOUNCE_MS = 150;
 
-/** A creature and the cell whose elite it is. */
 export interface Visible {
-  cell: number;
   creature: string;
 }
+
+/** Reads the stored pose streams of some creatures at once. */
+export type ReadBatch<T extends Visible> = (some: readonly T[]) => Promise<ArrayBuffer>;
+
+export const readTankBatch = (some: readonly Visible[]) =>
+  api.readTankPoses(some.map(({ creature }) => creature));
 
 const cache = new Map<string, PoseStream>();
 /** Creatures whose batch is on its way. */
@@ -29,14 +33,10 @@ const requests = new Map<string, () => void>();
 let pending: string[] = [];
 const listeners = new Set<() => void>();
 
-/**
- * The loaded streams; missing ones of these elites are requested: in batches if they are the elites of
- * a run's cells. `at` is null for the newest.
- */
-export function usePoses(
-  run: string | null,
-  at: number | null,
-  visible: readonly Visible[],
+/** The loaded streams; missing ones are requested in batches, or one at a time if there are none. */
+export function usePoses<T extends Visible>(
+  readBatch: ReadBatch<T> | null,
+  visible: readonly T[],
 ): ReadonlyMap<string, PoseStream> {
   const [, redraw] = useState(0);
   useEffect(() => {
@@ -48,13 +48,13 @@ export function usePoses(
     };
   }, []);
   useEffect(() => {
-    const timer = setTimeout(() => request(run, at, visible), DEBOUNCE_MS);
+    const timer = setTimeout(() => request(readBatch, visible), DEBOUNCE_MS);
     return () => clearTimeout(timer);
-  }, [run, at, visible.map(({ creature }) => creature).join()]);
+  }, [readBatch === null, visible.map(({ creature }) => creature).join()]);
   return cache;
 }
 
-function request(run: string | null, at: number | null, visible: readonly Visible[]): void {
+function request<T extends Visible>(readBatch: ReadBatch<T> | null, visible: readonly T[]): void {
   for (const { creature } of visible) {
     const stream = cache.get(creature);
     if (!stream) continue;
@@ -62,22 +62,19 @@ function request(run: string | null, at: number | null, visible: readonly Visibl
     cache.set(creature, stream); // Now the newest.
   }
   const missing = visible.filter(({ creature }) => !cache.has(creature));
-  const alone = (sha: string) => (run === null || lacking.has(sha)) && !requests.has(sha);
+  const alone = (sha: string) => (readBatch === null || lacking.has(sha)) && !requests.has(sha);
   pending = missing.map(({ creature }) => creature).filter(alone);
-  const unknown =
-    run === null ? [] : missing.filter(({ creature }) => !lacking.has(creature) && !batched.has(creature));
-  for (let first = 0; first < unknown.length; first += BATCH) {
-    void requestBatch(run!, at, unknown.slice(first, first + BATCH));
+  const unknown = missing.filter(({ creature }) => !lacking.has(creature) && !batched.has(creature));
+  for (let first = 0; readBatch && first < unknown.length; first += BATCH) {
+    void requestBatch(readBatch, unknown.slice(first, first + BATCH));
   }
   startRequests();
 }
 
-async function requestBatch(run: string, at: number | null, elites: Visible[]): Promise<void> {
+async function requestBatch<T extends Visible>(readBatch: ReadBatch<T>, elites: T[]): Promise<void> {
   for (const { creature } of elites) batched.add(creature);
-  const cells = elites.map(({ cell }) => cell);
-  const answer = api.readArchivePoses(run, cells, at === null ? {} : { generation: at });
   // After a failure the creatures are requested one at a time, which is repeated.
-  for (const stream of await answer.then(decodePoseBatch, () => [])) add(stream);
+  for (const stream of await readBatch(elites).then(decodePoseBatch, () => [])) add(stream);
   for (const { creature } of elites) {
     batched.delete(creature);
     if (cache.has(creature)) continue;

@@ -18,14 +18,16 @@ export interface PageLocation {
 
 const PAGES = ["new", "compare", "workers", "shares", "commons", "settings"];
 const PAGES_OF_ONE: Record<string, string> = { runs: "run", sweeps: "sweep", creatures: "creature" };
+/** Trees of one: below their pages. */
+const TREES: Record<string, string> = { runs: "run-tree", creatures: "creature-tree" };
 
 export function routeOf(path: string): Route {
   const [first, second, ...rest] = path.split("/").filter(Boolean);
   if (first === undefined) return { page: "runs" };
   if (second === undefined) return { page: PAGES.includes(first) ? first : "unknown" };
   if (first === "s") return sharedRoute(second, rest);
-  const page = PAGES_OF_ONE[first];
-  const id = rest.length === 0 ? decodePart(second) : null;
+  const page = rest.length === 0 ? PAGES_OF_ONE[first] : rest.join() === "tree" ? TREES[first] : undefined;
+  const id = decodePart(second);
   return page && id !== null ? { page, id } : { page: "unknown" };
 }
 

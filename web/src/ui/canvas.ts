@@ -22,6 +22,17 @@ export function useSize(element: RefObject<HTMLElement | null>): Size {
   return size;
 }
 
+/** True while a part of the element is on the screen. */
+export function useOnScreen(element: RefObject<HTMLElement | null>): boolean {
+  const [visible, setVisible] = useState(false);
+  useEffect(() => {
+    const observer = new IntersectionObserver(([entry]) => setVisible(entry!.isIntersecting));
+    observer.observe(element.current!);
+    return () => observer.disconnect();
+  }, [element]);
+  return visible;
+}
+
 /** Clear a canvas and return its context, in CSS pixels. */
 export function prepare(canvas: HTMLCanvasElement, size: Size): CanvasRenderingContext2D {
   const density = window.devicePixelRatio || 1;

@@ -233,6 +233,7 @@ def _results() -> None:
         sa.Column("creature", HASH, to_creature()),
     )
     op.create_index("ix_elites_creature", "elites", ["creature"])
+    op.create_index("ix_elites_run_id_fitness_cell", "elites", ["run_id", "fitness", "cell"])
     op.create_table(
         "generations",
         sa.Column("run_id", sa.Uuid(), to_run(), primary_key=True),

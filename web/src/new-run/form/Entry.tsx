@@ -5,6 +5,7 @@ import { count, number } from "../../ui/format";
 import { Term } from "../../ui/Term";
 import { valueAt, typed, typedJson, typedList } from "./document";
 import type { Leaf, NumberField, Range, Choice, Multiple } from "./fields";
+import { mendOf } from "./essentials";
 import type { Note } from "./partners";
 import { text } from "./text";
 import { useEffect, useState } from "preact/hooks";
@@ -30,6 +31,7 @@ export function Entry({ field, state }: { field: Leaf; state: FormState }) {
   const messages = state.messages.get(path) ?? [];
   const unit = kind === "number" ? unitOf(field, state.document) : "";
   const id = `field-${path}`;
+  const mend = messages.length > 0 ? mendOf(field, value, messages) : null;
   return (
     <div class={`entry ${WIDE.includes(kind) ? "wide" : ""}`}>
       <EntryName {...{ path, title, state }} target={kind === "multiple" ? undefined : id} />
@@ -44,6 +46,11 @@ export function Entry({ field, state }: { field: Leaf; state: FormState }) {
           {help} {aboutPlugin(field, value)} <span class="range">{rangeOf(field, unit)}</span>
         </p>
         <Messages messages={messages} />
+        {mend !== null && (
+          <button type="button" class="link small" onClick={() => state.change(path, mend)}>
+            {text.setTo(number(mend, 6))}
+          </button>
+        )}
       </div>
     </div>
   );

@@ -101,9 +101,17 @@ function PartSwitch({ part, off, state }: { part: Section; off: boolean; state: 
 
 const NONE = ["null", text.none] as const;
 
+interface KindProps {
+  union: Union;
+  state: FormState;
+  /** By default the name of the choice. */
+  title?: string;
+}
+
 /** The choice between several parts, or none; a newly selected one has its defaults. */
-function KindSelect({ union, state }: { union: Union; state: FormState }) {
+export function KindSelect({ union, state, title }: KindProps) {
   const path = `${union.path}.${union.tag}`;
+  const id = `field-${path}`;
   const value = valueAt(state.document, path);
   const original = valueAt(state.original, union.path);
   // Parts with other fields are reset as a whole, parts with the same fields by their name.
@@ -116,16 +124,16 @@ function KindSelect({ union, state }: { union: Union; state: FormState }) {
   const parts = [...union.parts.keys()].map((name) => [name, name] as const);
   return (
     <div class="entry">
-      <EntryName path={at} title={words(union.tag)} state={state} target={`field-${path}`} />
+      <EntryName path={at} title={title ?? words(union.tag)} state={state} target={id} />
       <select
-        id={`field-${path}`}
+        id={id}
         value={String(value)}
-        aria-describedby={`field-${path}-about`}
+        aria-describedby={`${id}-about`}
         onChange={(event) => choose(event.currentTarget.value)}
       >
         <Options of={union.nullable ? [NONE, ...parts] : parts} />
       </select>
-      <p id={`field-${path}-about`} class="help about">
+      <p id={`${id}-about`} class="help about">
         {union.parts.get(String(value))?.help}
       </p>
       {note && (

@@ -1,6 +1,26 @@
 /** Texts of the form that is generated from a schema. */
 
 export const text = {
+  essentials: {
+    "body.nodes": ["Nodes", "Number of nodes: a longer body has more."],
+    "world.viscosity": ["Viscosity", "Thick water has a high viscosity: small, slow swimmers live in it."],
+    "task.fitness": ["Fitness", "What the fittest do best."],
+    "archive.descriptors.0.name": [
+      "First axis",
+      "A measure: the archive keeps the best swimmer of each kind.",
+    ],
+    "archive.descriptors.1.name": ["Second axis", "Another measure."],
+    "search.generations": ["Generations", "How long the run goes on; it can be extended later."],
+    seed: ["Seed", "Another seed gives another run of the same kind."],
+  } as Record<string, readonly [title: string, help: string]>,
+  body: "Body",
+  essentialsTitle: "The essentials",
+  runName: "Name of the run",
+  runNameHint: "Optional; by default what you change",
+  allSettings: "All settings",
+  findSetting: "Find a setting",
+  noSetting: (words: string) => `No setting has the words “${words}”.`,
+  setTo: (value: string) => `Set it to ${value}`,
   plugin: (name: string, about: string, workers: string) => `${name}: ${about} Plug-in of ${workers}.`,
   each: (range: string) => `Each ${range}`,
   auto: "auto",

@@ -1,0 +1,213 @@
+"""Phylogenies: creatures with parents and times, as ALife standard CSV, Newick and columns."""
+
+import csv
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from io import StringIO
+from typing import NamedTuple
+
+import numpy as np
+
+NONE = -1
+"""In columns of integers: no run or operator, an unknown generation, an elite not lost."""
+
+
+class Birth(NamedTuple):
+    """A creature as a run recorded it."""
+
+    creature: str
+    parents: Sequence[str]
+    run: str | None
+    """The run in which it entered an archive first, if any."""
+    generation: int
+    """Generation of that run, or `NONE`."""
+    lost: int
+    """The generation in which its last cell went to another, or `NONE`."""
+    operator: str | None
+    fitness: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class Phylogeny:
+    """Creatures in the order of their times, so that parents precede their children."""
+
+    creature: list[str]
+    runs: list[str]
+    operators: list[str]
+    links: np.ndarray
+    """(link, 2) rows of a child and of a parent; links of a child are in the parents' order."""
+    run: np.ndarray
+    generation: np.ndarray
+    lost: np.ndarray
+    operator: np.ndarray
+    time: np.ndarray
+    """(creature,) generations since the first ancestor, over all runs."""
+    fitness: np.ndarray
+    """(creature,) NaN where it is unknown."""
+
+    @property
+    def columns(self) -> dict[str, np.ndarray]:
+        """Return the columns as arrays for `microcosmos.archive.columns`."""
+        names = np.frombuffer(bytes.fromhex("".join(self.creature)), np.uint8)
+        numbers = ("run", "generation", "lost", "operator", "time")
+        return {
+            "creature": names.reshape(-1, 32),
+            "links": self.links.astype(np.int32),
+            **{name: getattr(self, name).astype(np.int32) for name in numbers},
+            "fitness": self.fitness,
+        }
+
+    @property
+    def destruction(self) -> np.ndarray:
+        """(creature,) the time at which a creature lost its last cell, or `NONE`."""
+        return np.where(self.lost == NONE, NONE, self.time + self.lost - self.generation)
+
+
+def phylogeny(
+    births: Iterable[Birth], runs: Sequence[str], initial: Iterable[tuple[str, str]] = ()
+) -> Phylogeny:
+    """Arrange births; `runs` are in the order of their creation, and `initial` are runs with
+    creatures from which they start.
+
+    A run begins when all of these and its ancestors in earlier runs exist. Parents that are not
+    among the births are left out, and so are links of a creature to its own descendants.
+    """
+    listed, number = list(births), {name: i for i, name in enumerate(runs)}
+    links = _links(listed)
+    run = np.array([number.get(one.run or "", NONE) for one in listed], int)
+    generation = np.array([one.generation for one in listed], int)
+    row = {one.creature: i for i, one in enumerate(listed)}
+    starts = [(number[to], row[one]) for to, one in initial if to in number and one in row]
+    above = np.array([*zip(run[links[:, 0]], links[:, 1], strict=True), *starts], int)
+    begun = _begin(run, generation, above.reshape(-1, 2), len(runs))
+    early = np.where(run == NONE, 0, begun[run]) + np.maximum(generation, 0)
+    time, links = _times(early, links)
+    order = sorted(range(len(listed)), key=lambda i: (time[i], listed[i].creature))
+    place = np.empty(len(order), int)
+    place[order] = np.arange(len(order))
+    moved = place[links]
+    names = sorted({one.operator for one in listed if one.operator is not None})
+    code = {name: i for i, name in enumerate(names)}
+    chosen = [listed[i] for i in order]
+    return Phylogeny(
+        creature=[one.creature for one in chosen],
+        runs=list(runs),
+        operators=names,
+        links=moved[np.argsort(moved[:, 0], kind="stable")],
+        run=run[order],
+        generation=generation[order],
+        lost=np.array([one.lost for one in chosen], int),
+        operator=np.array([code.get(one.operator or "", NONE) for one in chosen], int),
+        time=time[order],
+        fitness=np.array([one.fitness for one in chosen], float),
+    )
+
+
+def _links(births: Sequence[Birth]) -> np.ndarray:
+    """Return (link, 2) rows of children and parents; a parent named twice has one link."""
+    row = {one.creature: i for i, one in enumerate(births)}
+    found = [
+        (child, row[parent])
+        for child, one in enumerate(births)
+        for parent in dict.fromkeys(one.parents)
+        if parent in row and row[parent] != child
+    ]
+    return np.array(found, int).reshape(-1, 2)
+
+
+def _begin(run: np.ndarray, generation: np.ndarray, above: np.ndarray, runs: int) -> np.ndarray:
+    """Return the time at which each run begins; `above` are runs, and rows of ancestors."""
+    begun = np.zeros(max(runs, 1), int)
+    below, ancestor = above.T
+    across = (run[ancestor] < below) & (below != NONE)
+    for number in np.unique(below[across]):
+        above = ancestor[across & (below == number)]
+        since = np.where(run[above] == NONE, 0, begun[run[above]])
+        begun[number] = (since + np.maximum(generation[above], 0)).max()
+    return begun
+
+
+def _times(early: np.ndarray, links: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return times after those of all parents, none before `early`, and links without cycles.
+
+    Creatures are visited after their parents (Kahn 1962); those that remain lie on cycles or
+    descend from one.
+    """
+    time, waits = early.tolist(), np.bincount(links[:, 0], minlength=len(early)).tolist()
+    children: list[list[int]] = [[] for _ in time]
+    for child, parent in links.tolist():
+        children[parent].append(child)
+    ready = [i for i, count in enumerate(waits) if count == 0]
+    for parent in ready:  # It grows.
+        for child in children[parent]:
+            time[child] = max(time[child], time[parent] + 1)
+            waits[child] -= 1
+            if waits[child] == 0:
+                ready.append(child)
+    closed = np.array(waits, int) > 0
+    on_cycle = closed[links[:, 0]] & closed[links[:, 1]] if len(links) else np.zeros(0, bool)
+    return np.array(time, int), links[~on_cycle]
+
+
+def alife_csv(found: Phylogeny) -> str:
+    """Return the ALife phylogeny standard's table: `id`, `ancestor_list`, `origin_time`,
+    `destruction_time`, and further columns of ours.
+
+    An id is a row. `destruction_time` is empty for elites of today.
+    """
+    ancestors: list[list[int]] = [[] for _ in found.creature]
+    for child, parent in found.links.tolist():
+        ancestors[child].append(parent)
+    text = StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    head = ("id", "ancestor_list", "origin_time", "destruction_time", "taxon_label")
+    writer.writerow((*head, "run", "generation", "operator", "fitness"))
+    ended, fitness = found.destruction.tolist(), found.fitness.tolist()
+    for i, name in enumerate(found.creature):
+        listed = ",".join(map(str, ancestors[i])) or "none"
+        run, operator, generation = found.run[i], found.operator[i], found.generation[i]
+        writer.writerow(
+            (
+                *(i, f"[{listed}]", found.time[i], "" if ended[i] == NONE else ended[i], name),
+                "" if run == NONE else found.runs[run],
+                "" if generation == NONE else generation,
+                "" if operator == NONE else found.operators[operator],
+                fitness[i] if fitness[i] == fitness[i] else "",
+            )
+        )
+    return text.getvalue()
+
+
+def newick(found: Phylogeny) -> str:
+    """Return a tree in Newick's format for each first ancestor, one a line.
+
+    A child belongs to its first parent; lengths are generations.
+    """
+    parent = np.full(len(found.creature), NONE)
+    child, above = found.links[::-1].T  # The first link of a child is written last.
+    parent[child] = above
+    children: list[list[int]] = [[] for _ in found.creature]
+    for one, first in enumerate(parent.tolist()):
+        if first != NONE:
+            children[first].append(one)
+    length = found.time - np.where(parent == NONE, 0, found.time[parent])
+    label = [f"{name}:{span}" for name, span in zip(found.creature, length, strict=True)]
+    roots = np.flatnonzero(parent == NONE).tolist()
+    return "".join(_tree(root, children, label) for root in roots)
+
+
+def _tree(root: int, children: Sequence[Sequence[int]], label: Sequence[str]) -> str:
+    parts: list[str] = []
+    left: list[int | str] = [";\n", root]
+    while left:
+        one = left.pop()
+        if isinstance(one, str):
+            parts.append(one)
+        elif below := children[one]:
+            parts.append("(")
+            left.append(f"){label[one]}")
+            for place, child in enumerate(reversed(below)):
+                left += [",", child] if place else [child]
+        else:
+            parts.append(label[one])
+    return "".join(parts)

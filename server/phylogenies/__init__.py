@@ -1,0 +1,1 @@
+"""Phylogenies: the tree of a run or of a creature, across forks."""

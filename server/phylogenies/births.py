@@ -1,0 +1,179 @@
+"""Queries of births: creatures with their parents and the runs in which they entered."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from operator import itemgetter
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy import Select, func, select
+from sqlalchemy.orm import Session, aliased
+
+from microcosmos.archive.phylogeny import NONE, Birth
+
+from ..archives.elites import recorded_in
+from ..core.errors import ProblemError
+from ..tables import Creature, Elite, InitialCreature, Parent, Run
+
+NAMES_PER_QUERY = 500
+MAX_CREATURES = 400_000
+"""Creatures of one tree: about 30 MB of columns."""
+
+Links = Mapping[str, Sequence[str]]
+"""Parents by the name of their child, in the order in which it names them."""
+
+
+def entered(session: Session, run: Run) -> list[Birth]:
+    """Return all creatures that ever entered the archive of a run."""
+    mine = recorded_in(run)
+    counted = select(func.count()).select_from(Elite).where(mine)
+    refuse_large(session.execute(counted).scalar_one())
+    columns = (Elite.cell, Elite.generation, Elite.creature, Elite.fitness, Creature.operator)
+    rows = session.execute(
+        select(*columns)
+        .outerjoin(Creature, Creature.sha256 == Elite.creature)
+        .where(mine)
+        .order_by(Elite.cell, Elite.generation)
+    ).all()
+    names = select(Elite.creature).where(mine, Elite.creature.is_not(None))
+    links = select(Parent.child, Parent.parent).where(Parent.child.in_(names))
+    name, next_cell, next_generation = str(run.id), None, 0
+    entries: list[Sequence[Any]] = []
+    for cell, generation, creature, fitness, operator in reversed(rows):
+        lost = next_generation if cell == next_cell else None
+        if creature is not None:
+            entries.append((creature, name, generation, lost, operator, fitness))
+        next_cell, next_generation = cell, generation
+    entries.sort(key=itemgetter(2))
+    return list(_births(entries, _linked(session, links)))
+
+
+def ancestors_of_run(session: Session, run: Run) -> list[Birth]:
+    """Return the creatures from which a run starts, and their ancestors, of earlier runs."""
+    mine = InitialCreature.run_id == run.id
+    initial = session.scalars(select(InitialCreature.creature).where(mine)).all()
+    return _read(session, _closure(session, initial, _parents), run.id) if initial else []
+
+
+def initial(session: Session, runs: Iterable[UUID]) -> list[tuple[str, str]]:
+    """Return runs with each of the creatures from which they start."""
+    columns = select(InitialCreature.run_id, InitialCreature.creature)
+    rows = session.execute(columns.where(InitialCreature.run_id.in_(runs)))
+    return [(str(run), creature) for run, creature in rows]
+
+
+def relatives(session: Session, sha: str) -> list[Birth]:
+    """Return a creature, all its ancestors and all its descendants, of any runs."""
+    above = _closure(session, [sha], _parents)
+    below = _closure(session, [sha], _children)
+    return _read(session, dict.fromkeys((*above, *below)))
+
+
+def refuse_large(count: int) -> None:
+    """Raise `ProblemError` for more creatures than one tree holds."""
+    if count > MAX_CREATURES:
+        detail = (
+            f"This tree has {count:,} creatures, more than the {MAX_CREATURES:,} that one "
+            "answer holds. The archive file of a run has its whole lineage."
+        )
+        raise ProblemError(422, "Tree too large", detail)
+
+
+def _parents(names: Sequence[str]) -> Select[str]:
+    return select(Parent.parent).where(Parent.child.in_(names))
+
+
+def _children(names: Sequence[str]) -> Select[str]:
+    return select(Parent.child).where(Parent.parent.in_(names))
+
+
+def _closure(
+    session: Session, names: Iterable[str], step: Callable[[Sequence[str]], Select[str]]
+) -> dict[str, None]:
+    """Return names, and all that steps from them lead to."""
+    found, nearest = dict.fromkeys(names), list(names)
+    while nearest:
+        next_names = (name for some in _parts(nearest) for name in session.scalars(step(some)))
+        nearest = [name for name in dict.fromkeys(next_names) if name not in found]
+        found |= dict.fromkeys(nearest)
+        refuse_large(len(found))
+    return found
+
+
+def _parts(names: Iterable[str]) -> Iterator[list[str]]:
+    listed = list(names)
+    for first in range(0, len(listed), NAMES_PER_QUERY):
+        yield listed[first : first + NAMES_PER_QUERY]
+
+
+_Later = aliased(Elite)
+_LOST = (
+    select(func.min(_Later.generation))
+    .where(
+        _Later.run_id == Elite.run_id,
+        _Later.cell == Elite.cell,
+        _Later.generation > Elite.generation,
+    )
+    .scalar_subquery()
+)
+"""The generation in which an elite's cell went to another; null if it still has it."""
+
+
+def _read(session: Session, names: Iterable[str], besides: UUID | None = None) -> list[Birth]:
+    """Return births in the first run that each entered, but for one run.
+
+    Creatures that entered no archive, such as imported ones, have the generation of their file.
+    """
+    elsewhere = (Elite.creature == Creature.sha256) & (Elite.run_id != besides)
+    in_any = Elite.creature == Creature.sha256
+    recorded = Creature.provenance["generation"].as_integer()
+    measured = Creature.measured["fitness"].as_float()
+    columns = (
+        Creature.sha256,
+        Elite.run_id,
+        func.coalesce(Elite.generation, recorded),
+        _LOST,
+        Creature.operator,
+        func.coalesce(Elite.fitness, measured),
+    )
+    found: list[Birth] = []
+    for some in _parts(names):
+        rows = (
+            select(*columns)
+            .outerjoin(Elite, in_any if besides is None else elsewhere)
+            .outerjoin(Run, Run.id == Elite.run_id)
+            .where(Creature.sha256.in_(some))
+            .order_by(Run.created_at, Run.id, Elite.generation)
+        )
+        links = select(Parent.child, Parent.parent).where(Parent.child.in_(some))
+        found += _births(session.execute(rows), _linked(session, links))
+    return found
+
+
+def _linked(session: Session, links: Select[str, str]) -> Links:
+    found: dict[str, list[str]] = {}
+    for child, parent in session.execute(links.order_by(Parent.child, Parent.position)):
+        found.setdefault(child, []).append(parent)
+    return found
+
+
+def _births(entries: Iterable[Sequence[Any]], links: Links) -> Iterator[Birth]:
+    """Yield the first entry of each creature; it is lost when its run has it in no cell.
+
+    An entry has the name, run, generation, the generation in which its cell went to another
+    (None if it still has it), operator and fitness.
+    """
+    listed: dict[str, list[Sequence[Any]]] = {}
+    for entry in entries:
+        listed.setdefault(entry[0], []).append(entry)
+    for name, found in listed.items():
+        _, run, generation, lost, operator, fitness = found[0]
+        ends = [lost] if len(found) == 1 else [one[3] for one in found if one[1] == run]
+        yield Birth(
+            creature=name,
+            parents=links.get(name, ()),
+            run=run and str(run),
+            generation=NONE if generation is None else generation,
+            lost=NONE if None in ends else max(ends),
+            operator=operator,
+            fitness=fitness,
+        )

@@ -1,0 +1,147 @@
+"""Routes of phylogenies: columns in bytes, ALife standard CSV and Newick."""
+
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from typing import Annotated, Any
+from uuid import UUID
+
+from fastapi import APIRouter, Depends, Request
+from fastapi.concurrency import run_in_threadpool
+from fastapi.responses import Response
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from microcosmos.archive import columns
+from microcosmos.archive.phylogeny import Birth, Phylogeny, alife_csv, newick, phylogeny
+from microcosmos.version import VERSION
+
+from ..archives.shown import refuse_table
+from ..auth.authorize import MAY_READ
+from ..core.answers import respond, tag_of
+from ..core.api import sends
+from ..creatures.deps import Sha, find_creature
+from ..runs.deps import find_run
+from ..services.services import ServicesDep
+from ..tables import Run
+from . import births
+
+router = APIRouter(tags=["phylogenies"])
+
+
+@dataclass(frozen=True)
+class Form:
+    """A form of the answer."""
+
+    ending: str
+    media_type: str
+    description: str
+    write: Callable[[Phylogeny], bytes]
+
+
+def _columns(found: Phylogeny) -> bytes:
+    return columns.dump({"runs": found.runs, "operators": found.operators}, found.columns)
+
+
+FORMS = (
+    Form("", columns.MEDIA_TYPE, "columns in bytes", _columns),
+    Form(
+        ".csv",
+        "text/csv",
+        "a table in the ALife phylogeny standard",
+        lambda found: alife_csv(found).encode(),
+    ),
+    Form(
+        ".nwk",
+        "text/plain",
+        "Newick trees by first parents, one for each first ancestor",
+        lambda found: newick(found).encode(),
+    ),
+)
+
+
+def arranged(session: Session, found: list[Birth]) -> Phylogeny:
+    """Arrange births, with their runs in the order of creation."""
+    named = {UUID(one.run) for one in found if one.run}
+    ordered = select(Run.id).where(Run.id.in_(named)).order_by(Run.created_at, Run.id)
+    runs = [str(run) for run in session.scalars(ordered)]
+    return phylogeny(found, runs, births.initial(session, named))
+
+
+@dataclass(frozen=True)
+class RunTree:
+    """The tree of a run in the state of one moment."""
+
+    run: Run
+    ancestors: list[Birth]
+    """Of earlier runs: they may be deleted, or imported later."""
+
+
+def _run_tree(run_id: UUID, services: ServicesDep) -> RunTree:
+    """Find a run over a connection that is closed again: answers may take seconds."""
+    with services.sessions.read() as session:
+        run = find_run(session, run_id)
+        refuse_table(run)
+        return RunTree(run, births.ancestors_of_run(session, run))
+
+
+RunTreeDep = Annotated[RunTree, Depends(_run_tree)]
+
+
+def _headers(form: Form, name: str) -> dict[str, str]:
+    if not form.ending:
+        return {}
+    file = f"phylogeny-{name}{form.ending}"
+    return {"Content-Disposition": f'attachment; filename="{file}"'}
+
+
+def _run_reader(form: Form) -> Callable[..., Awaitable[Response]]:
+    async def read(request: Request, tree: RunTreeDep, services: ServicesDep) -> Response:
+        run, above = tree.run, tree.ancestors
+        known = {one.creature for one in above}
+
+        def make() -> bytes:
+            with services.sessions.read() as session:
+                mine = births.entered(session, run)
+                alone = [one for one in mine if one.creature not in known]
+                return form.write(arranged(session, [*above, *alone]))
+
+        tag = tag_of(VERSION, form.ending, run.id, run.rewinds, run.generation, above)
+        kept = request.app.state.archive_answers
+        headers = _headers(form, str(run.id)[:8])
+        return await respond(request, kept, tag, make, form.media_type, headers)
+
+    read.__name__ = f"read_run_phylogeny{form.ending.replace('.', '_')}"
+    read.__doc__ = (
+        f"Return all creatures that ever entered the archive of a run, and their ancestors in "
+        f"other runs, as {form.description}."
+    )
+    return read
+
+
+def _creature_reader(form: Form) -> Callable[..., Awaitable[Response]]:
+    async def read(request: Request, sha: Sha, services: ServicesDep) -> Response:
+        def make() -> bytes:
+            with services.sessions.read() as session:
+                find_creature(session, sha)
+                return form.write(arranged(session, births.relatives(session, sha)))
+
+        # Any run may add a descendant, so the bytes themselves are the tag.
+        content = await run_in_threadpool(make)
+        kept, headers = request.app.state.archive_answers, _headers(form, sha[:12])
+        tag = tag_of(content)
+        return await respond(request, kept, tag, lambda: content, form.media_type, headers)
+
+    read.__name__ = f"read_creature_phylogeny{form.ending.replace('.', '_')}"
+    read.__doc__ = (
+        f"Return a creature with all its ancestors and descendants, of any runs, as "
+        f"{form.description}."
+    )
+    return read
+
+
+OTHERS: dict[int | str, dict[str, Any]] = {304: {"description": "Unchanged"}, 404: {}}
+
+for form in FORMS:
+    answers = {**sends(form.media_type, OTHERS), "dependencies": [MAY_READ]}
+    router.get(f"/runs/{{run_id}}/phylogeny{form.ending}", **answers)(_run_reader(form))
+    router.get(f"/creatures/{{sha}}/phylogeny{form.ending}", **answers)(_creature_reader(form))

@@ -1,0 +1,118 @@
+"""The tank on the first page: it swims, names its creatures, opens them, and can be still."""
+
+import re
+
+import pytest
+from playwright.sync_api import Page, expect
+from small_runs import TINY
+
+NAMED = re.compile(r"^fitness .+generation \d+ of ")
+MOVES_MS = 700
+COLOURFUL = """
+(canvas) => {
+  const { width, height } = canvas;
+  return new Set(canvas.getContext("2d").getImageData(0, 0, width, height).data).size > 1;
+}
+"""
+"""Whether anything is drawn on a canvas."""
+
+
+@pytest.fixture
+def settled(shared):
+    """The shared product with all of its runs finished: no new creature enters."""
+    for name in shared.submitted:
+        shared.finished(name)
+    return shared
+
+
+@pytest.fixture
+def home(page, settled):
+    page.goto(settled.product.url)
+    expect(water(page)).to_be_visible()
+    return page
+
+
+def water(page: Page):
+    return page.get_by_role(
+        "application", name=re.compile(r"^Tank with \d+ swimming creatures")
+    )
+
+
+def pixels(page: Page) -> str:
+    return page.evaluate("document.querySelector('.water canvas').toDataURL()")
+
+
+def wait_until_drawn(page: Page) -> None:
+    page.wait_for_function("() => performance.getEntriesByName('tank').length === 1")
+
+
+def moves(page: Page) -> bool:
+    before = pixels(page)
+    page.wait_for_timeout(MOVES_MS)
+    return pixels(page) != before
+
+
+def test_creatures_swim_until_they_are_paused(home):
+    wait_until_drawn(home)
+    assert moves(home)
+    home.get_by_role("button", name="Pause the creatures").click()
+    home.mouse.move(5, 5)
+    home.wait_for_timeout(200)
+    assert not moves(home)
+    home.get_by_role("button", name="Let the creatures swim").click()
+    assert moves(home)
+
+
+def test_a_creature_is_named_when_pointed_at_and_opens_with_a_click(home, shared):
+    wait_until_drawn(home)
+    home.get_by_role("button", name="Pause the creatures").click()
+    box = water(home).bounding_box()
+    named = home.locator("#tank-pointed")
+    for k in range(400):  # Somewhere in the water there is a creature.
+        x, y = (k % 40 + 0.5) / 40, (k // 40 + 0.5) / 10
+        home.mouse.move(box["x"] + x * box["width"], box["y"] + y * 0.8 * box["height"])
+        if named.is_visible():
+            break
+    expect(named).to_have_text(NAMED)
+    home.mouse.down()
+    home.mouse.up()
+    home.wait_for_url(re.compile(r"/creatures/[0-9a-f]{64}$"))
+    creature = home.url.rpartition("/")[2]
+    assert creature in {one["creature"] for one in shared.product.get("tank")["swimmers"]}
+
+
+def test_the_keyboard_points_at_creatures_and_opens_them(home, shared):
+    water(home).focus()
+    home.keyboard.press("ArrowRight")
+    named = home.locator("#tank-pointed")
+    expect(named).to_have_text(NAMED)
+    first = named.text_content()
+    home.keyboard.press("ArrowRight")
+    expect(named).not_to_have_text(first or "")
+    home.keyboard.press("ArrowLeft")
+    expect(named).to_have_text(first or "")
+    home.keyboard.press("Enter")
+    best = shared.product.get("tank")["swimmers"][0]["creature"]
+    home.wait_for_url(f"**/creatures/{best}")
+
+
+def test_the_tank_is_still_where_motion_is_reduced(page, settled):
+    page.emulate_media(reduced_motion="reduce")
+    page.goto(settled.product.url)
+    wait_until_drawn(page)
+    assert not moves(page)
+
+
+def test_a_run_has_its_best_creature_beside_its_name(home, shared):
+    (row,) = home.get_by_role("row").filter(has_text=shared.submitted["search"][:8]).all()
+    face = row.locator(".face canvas")
+    face.scroll_into_view_if_needed()
+    home.wait_for_timeout(500)
+    home.wait_for_function(COLOURFUL, arg=face.element_handle())
+
+
+def test_a_tank_without_creatures_says_why(page, idle):
+    idle.product.submit(TINY | {"seed": 77})
+    page.goto(idle.product.url)
+    expect(page.get_by_role("heading", name="Nothing swims here yet")).to_be_visible()
+    expect(page.locator(".tank-note")).to_contain_text("No worker is alive")

@@ -1,0 +1,164 @@
+/** Creatures side by side: their motion with one clock, and what differs between them. */
+
+import { useState } from "preact/hooks";
+import * as api from "../api/client";
+import type { Creature } from "../api/types";
+import { groupsOf, originOf } from "../creature/facts";
+import { SwimmingBody } from "../replay/SwimmingBody";
+import { useFetched } from "../store/fetch";
+import { readTankBatch, usePoses } from "../store/poses";
+import { setQuery } from "../store/router";
+import { useTank } from "../store/tank";
+import { Card, Page } from "../ui/Page";
+import { Table } from "../ui/Table";
+import { Term } from "../ui/Term";
+import { DASH, number, shortId } from "../ui/format";
+import { Race } from "./Race";
+import { commonGenes } from "./commonGenes";
+import { text } from "./text";
+import "./creatures.css";
+
+export const MAX_CREATURES = 6;
+const SUGGESTED = 12;
+
+const setCreatures = (names: string[]) => setQuery({ creatures: names.join() });
+
+export function CreaturesPage({ query }: { query: URLSearchParams }) {
+  const requested = [...new Set((query.get("creatures") ?? "").split(",").filter(Boolean))];
+  const names = requested.slice(0, MAX_CREATURES);
+  const { value: creatures, error } = useFetched(
+    () => Promise.all(names.map((name) => api.readCreature(name))),
+    [names.join()],
+  );
+  const poses = usePoses(
+    readTankBatch,
+    names.map((creature) => ({ creature })),
+  );
+  const lanes = names.flatMap((name) => {
+    const stream = poses.get(name);
+    return stream ? [{ name: shortId(name), stream }] : [];
+  });
+  return (
+    <Page title={text.sideBySide} crumbs={[["/", text.runs]]} error={error}>
+      {requested.length > MAX_CREATURES && (
+        <p class="banner warning">{text.tooManyCreatures(MAX_CREATURES, requested.length)}</p>
+      )}
+      <Chosen names={names} />
+      {lanes.length > 0 && <Race key={names.join()} lanes={lanes} />}
+      {lanes.length < names.length && <p class="quiet">{text.recording(names.length - lanes.length)}</p>}
+      {names.length < MAX_CREATURES && <Others names={names} />}
+      {creatures && creatures.length > 0 && <Facts creatures={creatures} />}
+    </Page>
+  );
+}
+
+function Chosen({ names }: { names: string[] }) {
+  const [typed, setTyped] = useState("");
+  const add = (event: Event) => {
+    event.preventDefault();
+    const found = /[0-9a-f]{64}/.exec(typed)?.[0];
+    if (!found) return;
+    setCreatures([...names, found]);
+    setTyped("");
+  };
+  return (
+    <div class="row chosen">
+      <ul class="compare-legend" aria-label={text.creatures}>
+        {names.map((name) => (
+          <li key={name}>
+            <a href={`/creatures/${name}`}>
+              <code>{shortId(name)}</code>
+            </a>
+            <button
+              class="plain small-button"
+              aria-label={text.remove(shortId(name))}
+              onClick={() => setCreatures(names.filter((each) => each !== name))}
+            >
+              ✕
+            </button>
+          </li>
+        ))}
+      </ul>
+      {names.length < MAX_CREATURES && (
+        <form class="row" onSubmit={add}>
+          <input
+            aria-label={text.addCreature}
+            placeholder={text.addCreatureHint}
+            value={typed}
+            onInput={(event) => setTyped(event.currentTarget.value)}
+          />
+          <button disabled={!/[0-9a-f]{64}/.test(typed)}>{text.add}</button>
+        </form>
+      )}
+    </div>
+  );
+}
+
+/** Creatures of the latest runs to add with a click. */
+function Others({ names }: { names: string[] }) {
+  const tank = useTank(SUGGESTED + MAX_CREATURES).value;
+  const others = (tank?.swimmers ?? []).filter(({ creature }) => !names.includes(creature));
+  const poses = usePoses(readTankBatch, others);
+  if (others.length === 0) return null;
+  return (
+    <section class="suggested" aria-label={text.suggested}>
+      <p class="quiet small">{text.suggested}</p>
+      {others.slice(0, SUGGESTED).map(({ creature, fitness }) => (
+        <button
+          key={creature}
+          class="suggestion"
+          aria-label={text.addNamed(shortId(creature), number(fitness))}
+          title={text.addNamed(shortId(creature), number(fitness))}
+          onClick={() => setCreatures([...names, creature])}
+        >
+          <SwimmingBody stream={poses.get(creature) ?? null} onWater />
+        </button>
+      ))}
+    </section>
+  );
+}
+
+interface Row {
+  title: string;
+  values: string[];
+}
+
+/** Measures, body, network and origin of each creature: by default what differs. */
+function Facts({ creatures }: { creatures: Creature[] }) {
+  const [all, setAll] = useState(false);
+  const rows = rowsOf(creatures);
+  const shown = all ? rows : rows.filter(({ values }) => new Set(values).size > 1);
+  const columns = creatures.map(({ sha256 }, i) => ({
+    title: <code>{shortId(sha256)}</code>,
+    cell: ({ values }: Row) => values[i]!,
+  }));
+  const first = { title: text.fact, cell: ({ title }: Row) => <Term name={title} /> };
+  return (
+    <Card
+      id="facts"
+      title={all ? text.facts : text.factDifferences}
+      actions={
+        creatures.length > 1 && (
+          <button onClick={() => setAll(!all)}>{all ? text.onlyDifferences : text.allFacts}</button>
+        )
+      }
+    >
+      <Table
+        label={text.facts}
+        columns={[first, ...columns]}
+        rows={creatures.length > 1 ? shown : rows}
+        keyOf={({ title }) => title}
+      />
+    </Card>
+  );
+}
+
+export function rowsOf(creatures: Creature[]): Row[] {
+  const facts = creatures.map(
+    (creature) => new Map([...groupsOf(creature).flatMap(({ rows }) => rows), ...originOf(creature)]),
+  );
+  const titles = [...new Set(facts.flatMap((each) => [...each.keys()]))];
+  const rows = titles.map((title) => ({ title, values: facts.map((each) => each.get(title) ?? DASH) }));
+  const common = commonGenes(creatures);
+  return common ? [...rows, { title: text.commonGenes, values: common }] : rows;
+}

@@ -1,0 +1,141 @@
+/** The spec of a new run: the essentials, all settings if asked for, or JSON. */
+
+import { useMemo, useState } from "preact/hooks";
+import type { Draft } from "../store/draft";
+import { Segments } from "../ui/Select";
+import type { DraftState } from "./draftState";
+import type { EditorState } from "./editorState";
+import { Entry, type FormState } from "./form/Entry";
+import { JsonView } from "./form/JsonView";
+import { KindSelect, Outline, SpecForm, partsOf } from "./form/SpecForm";
+import { essentialsOf, searched } from "./form/essentials";
+import type { Leaf, Section } from "./form/fields";
+import { text as formText } from "./form/text";
+import { goToSweep } from "./SweepCard";
+import { text } from "./text";
+
+export type View = "form" | "json";
+
+const VIEWS = [
+  ["form", text.form],
+  ["json", text.json],
+] as const;
+
+interface Props {
+  editor: EditorState;
+  draft: DraftState;
+  current: Draft;
+  view: View;
+  show: (view: View) => void;
+  open: (text: string, file: string, typed?: boolean) => string | null;
+  replacing: boolean;
+  illegible: string | null;
+  onProblem: (problem: string | null) => void;
+}
+
+export function SpecView(props: Props) {
+  const { editor, illegible, onProblem, draft, current, view, show, open, replacing } = props;
+  return (
+    <>
+      <div class="spec-bar">
+        <Segments label={text.specView} choices={VIEWS} value={view} onSelect={show} />
+        {!editor.forking && (
+          <button type="button" class="plain wide-only" onClick={goToSweep}>
+            {text.severalRuns}
+          </button>
+        )}
+      </div>
+      {view === "form" && <FormView editor={editor} />}
+      {view === "json" && (
+        <JsonView
+          key={draft.revision}
+          spec={current.spec}
+          errors={illegible ? [] : editor.errors}
+          onText={(text) => open(text, "", true)}
+          onProblem={onProblem}
+          replace={replacing}
+        />
+      )}
+    </>
+  );
+}
+
+const ALL_KEY = "microcosmos:all-settings";
+
+/** Whether all settings are shown: kept for the next run. */
+function useAll(): [boolean, (all: boolean) => void] {
+  const [all, setAll] = useState(() => localStorage.getItem(ALL_KEY) === "1");
+  const change = (next: boolean) => {
+    localStorage.setItem(ALL_KEY, next ? "1" : "0");
+    setAll(next);
+  };
+  return [all, change];
+}
+
+function FormView({ editor }: { editor: EditorState }) {
+  const { form, state } = editor;
+  const parts = useMemo(() => partsOf(form), [form]);
+  const essentials = useMemo(() => essentialsOf(form, state.document), [form, state.document]);
+  const [wished, setAll] = useAll();
+  const [words, setWords] = useState("");
+  // What is wrong must be seen.
+  const hidden = [...state.messages.keys()].some((path) => !essentials.some((field) => field.path === path));
+  const all = wished || hidden || essentials.length === 0;
+  const found = searched(parts, words);
+  return (
+    <>
+      <RunName editor={editor} />
+      <div class="all-bar row">
+        {essentials.length > 0 && (
+          <button type="button" disabled={hidden} aria-pressed={all} onClick={() => setAll(!all)}>
+            {formText.allSettings}
+          </button>
+        )}
+        {all && (
+          <>
+            <input
+              type="search"
+              aria-label={formText.findSetting}
+              placeholder={formText.findSetting}
+              value={words}
+              onInput={(event) => setWords(event.currentTarget.value)}
+            />
+            <Outline parts={parts} state={state} />
+          </>
+        )}
+      </div>
+      {!all && <Essentials fields={essentials} form={form} state={state} />}
+      {all && found.length === 0 && <p class="quiet">{formText.noSetting(words)}</p>}
+      {all && <SpecForm parts={found} state={words ? { ...state, closed: new Set() } : state} />}
+    </>
+  );
+}
+
+/** The name of one run; sweeps and forks are named beside what makes them. */
+function RunName({ editor: { forking, runs, naming } }: { editor: EditorState }) {
+  if (forking || runs !== 1) return null;
+  return (
+    <label class="run-name-field">
+      {formText.runName}
+      <input
+        maxLength={200}
+        placeholder={naming.suggested ?? formText.runNameHint}
+        value={naming.typed}
+        onInput={(event) => naming.type(event.currentTarget.value)}
+      />
+    </label>
+  );
+}
+
+/** The settings that most people change. */
+function Essentials({ fields, form, state }: { fields: Leaf[]; form: Section; state: FormState }) {
+  const body = form.fields.find(({ path }) => path === "body");
+  return (
+    <fieldset class="card essentials" aria-label={formText.essentialsTitle}>
+      {body?.kind === "union" && <KindSelect union={body} state={state} title={formText.body} />}
+      {fields.map((field) => (
+        <Entry key={field.path} field={field} state={state} />
+      ))}
+    </fieldset>
+  );
+}

@@ -1,0 +1,187 @@
+/** The tank: the best and the most different creatures, swimming as they were recorded. */
+
+import type { RefObject } from "preact";
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import type { Tank as Tankful } from "../api/types";
+import { useClock } from "../replay/clock";
+import { readTankBatch, usePoses } from "../store/poses";
+import { navigate } from "../store/router";
+import { useStore } from "../store/store";
+import { useTank } from "../store/tank";
+import { type Size, prefersReducedMotion, px, useOnScreen, useSize } from "../ui/canvas";
+import { labelOf, number } from "../ui/format";
+import { drawTank } from "./drawTank";
+import { type Swimmer, advance, nearestScale, swimmerAt, withSwimmers } from "./swimmers";
+import { TankLine } from "./TankLine";
+import { text } from "./text";
+import "./tank.css";
+
+/** A phone shows fewer creatures. */
+const [MOST, ON_A_PHONE, PHONE] = [60, 30, 640];
+
+export function Tank() {
+  const box = useRef<HTMLElement>(null);
+  const size = useSize(box);
+  const narrow = window.innerWidth < PHONE;
+  const { value: tank, error } = useTank(narrow ? ON_A_PHONE : MOST);
+  return (
+    <section ref={box} class="tank" aria-label={text.label(tank?.swimmers.length ?? 0)}>
+      {tank && tank.swimmers.length > 0 && <Water tank={tank} size={size} />}
+      {tank && tank.swimmers.length === 0 && <Still />}
+      {error && <p class="tank-note">{error}</p>}
+      {tank && <TankLine tank={tank} />}
+    </section>
+  );
+}
+
+interface WaterProps {
+  tank: Tankful;
+  size: Size;
+}
+
+function Water({ tank, size }: WaterProps) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const [pointed, setPointed] = useState<string | null>(null);
+  const [paused, setPaused] = useState(prefersReducedMotion);
+  const scene = useScene(tank, size, canvas, pointed, paused);
+  const open = (creature: string | null) => creature && navigate(`/creatures/${creature}`);
+  const under = (event: MouseEvent) => {
+    const { left, top } = canvas.current!.getBoundingClientRect();
+    const at = swimmerAt(
+      scene.current.swimmers,
+      [event.clientX - left, event.clientY - top],
+      scene.current.nearest,
+    );
+    return at?.creature ?? null;
+  };
+  const press = (event: KeyboardEvent) => {
+    const way = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+    if (event.key === "Enter") open(pointed);
+    else if (event.key === "Escape") setPointed(null);
+    else if (way) setPointed(next(tank, pointed, way));
+    else return;
+    event.preventDefault();
+  };
+  return (
+    <>
+      <div
+        class={`water ${pointed ? "over" : ""}`}
+        tabIndex={0}
+        role="application"
+        aria-label={text.label(tank.swimmers.length)}
+        aria-describedby="tank-pointed"
+        onPointerMove={(event) => setPointed(under(event))}
+        onPointerLeave={() => setPointed(null)}
+        onClick={(event) => open(under(event))}
+        onKeyDown={press}
+        onBlur={() => setPointed(null)}
+      >
+        <canvas ref={canvas} style={px({ ...size })} />
+      </div>
+      <Pointed tank={tank} creature={pointed} scene={scene} />
+      <PauseButton paused={paused} onChange={setPaused} />
+    </>
+  );
+}
+
+function PauseButton({ paused, onChange }: { paused: boolean; onChange: (paused: boolean) => void }) {
+  const label = paused ? text.play : text.pause;
+  return (
+    <button class="tank-pause" aria-label={label} title={label} onClick={() => onChange(!paused)}>
+      {paused ? "▶" : "❚❚"}
+    </button>
+  );
+}
+
+/** The creature before or after one, in the order of the server. */
+function next({ swimmers }: Tankful, pointed: string | null, way: number): string {
+  const at = swimmers.findIndex(({ creature }) => creature === pointed);
+  const place = at < 0 ? (way > 0 ? 0 : -1) : at + way;
+  return swimmers.at(place % swimmers.length)!.creature;
+}
+
+interface Scene {
+  swimmers: Swimmer[];
+  /** Pixels of a cell for the nearest creatures. */
+  nearest: number;
+}
+
+/** The swimmers, drawn in every frame unless they are paused or nobody sees them. */
+function useScene(
+  tank: Tankful,
+  size: Size,
+  canvas: RefObject<HTMLCanvasElement | null>,
+  pointed: string | null,
+  paused: boolean,
+): RefObject<Scene> & { current: Scene } {
+  const scene = useRef<Scene>({ swimmers: [], nearest: 1 });
+  const poses = usePoses(readTankBatch, tank.swimmers);
+  const streams = useMemo(
+    () => tank.swimmers.flatMap(({ creature }) => poses.get(creature) ?? []),
+    [tank, tank.swimmers.filter(({ creature }) => poses.has(creature)).length],
+  );
+  const draw = () => {
+    const { swimmers, nearest } = scene.current;
+    if (!canvas.current || size.width === 0) return;
+    drawTank(canvas.current, size, swimmers, nearest, pointed);
+    if (swimmers.length > 0 && performance.getEntriesByName("tank").length === 0) performance.mark("tank");
+  };
+  useEffect(() => {
+    if (size.width === 0 || streams.length === 0) return;
+    const { swimmers } = scene.current;
+    const none = swimmers.length === 0;
+    scene.current = {
+      swimmers: withSwimmers(swimmers, streams, size, none || paused),
+      nearest: nearestScale(streams, size.width),
+    };
+  }, [streams, size.width > 0]);
+  const seen = useOnScreen(canvas);
+  useClock(seen && !paused, (seconds) => {
+    const { swimmers, nearest } = scene.current;
+    scene.current.swimmers = advance(swimmers, seconds, nearest, size);
+    draw();
+  });
+  useEffect(draw);
+  return scene;
+}
+
+interface PointedProps {
+  tank: Tankful;
+  creature: string | null;
+  scene: { current: Scene };
+}
+
+/** The name of the creature that is pointed at, beside it. */
+function Pointed({ tank, creature, scene }: PointedProps) {
+  const named = tank.swimmers.find((one) => one.creature === creature);
+  const run = named && tank.runs.find(({ id }) => id === named.run);
+  const at = scene.current.swimmers.find((one) => one.creature === creature)?.position;
+  return (
+    <p
+      id="tank-pointed"
+      class="tank-pointed"
+      role="status"
+      style={at ? px({ left: at[0], top: at[1] }) : undefined}
+      hidden={!named}
+    >
+      {named && run && (
+        <>
+          <strong>{text.fitness(number(named.fitness))}</strong>
+          <span>{text.born(named.generation, labelOf(run))}</span>
+        </>
+      )}
+    </p>
+  );
+}
+
+/** What stands in a tank without creatures. */
+function Still() {
+  const first = useStore(({ runs }) => [...runs.values()].find(({ status }) => status in text.begun));
+  const [title, hint] = text.begun[first?.status as "running" | "queued"] ?? text.nothing;
+  return (
+    <div class="tank-note">
+      <h2>{title}</h2>
+      <p>{first?.waiting_reason ?? hint}</p>
+    </div>
+  );
+}

@@ -1,0 +1,107 @@
+/** Draw the creatures of the tank at one moment; the water is behind the canvas. */
+
+import type { Point } from "../replay/motion";
+import { radiusOf, traceBody } from "../replay/poses";
+import { type Size, prepare } from "../ui/canvas";
+import { ENTERING, LEAVING, type Swimmer, scaleAt } from "./swimmers";
+
+/** Far bodies have the colour of the water, near ones that of the light; the pointed one is warm. */
+const [FAR, NEAR, POINTED] = [
+  [86, 150, 164],
+  [253, 248, 236],
+  [255, 206, 130],
+] as const;
+/** A body is drawn several times, from its glow to its core: width and opacity. */
+const GLOW = [
+  [6, 0.045],
+  [3.6, 0.07],
+  [2, 0.14],
+  [1, 1],
+] as const;
+/** Sides of the square in which `traceBody` draws a body, in radii. */
+const SIDE = 1 / 0.42;
+
+/** `pointed` is the name of a creature. */
+export function drawTank(
+  canvas: HTMLCanvasElement,
+  size: Size,
+  swimmers: readonly Swimmer[],
+  nearest: number,
+  pointed: string | null,
+): void {
+  const context = prepare(canvas, size);
+  context.lineJoin = context.lineCap = "round";
+  for (const one of swimmers) drawSwimmer(context, one, nearest, one.creature === pointed);
+}
+
+function drawSwimmer(
+  context: CanvasRenderingContext2D,
+  one: Swimmer,
+  nearest: number,
+  pointed: boolean,
+): void {
+  const presence = presenceOf(one);
+  const colour = pointed ? POINTED : mixed(one.depth);
+  const scale = scaleAt(one.depth, nearest);
+  const ink = `rgb(${colour.join(" ")})`;
+  context.strokeStyle = ink;
+  drawTrail(context, one, presence);
+  const side = SIDE * scale * radiusOf(one.stream) * (0.4 + 0.6 * presence);
+  context.save();
+  context.translate(...one.position);
+  context.rotate(-one.heading);
+  traceBody(context, one.stream, one.steps, [-side / 2, -side / 2, side]);
+  const width = (pointed ? 3.4 : 2.6) * (0.5 + 0.5 * one.depth);
+  for (const [share, strength] of GLOW) {
+    context.globalAlpha = presence * strength * (0.35 + 0.65 * one.depth);
+    context.lineWidth = share * width;
+    context.stroke();
+  }
+  context.restore();
+  if (one.age < ENTERING) drawRipple(context, one, scale);
+}
+
+/** From 0 to 1: small and faint while it enters or leaves. */
+function presenceOf({ age, leaving }: Swimmer): number {
+  const entering = Math.min(1, age / ENTERING);
+  const staying = leaving === null ? 1 : Math.max(0, 1 - leaving / LEAVING);
+  return entering * (2 - entering) * staying;
+}
+
+/** A ring that widens where a new creature enters. */
+function drawRipple(
+  context: CanvasRenderingContext2D,
+  { age, position, stream }: Swimmer,
+  scale: number,
+): void {
+  const share = age / ENTERING;
+  context.globalAlpha = 0.5 * (1 - share) ** 2;
+  context.lineWidth = 1.5;
+  context.beginPath();
+  context.arc(...position, (0.3 + 1.6 * share) * scale * radiusOf(stream), 0, 2 * Math.PI);
+  context.stroke();
+}
+
+/** The way that it came, fainter the longer ago. */
+function drawTrail(context: CanvasRenderingContext2D, one: Swimmer, presence: number): void {
+  const points: (Point | null)[] = [...one.trail, one.position];
+  const pieces = 4;
+  for (let piece = 0; piece < pieces; piece++) {
+    const first = Math.floor((piece * (points.length - 1)) / pieces);
+    const last = Math.floor(((piece + 1) * (points.length - 1)) / pieces);
+    context.globalAlpha = presence * (0.03 + 0.2 * one.depth) * ((piece + 1) / pieces) ** 2;
+    context.lineWidth = 0.5 + 1.5 * one.depth * ((piece + 1) / pieces);
+    context.beginPath();
+    for (let i = first; i < last; i++) {
+      const [from, to] = [points[i]!, points[i + 1]!];
+      if (!from || !to) continue;
+      context.moveTo(...from);
+      context.lineTo(...to);
+    }
+    context.stroke();
+  }
+}
+
+function mixed(depth: number): number[] {
+  return FAR.map((far, i) => Math.round(far + (NEAR[i]! - far) * depth));
+}

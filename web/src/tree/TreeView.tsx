@@ -1,0 +1,176 @@
+/** A tree of life in a window: canvases, keys and pointer, with controls around it. */
+
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { NONE, indexOf, isElite, nameAt } from "../decode/phylogeny";
+import { TimeSlider } from "../archive/TimeSlider";
+import { readTankBatch, usePoses } from "../store/poses";
+import { navigate, setQuery } from "../store/router";
+import { useTheme } from "../ui/canvas";
+import { count } from "../ui/format";
+import { useGestures } from "./gestures";
+import { press } from "./keys";
+import type { Landmark } from "./landmarks";
+import { type ColourBy, shadesOf } from "./shades";
+import type { Shown, Stage } from "./stage";
+import { svgOf } from "./svg";
+import { TreeControls } from "./TreeControls";
+import { TreeCreature } from "./TreeCreature";
+import { TreeLegend } from "./TreeLegend";
+import { type Elements, type LoadedTree, type TreeCanvases, useArranged, useCanvases } from "./useTree";
+import { text } from "./text";
+
+interface Props {
+  buffer: ArrayBuffer;
+  /** The path of the run or creature. */
+  of: string;
+  /** The creature in the middle, if the tree is that of one. */
+  self?: string;
+  query: URLSearchParams;
+}
+
+export function TreeView({ buffer, of, self, query }: Props) {
+  const elements: Elements = { port: useRef(null), picture: useRef(null), overlay: useRef(null) };
+  const survivors = query.get("show") === "survivors";
+  const canvases = useCanvases(elements);
+  const loaded = useArranged(buffer, survivors, canvases);
+  const view = useShown(loaded, canvases, query, self);
+  const stage = () => canvases.parts.current!.stage;
+  return (
+    <>
+      {canvases.error && <p class="banner wrong">{text.failed(canvases.error)}</p>}
+      <TreeControls
+        {...{ of, survivors }}
+        by={view.by}
+        whole={view.whole}
+        zoom={canvases.zoom}
+        stage={stage}
+        onDrawing={() => svgOf(stage().scene)}
+      />
+      <div class="tree-window">
+        <TreePort {...{ elements, loaded, view, stage }} />
+        {loaded && (
+          <TreeCreature
+            {...loaded}
+            creature={view.focus}
+            hrefOf={view.hrefOf}
+            side={view.focus !== NONE && stage().isLeft(view.focus) ? "right" : "left"}
+          />
+        )}
+      </div>
+      {loaded && (
+        <>
+          <TimeSlider last={view.last} at={view.at} ready onMove={view.setAt} />
+          <TreeLegend tree={loaded.tree} shades={view.shades!} theme={view.theme} collapsed={!view.whole} />
+          <Summary {...loaded} />
+        </>
+      )}
+    </>
+  );
+}
+
+type ShownView = ReturnType<typeof useShown>;
+
+/** What the address, the slider and the pointer choose, passed on to the stage. */
+function useShown(loaded: LoadedTree | null, canvases: TreeCanvases, query: URLSearchParams, self?: string) {
+  const theme = useTheme();
+  const [at, setAt] = useState<number | null>(null);
+  const [hovered, setHovered] = useState(NONE);
+  const by: ColourBy = query.get("colour") === "operator" ? "operator" : "fitness";
+  const whole = query.get("lines") === "all";
+  const tree = loaded?.tree;
+  const chosen = query.get("creature") ?? self;
+  const selected = useMemo(() => placed(loaded, chosen), [loaded, chosen]);
+  const focus = hovered === NONE ? selected : hovered;
+  const poses = usePoses(readTankBatch, useNames(loaded, canvases.landmarks));
+  const shown: Shown = { at: at ?? Infinity, whole, by, theme, focus, poses };
+  useEffect(() => {
+    setHovered(NONE); // Rows are other creatures now.
+    const { stage, painter } = canvases.parts.current!;
+    if (loaded) stage.load(loaded, painter, { ...shown, focus: selected });
+  }, [loaded]);
+  useEffect(() => canvases.parts.current!.stage.show(shown));
+  const shades = useMemo(() => tree && shadesOf(tree, by, theme), [tree, by, theme]);
+  const hrefOf = (creature: number) => {
+    const run = tree!.run[creature]!;
+    return `/creatures/${nameAt(tree!, creature)}${run === NONE ? "" : `?run=${tree!.runs[run]}`}`;
+  };
+  const last = tree?.time.at(-1) ?? 0;
+  return { theme, at, setAt, by, whole, focus, selected, setHovered, last, shades, hrefOf };
+}
+
+/** The creatures with bodies, for their pose streams. */
+function useNames(loaded: LoadedTree | null, landmarks: readonly Landmark[]) {
+  return useMemo(() => {
+    if (!loaded) return [];
+    return landmarks.map(({ creature }) => ({ creature: nameAt(loaded.tree, creature) }));
+  }, [landmarks]);
+}
+
+/** The row of a creature in the tree as it is arranged. */
+function placed(loaded: LoadedTree | null, name: string | undefined): number {
+  const found = loaded && name ? indexOf(loaded.tree, name) : NONE;
+  return found !== NONE && loaded!.layout.row[found] !== NONE ? found : NONE;
+}
+
+interface PortProps {
+  elements: Elements;
+  loaded: LoadedTree | null;
+  view: ShownView;
+  stage: () => Stage;
+}
+
+function TreePort({ elements: { port, picture, overlay }, loaded, view, stage }: PortProps) {
+  const select = (creature: number) => {
+    view.setHovered(NONE);
+    setQuery({ creature: creature === NONE ? null : nameAt(loaded!.tree, creature) });
+  };
+  useGestures(port, {
+    pan: (by) => stage().pan(by),
+    zoom: (log, at) => stage().zoom(log, at),
+    hover: (at) => view.setHovered(at ? stage().creatureAt(at) : NONE),
+    tap: (at, byTouch) => {
+      const creature = stage().creatureAt(at);
+      // Fingers cannot hover: the first tap selects, the second opens.
+      if (creature === NONE || (byTouch && creature !== view.selected)) select(creature);
+      else navigate(view.hrefOf(creature));
+    },
+  });
+  const onKeyDown = (event: KeyboardEvent) => {
+    if (!loaded || event.ctrlKey || event.metaKey || event.altKey) return;
+    const selection = { selected: view.selected, select, open: (one: number) => navigate(view.hrefOf(one)) };
+    if (press(event, loaded, stage(), selection)) event.preventDefault();
+  };
+  return (
+    <div
+      ref={port}
+      class={`tree-port ${view.focus === NONE ? "" : "over"}`}
+      tabIndex={0}
+      role="application"
+      aria-label={text.label}
+      aria-describedby="tree-creature"
+      aria-busy={!loaded}
+      onKeyDown={onKeyDown}
+    >
+      <canvas ref={picture} class="tree-picture" />
+      <canvas ref={overlay} class="tree-overlay" />
+      {!loaded && <p class="quiet loading">{text.arranging}</p>}
+    </div>
+  );
+}
+
+function Summary({ tree, layout }: LoadedTree) {
+  const [first, now] = useMemo(() => {
+    let [roots, elites] = [0, 0];
+    for (let i = 0; i < tree.count; i++) {
+      if (layout.parent[i] === NONE) roots++;
+      if (isElite(tree, i)) elites++;
+    }
+    return [roots, elites];
+  }, [tree, layout]);
+  const alone = tree.count === 1 ? text.one : text.summary(count(tree.count), count(first), count(now));
+  return (
+    <p class="quiet small">
+      {alone} {text.hint}
+    </p>
+  );
+}
