@@ -44,14 +44,14 @@ const digits = (row: Row) => (isSame(row) || row.here === null ? 6 : 9);
 
 const COLUMNS: Column<Row>[] = [
   { title: text.number, cell: ({ name }) => text.measures[name]?.[0] ?? words(name) },
-  { title: text.recorded, cell: (row) => number(row.recorded, digits(row)) },
-  { title: text.here, cell: (row) => (row.here === null ? text.ofPlugin : number(row.here, digits(row))) },
   {
     title: text.sameBits,
     unseen: true,
     cell: (row) =>
       row.here !== null && <Mark good={isSame(row)} word={isSame(row) ? text.sameBits : text.otherBits} />,
   },
+  { title: text.recorded, cell: (row) => number(row.recorded, digits(row)) },
+  { title: text.here, cell: (row) => (row.here === null ? text.ofPlugin : number(row.here, digits(row))) },
 ];
 
 function Result({ found, rows, measured }: { found: Evaluated; rows: Row[]; measured: Measured }) {
