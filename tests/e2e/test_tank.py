@@ -4,7 +4,6 @@ import re
 
 import pytest
 from playwright.sync_api import Page, expect
-from small_runs import TINY
 
 NAMED = re.compile(r"^fitness .+generation \d+ of ")
 MOVES_MS = 700
@@ -109,10 +108,3 @@ def test_a_run_has_its_best_creature_beside_its_name(home, shared):
     face.scroll_into_view_if_needed()
     home.wait_for_timeout(500)
     home.wait_for_function(COLOURFUL, arg=face.element_handle())
-
-
-def test_a_tank_without_creatures_says_why(page, idle):
-    idle.product.submit(TINY | {"seed": 77})
-    page.goto(idle.product.url)
-    expect(page.get_by_role("heading", name="Nothing swims here yet")).to_be_visible()
-    expect(page.locator(".tank-note")).to_contain_text("No worker is alive")

@@ -13,6 +13,7 @@ SLOW = 300_000
 def test_runs_are_named_found_sorted_and_compared(product, page):
     page.goto(product.url)
     expect(page.get_by_role("link", name="Start the first run")).to_be_visible()
+    expect(page.get_by_role("heading", name="Nothing swims here yet")).to_be_visible()
     short, long = (submit(product, seed, generations) for seed, generations in ((1, 3), (2, 9)))
     page.goto(product.url)
     page.evaluate("window.neverReloaded = true")

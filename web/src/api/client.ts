@@ -76,9 +76,15 @@ export function readArchive(
   const asked = { ...run(id, { ...joined(measures), ...when }), ...AS_COLUMNS };
   return decoded<wire.Archive>(client.GET("/runs/{run_id}/archive", asked));
 }
+/** The library gives nothing for an empty body. */
+async function bytes(request: Promise<Answer<unknown>>): Promise<ArrayBuffer> {
+  const found = await typed<unknown>(request);
+  return found instanceof ArrayBuffer ? found : new ArrayBuffer(0);
+}
+
 /** The stored pose streams of the elites of cells, now or after a generation. */
 export const readArchivePoses = (id: string, cells: number[], when: { generation?: number }) =>
-  typed<ArrayBuffer>(
+  bytes(
     client.GET("/runs/{run_id}/archive/poses", {
       ...run(id, { cells: cells.join(), ...when }),
       parseAs: "arrayBuffer",
@@ -88,7 +94,7 @@ export const readArchivePoses = (id: string, cells: number[], when: { generation
 export const readTank = (limit: number) => success(client.GET("/tank", { params: { query: { limit } } }));
 /** The stored pose streams of some creatures. */
 export const readTankPoses = (creatures: string[]) =>
-  typed<ArrayBuffer>(
+  bytes(
     client.GET("/tank/poses", {
       params: { query: { creatures: creatures.join() } },
       parseAs: "arrayBuffer",
