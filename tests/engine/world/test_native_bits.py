@@ -22,7 +22,7 @@ NODE = shutil.which(
 RUN = """
 import { readFileSync } from "node:fs";
 import { WASI } from "node:wasi";
-const wasi = new WASI({ version: "preview1" });
+const wasi = new WASI({ version: "preview1", args: ["evaluations"] });
 const module = new WebAssembly.Module(readFileSync(process.argv[1]));
 wasi.start(new WebAssembly.Instance(module, wasi.getImportObject()));
 """
