@@ -108,7 +108,11 @@ def table(browser: Browser, product: Installation, runs: tuple[str, str, str, st
             "≤ 12 ms",
             lambda: pan(browser, births, body),
         ),
-        ("script of a page, gzipped", "≤ 110 kB, runs 70", lambda: script(browser, product, runs[2])),
+        (
+            "script of a page, gzipped",
+            "≤ 110 kB, runs 70",
+            lambda: script(browser, product, runs[2]),
+        ),
     ]
     rows = Table("", "bar", "found", title=f"The page in Chromium on {CORES} cores")
     for name, bar, measure in measures:
