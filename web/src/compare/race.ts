@@ -2,7 +2,7 @@
 
 import type { PoseStream } from "../decode/poses";
 import { type Point, BODY_INK } from "../replay/motion";
-import { loopOf, radiusOf, traceBody, velocityAt } from "../replay/poses";
+import { loopOf, radiusOf, traceBody, turnOfLoop, velocityAt } from "../replay/poses";
 import { type Size, prepare } from "../ui/canvas";
 import { number } from "../ui/format";
 import { text } from "./text";
@@ -21,26 +21,56 @@ const LOOPS = 2;
 
 /** The way from the start after some steps, in cells, y upwards; the creature swims to the right. */
 export function placeAfter(stream: PoseStream, steps: number): Point {
-  const ahead = wayAfter(stream, LOOPS * loopOf(stream).steps);
-  return turned(wayAfter(stream, steps), -Math.atan2(ahead[1], ahead[0]));
+  const way = wayOf(stream);
+  return turned(alongWay(way, steps), way.heading);
 }
 
-/** The same in the direction in which it was recorded. */
-function wayAfter(stream: PoseStream, steps: number): Point {
+interface Way {
+  /** Steps of a loop, and from frame to frame. */
+  whole: number;
+  every: number;
+  /** Places at the frames of the first loop and at its end. */
+  places: Point[];
+  /** Each loop is turned by this angle from the one before. */
+  turn: number;
+  /** The angle by which the way is turned so that it leads to the right. */
+  heading: number;
+}
+
+const ways = new WeakMap<PoseStream, Way>();
+
+function wayOf(stream: PoseStream): Way {
+  const known = ways.get(stream);
+  if (known) return known;
   const { steps: whole, every } = loopOf(stream);
+  const places: Point[] = [[0, 0]];
+  for (let frame = 0; frame < Math.round(whole / every); frame++) {
+    const [vx, vy] = velocityAt(stream, (frame + 0.5) * every); // Constant from frame to frame.
+    const [x, y] = places.at(-1)!;
+    places.push([x + every * vx, y + every * vy]);
+  }
+  const way: Way = { whole, every, places, turn: turnOfLoop(stream), heading: 0 };
+  const [x, y] = alongWay(way, LOOPS * whole);
+  way.heading = -Math.atan2(y, x);
+  ways.set(stream, way);
+  return way;
+}
+
+/** The place after some steps, in the direction in which the creature was recorded. */
+function alongWay({ whole, every, places, turn }: Way, steps: number): Point {
   const loops = Math.floor(steps / whole);
+  const end = places.at(-1)!;
   let [x, y] = [0, 0];
-  const add = (at: number, during: number) => {
-    const [vx, vy] = velocityAt(stream, at);
-    [x, y] = [x + during * vx, y + during * vy];
+  const add = (place: Point, loop: number) => {
+    const [dx, dy] = turned(place, loop * turn);
+    [x, y] = [x + dx, y + dy];
   };
-  // The velocity is constant from frame to frame; a later loop turns by as much as the one before.
-  const partial = (loop: number, until: number) => {
-    for (let at = 0; at < until - 1e-9; at += every)
-      add(loop * whole + at + every / 4, Math.min(every, until - at));
-  };
-  for (let loop = 0; loop < loops; loop++) partial(loop, whole);
-  partial(loops, steps - loops * whole);
+  for (let loop = 0; loop < loops; loop++) add(end, loop);
+  const frames = (steps - loops * whole) / every;
+  const before = Math.min(Math.floor(frames), places.length - 2);
+  const [a, b] = [places[before]!, places[before + 1]!];
+  const share = frames - before;
+  add([a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])], loops);
   return [x, y];
 }
 
@@ -48,11 +78,6 @@ function turned([x, y]: Point, angle: number): Point {
   const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
   return [cos * x - sin * y, sin * x + cos * y];
 }
-
-const headingOf = (stream: PoseStream) => {
-  const [x, y] = wayAfter(stream, LOOPS * loopOf(stream).steps);
-  return -Math.atan2(y, x);
-};
 
 /** Pixels of a cell: the longest body just fits into its lane. */
 export function scaleOf(lanes: readonly Lane[], { height }: Size): number {
@@ -126,7 +151,7 @@ function drawLane(
   const side = (scale * radiusOf(stream)) / 0.42;
   context.save();
   context.translate(...at(steps));
-  context.rotate(-headingOf(stream));
+  context.rotate(-wayOf(stream).heading);
   traceBody(context, stream, steps, [-side / 2, -side / 2, side]);
   for (const [wide, strength] of [
     [9, 0.1],

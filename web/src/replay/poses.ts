@@ -95,6 +95,9 @@ function rotation(angle: number): (point: Point) => Point {
 /** The largest distance of a node from the mean position, in cells. */
 export const radiusOf = (stream: PoseStream): number => shapeOf(stream).radius;
 
+/** The angle that the body turns by while its frames play once. */
+export const turnOfLoop = (stream: PoseStream): number => shapeOf(stream).turn;
+
 /** The velocity of the mean position, in cells a step, some steps after the first frame. */
 export function velocityAt(stream: PoseStream, steps: number): Point {
   const { means, turn } = shapeOf(stream);
