@@ -1,7 +1,9 @@
 /** Choices of the map: its axes, coloured measure and palette, and ranges of the other descriptors. */
 
+import { useRef } from "preact/hooks";
 import type { Archive, Reprojection, Run } from "../api/types";
 import { valueAt } from "../charts/plot/scale";
+import { useListener } from "../store/polling";
 import { setQuery } from "../store/router";
 import { PALETTES } from "../ui/colours";
 import { count, number, percent, words } from "../ui/format";
@@ -11,6 +13,7 @@ import { type MapAxis, containerOf, scaleOf } from "./axes";
 import { coloursOf } from "./colouring";
 import type { Slice } from "./projection";
 import { setOf, setReprojectedAxes } from "./reprojection";
+import { TRUST_CHOICES } from "./trust";
 import { containerText, text } from "./text";
 
 const PALETTE_CHOICES = PALETTES.map((name) => [name, words(name)] as const);
@@ -27,38 +30,64 @@ const CREATURES = [
 ] as const;
 
 export function MapOptions({ run, archive, view }: Props) {
-  const { axes, choices, colour, of, palette } = view;
+  const { axes, choices, colour } = view;
   const [x, y] = [axes[0].name, axes[1].name];
   const choose = (axis: "x" | "y") => (name: string) => {
     const [other, old] = axis === "x" ? [y, x] : [x, y];
     // The axes are swapped if the other one is selected.
     const changed = { x, y, [axis]: name, ...(name === other && { [axis === "x" ? "y" : "x"]: old }) };
-    if (of === "history") setReprojectedAxes(changed);
+    if (view.of === "history") setReprojectedAxes(changed);
     else setQuery(changed);
   };
   return (
-    <div class="row archive-choices">
-      <Segments label={text.creaturesShown} choices={CREATURES} value={of} onSelect={setOf} />
-      <p class="row">
+    <div class="archive-choices">
+      <div class="map-choices">
         <Select title={text.across} {...{ choices, value: x }} onChange={choose("x")} />
         <Select title={text.up} {...{ choices, value: y }} onChange={choose("y")} />
-        {of === "elites" && <span class="quiet small">{kindOf(run, archive)}</span>}
-      </p>
-      <p class="row">
         <Select
           title={text.colour}
           choices={coloursOf(archive)}
           value={colour}
           onChange={(name) => setQuery({ colour: name === "fitness" ? null : name })}
         />
+        <MoreOptions {...{ run, archive, view }} />
+      </div>
+    </div>
+  );
+}
+
+/** What is rarely changed, in a panel over the map; a dot says that something has been. */
+function MoreOptions({ run, archive, view: { of, palette, trust } }: Props) {
+  const changed = of === "history" || trust !== "" || palette !== PALETTES[0];
+  const panel = useRef<HTMLDetailsElement>(null);
+  useListener("pointerdown", ({ target }) => {
+    if (!panel.current?.contains(target as Node)) panel.current?.removeAttribute("open");
+  });
+  const press = (event: KeyboardEvent) => {
+    if (event.key === "Escape") panel.current?.removeAttribute("open");
+  };
+  return (
+    <details ref={panel} class="more-choices" onKeyDown={press}>
+      <summary class={changed ? "changed" : ""}>{text.more}</summary>
+      <div class="card">
+        <Segments label={text.creaturesShown} choices={CREATURES} value={of} onSelect={setOf} />
+        {of === "elites" && (
+          <Select
+            title={text.verdict}
+            choices={TRUST_CHOICES}
+            value={trust}
+            onChange={(verdict) => setQuery({ trust: verdict || null })}
+          />
+        )}
         <Select
           title={text.palette}
           choices={PALETTE_CHOICES}
           value={palette}
-          onChange={(name) => setQuery({ palette: name === "viridis" ? null : name })}
+          onChange={(name) => setQuery({ palette: name === PALETTES[0] ? null : name })}
         />
-      </p>
-    </div>
+        {of === "elites" && <span class="quiet small">{kindOf(run, archive)}</span>}
+      </div>
+    </details>
   );
 }
 

@@ -121,6 +121,7 @@ function Table({ query, listed, experiments, selected, onSelect }: TableProps) {
   const poses = usePoses(
     readTankBatch,
     faces.filter((face) => face !== null).map((creature) => ({ creature })),
+    false,
   );
   return (
     <table class="runs">
