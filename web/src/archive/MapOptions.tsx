@@ -1,11 +1,10 @@
 /** Choices of the map: its axes, coloured measure and palette, and ranges of the other descriptors. */
 
-import { useRef } from "preact/hooks";
 import type { Archive, Reprojection, Run } from "../api/types";
 import { valueAt } from "../charts/plot/scale";
-import { useListener } from "../store/polling";
 import { setQuery } from "../store/router";
 import { PALETTES } from "../ui/colours";
+import { Dropdown } from "../ui/Dropdown";
 import { count, number, percent, words } from "../ui/format";
 import { Segments, Select } from "../ui/Select";
 import { type ArchiveView, setSlice } from "./archiveView";
@@ -59,35 +58,25 @@ export function MapOptions({ run, archive, view }: Props) {
 /** What is rarely changed, in a panel over the map; a dot says that something has been. */
 function MoreOptions({ run, archive, view: { of, palette, trust } }: Props) {
   const changed = of === "history" || trust !== "" || palette !== PALETTES[0];
-  const panel = useRef<HTMLDetailsElement>(null);
-  useListener("pointerdown", ({ target }) => {
-    if (!panel.current?.contains(target as Node)) panel.current?.removeAttribute("open");
-  });
-  const press = (event: KeyboardEvent) => {
-    if (event.key === "Escape") panel.current?.removeAttribute("open");
-  };
   return (
-    <details ref={panel} class="more-choices" onKeyDown={press}>
-      <summary class={changed ? "changed" : ""}>{text.more}</summary>
-      <div class="card">
-        <Segments label={text.creaturesShown} choices={CREATURES} value={of} onSelect={setOf} />
-        {of === "elites" && (
-          <Select
-            title={text.verdict}
-            choices={TRUST_CHOICES}
-            value={trust}
-            onChange={(verdict) => setQuery({ trust: verdict || null })}
-          />
-        )}
+    <Dropdown title={text.more} changed={changed}>
+      <Segments label={text.creaturesShown} choices={CREATURES} value={of} onSelect={setOf} />
+      {of === "elites" && (
         <Select
-          title={text.palette}
-          choices={PALETTE_CHOICES}
-          value={palette}
-          onChange={(name) => setQuery({ palette: name === PALETTES[0] ? null : name })}
+          title={text.verdict}
+          choices={TRUST_CHOICES}
+          value={trust}
+          onChange={(verdict) => setQuery({ trust: verdict || null })}
         />
-        {of === "elites" && <span class="quiet small">{kindOf(run, archive)}</span>}
-      </div>
-    </details>
+      )}
+      <Select
+        title={text.palette}
+        choices={PALETTE_CHOICES}
+        value={palette}
+        onChange={(name) => setQuery({ palette: name === PALETTES[0] ? null : name })}
+      />
+      {of === "elites" && <span class="quiet small">{kindOf(run, archive)}</span>}
+    </Dropdown>
   );
 }
 
