@@ -65,14 +65,20 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
         {listed.length > 0 && (
           <RunTable {...{ query, address, listed, experiments, selected }} onSelect={choose} />
         )}
-        <datalist id={TAGS_ID}>
-          {tags.map((tag) => (
-            <option key={tag} value={tag} />
-          ))}
-        </datalist>
+        <KnownTags tags={tags} />
         {next && <LoadMore query={listedQuery} />}
       </Page>
     </>
+  );
+}
+
+function KnownTags({ tags }: { tags: string[] }) {
+  return (
+    <datalist id={TAGS_ID}>
+      {tags.map((tag) => (
+        <option key={tag} value={tag} />
+      ))}
+    </datalist>
   );
 }
 
