@@ -8,7 +8,7 @@ import { navigate, setQuery } from "../store/router";
 import { containerOf, measureOf, objectiveOf } from "./axes";
 import { ArchiveMap } from "./ArchiveMap";
 import { BinElites } from "./BinElites";
-import { MapOptions, ReprojectionFigures, Slices } from "./MapOptions";
+import { MapOptions, kindOf, ReprojectionFigures, Slices } from "./MapOptions";
 import { TimeSlider } from "../replay/TimeSlider";
 import { count } from "../ui/format";
 import { Segments } from "../ui/Select";
@@ -48,8 +48,13 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
   const key = [view.axes[0].name, view.axes[1].name, view.of, view.reprojection !== null].join(" ");
   return (
     <div data-tour={tourPart}>
-      <Head count={view.elites.size} gallery={gallery} onTour={tour.begin} />
-      <MapOptions run={run} archive={archive} view={view} />
+      <Head
+        count={view.elites.size}
+        kind={owner && kindOf(run, archive)}
+        gallery={gallery}
+        onTour={tour.begin}
+      />
+      <MapOptions archive={archive} view={view} />
       {view.reprojection && <ReprojectionFigures archive={view.archive} reprojection={view.reprojection} />}
       <Slices slices={view.slices} />
       {gallery ? (
@@ -140,11 +145,20 @@ function useViewProps(
   };
 }
 
-function Head({ count: elites, gallery, onTour }: { count: number; gallery: boolean; onTour: () => void }) {
+interface HeadProps {
+  count: number;
+  /** What the places of the archive are. */
+  kind: string | null;
+  gallery: boolean;
+  onTour: () => void;
+}
+
+function Head({ count: elites, kind, gallery, onTour }: HeadProps) {
   return (
     <div class="card-head archive-head">
       <h2 id="archive-title">{text.archive}</h2>
       <span class="quiet">{text.elites(count(elites))}</span>
+      {kind && <span class="quiet small">{kind}</span>}
       <span class="spring" />
       <button class="plain small-button" onClick={onTour}>
         {text.explain}

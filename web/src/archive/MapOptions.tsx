@@ -18,7 +18,6 @@ import { containerText, text } from "./text";
 const PALETTE_CHOICES = PALETTES.map((name) => [name, words(name)] as const);
 
 interface Props {
-  run: Run;
   archive: Archive;
   view: ArchiveView;
 }
@@ -28,7 +27,7 @@ const CREATURES = [
   ["history", text.allEntered],
 ] as const;
 
-export function MapOptions({ run, archive, view }: Props) {
+export function MapOptions({ archive, view }: Props) {
   const { axes, choices, colour } = view;
   const [x, y] = [axes[0].name, axes[1].name];
   const choose = (axis: "x" | "y") => (name: string) => {
@@ -49,14 +48,14 @@ export function MapOptions({ run, archive, view }: Props) {
           value={colour}
           onChange={(name) => setQuery({ colour: name === "fitness" ? null : name })}
         />
-        <MoreOptions {...{ run, archive, view }} />
+        <MoreOptions {...view} />
       </div>
     </div>
   );
 }
 
 /** What is rarely changed, in a panel over the map; a dot says that something has been. */
-function MoreOptions({ run, archive, view: { of, palette, trust } }: Props) {
+function MoreOptions({ of, palette, trust }: ArchiveView) {
   const changed = of === "history" || trust !== "" || palette !== PALETTES[0];
   return (
     <Dropdown title={text.more} changed={changed}>
@@ -75,7 +74,6 @@ function MoreOptions({ run, archive, view: { of, palette, trust } }: Props) {
         value={palette}
         onChange={(name) => setQuery({ palette: name === PALETTES[0] ? null : name })}
       />
-      {of === "elites" && <span class="quiet small">{kindOf(run, archive)}</span>}
     </Dropdown>
   );
 }
@@ -114,7 +112,7 @@ export function ReprojectionFigures({
 const signed = (value: number) => `${value < 0 ? "−" : "+"}${Math.abs(value).toFixed(2)}`;
 
 /** A description of the cells, unless the map shows them. */
-function kindOf(run: Run, { kind, cells, axes }: Archive): string {
+export function kindOf(run: Run, { kind, cells, axes }: Archive): string {
   if (kind === "pool") return text.places(count(cells), containerText(containerOf(run)?.kind ?? ""));
   if (kind === "cvt") return text.voronoi(count(cells), axes.length);
   return axes.length === 2 ? "" : text.grid(count(cells), axes.length);
