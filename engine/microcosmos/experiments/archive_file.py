@@ -20,6 +20,7 @@ from ..search.leaves import filled, leaves
 from ..version import VERSION
 from . import fronts
 from .epochs import Epochs
+from .named import Choices, InitialCreatures
 from .resume_check import devices_of
 from .state import (
     CURVES,
@@ -27,7 +28,6 @@ from .state import (
     OUTCOMES,
     PREDICTIONS,
     Infeasible,
-    InitialCreatures,
     Lineage,
     Plan,
     Screened,
@@ -76,6 +76,9 @@ def save(plan: Plan, state: State) -> bytes:
     if state.initial is not None:
         genes = columns(state.initial.genotypes)
         tree["initial"] = {"creature": state.initial.creature, "genomes": genes}
+    if len(state.choices.generation):
+        genes = columns(state.choices.genotypes)
+        tree["choices"] = vars(state.choices) | {"genotypes": genes}
     return file.dump(tree, _attributes(plan, state))
 
 
@@ -140,6 +143,9 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
             initial["creature"], from_columns(state.elites.genotypes, initial["genomes"])
         ),
     )
+    if "choices" in tree:
+        genes = from_columns(state.elites.genotypes, tree["choices"]["genotypes"])
+        restored = replace(restored, choices=Choices(**tree["choices"] | {"genotypes": genes}))
     if "model" in loop:
         predictions = np.stack([tree["screening"][name] for name in PREDICTIONS], 1)
         columns_of = {name: np.asarray(x) for name, x in loop["model"].items()}
