@@ -1,4 +1,4 @@
-"""Files of choices: creatures that people chose in a run, and from which generation they count."""
+"""Files of choices: creatures that people chose in a run, and when each began to count."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any

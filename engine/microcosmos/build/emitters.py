@@ -50,10 +50,11 @@ BREEDING = 2**31 + 1
 def build_breeding_emission(plan: Plan) -> Callable[..., Any]:
     """Build the function that emits children of chosen creatures; see
     `experiments.offspring.Programs.breed`. They are drawn by their weights, as curiosity."""
-    breeders: Any = tuple(
-        replace(one, select="curiosity") if hasattr(one, "select") else one
-        for one in plan.emitters
-    )
+
+    def by_weight(emitter: Any) -> Any:
+        return replace(emitter, select="curiosity") if hasattr(emitter, "select") else emitter
+
+    breeders = tuple(map(by_weight, plan.emitters))
 
     def bred(parents, counters, generation, emitter):
         key = jax.random.fold_in(plan.key, BREEDING)

@@ -208,8 +208,9 @@ def build_stop_limits(stop: spec.Stop) -> Limits:
 def build_breeding(chosen: spec.Evolution) -> Breeding | None:
     """Build the settings of descent from chosen creatures, if the search allows it."""
     asked = getattr(chosen.search, "breeding", None)
-    refused = asked is None or spec.breeding_refusal(chosen)
-    return None if refused else Breeding(asked.share, asked.half_life)
+    if asked is None or spec.breeding_refusal(chosen):
+        return None
+    return Breeding(asked.share, asked.half_life)
 
 
 def build_reevaluation(chosen: spec.Evolution) -> Reevaluation | None:

@@ -29,6 +29,15 @@ from .initial import From, with_initial
 from .modules import Modules, load_modules
 from .specs import changed, presets, read_spec, with_generations
 
+Choices = Annotated[
+    Path | None,
+    Option(
+        exists=True,
+        dir_okay=False,
+        help="File of chosen creatures that generations descend from, as a server exports it.",
+    ),
+]
+
 
 @app.command()
 def evolve(
@@ -48,14 +57,7 @@ def evolve(
     ] = 60.0,
     other_device: OtherDevice = False,
     begin_from: From = None,
-    choices: Annotated[
-        Path | None,
-        Option(
-            exists=True,
-            dir_okay=False,
-            help="Chosen creatures that the generations descend from, as exported by a server.",
-        ),
-    ] = None,
+    choices: Choices = None,
     cluster: Annotated[
         str | None,
         Option(help="Scheduler whose helpers compute too, like tls://host:8786."),
