@@ -208,7 +208,7 @@ def build_stop_limits(stop: spec.Stop) -> Limits:
 def build_breeding(chosen: spec.Evolution) -> Breeding | None:
     """Build the settings of descent from chosen creatures, if the search allows it."""
     asked = getattr(chosen.search, "breeding", None)
-    if asked is None or spec.breeding_refusal(chosen):
+    if asked is None or spec.breeding_refusal(chosen.model_dump(mode="json")):
         return None
     return Breeding(asked.share, asked.half_life)
 

@@ -39,7 +39,7 @@ def evolve(
     the file is of another spec or of other `choices`, where a choice is of no creature of the
     run, and, without `other_device`, where the file is of another kind of device.
     """
-    if choices and (refusal := breeding_refusal(spec)):
+    if choices and (refusal := breeding_refusal(spec.model_dump(mode="json"))):
         raise ValueError(refusal)
     built = build(spec, initial) if initial else build(spec)
     with over(built) as experiment:

@@ -32,6 +32,7 @@ class UnknownCreature(ValueError):
             f"archive of this run before, got {names[0]}. Choices repeat a run only where its "
             f"bytes are the same: the same spec, version and kind of device (here {device})"
         )
+        self.names = tuple(names)
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,6 @@
 """Descent from creatures that people choose while a run goes on."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from .base import Part, field, sourced
@@ -23,14 +24,15 @@ class Breeding(Part):
     in this proportion."""
 
 
-def breeding_refusal(spec: Any) -> str | None:
-    """Return why the runs of a spec cannot descend from chosen creatures; None if they can."""
-    if spec.experiment != "quality-diversity":
+def breeding_refusal(spec: Mapping[str, Any]) -> str | None:
+    """Return why runs of a spec, a document, cannot descend from chosen creatures; None if they
+    can."""
+    if spec["experiment"] != "quality-diversity":
         return (
             "`experiment` must be 'quality-diversity' to descend from chosen creatures: others "
-            f"draw no parents from an archive, got {spec.experiment!r}"
+            f"draw no parents from an archive, got {spec['experiment']!r}"
         )
-    operators = [emitter.operator for emitter in spec.search.emitters]
+    operators = [emitter["operator"] for emitter in spec["search"]["emitters"]]
     if learners := [operator for operator in operators if operator not in STATELESS]:
         return (
             f"`search.emitters` must be among {', '.join(STATELESS)} to descend from chosen "
