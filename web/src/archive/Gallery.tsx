@@ -6,6 +6,7 @@ import { useSteps } from "../replay/clock";
 import * as api from "../api/client";
 import { type ReadBatch, type Visible, usePoses } from "../store/poses";
 import { setQuery } from "../store/router";
+import { useKnownChoices } from "../store/choices";
 import { type Size, useOnScreen, useSize, px, useTheme } from "../ui/canvas";
 import { AxisLabels, ColourLegend } from "./labels";
 import type { MapAxis } from "./axes";
@@ -134,7 +135,9 @@ function Tiles({ run, at, projection, selected: cells, ...props }: TilesProps) {
   const visible = bins.map((bin) => tiles.get(bin)!).map(({ cell, elite }) => ({ cell, ...elite }));
   const poses = usePoses(run === null ? null : batchOf(run, at), visible);
   const selected = useMemo(() => binsOf(cells, projection), [cells, projection]);
-  const picture = { shape, side, tiles, bins, colouring, poses, theme, marked, selected };
+  const choices = useKnownChoices(run ?? "");
+  const chosen = useMemo(() => new Set(choices?.items.map(({ creature }) => creature)), [choices]);
+  const picture = { shape, side, tiles, bins, colouring, poses, theme, marked, selected, chosen };
   useSteps(useOnScreen(canvas), (steps) => {
     const element = canvas.current; // Null in the frame after the page was left.
     if (element && size.width > 0) drawGallery(element, size, picture, scroll, steps);
