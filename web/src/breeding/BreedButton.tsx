@@ -46,9 +46,5 @@ export function BreedCreature({ run: id, creature }: { run: string; creature: st
   if (!["queued", "running", "paused"].includes(run.status)) return null;
   const waits = choices.items.some((one) => one.creature === creature && one.generation === null);
   if (!waits) return <BreedButton run={run} creatures={[creature]} />;
-  return (
-    <button title={text.takeBackAll(1)} onClick={() => void takeBack(id, [creature])}>
-      {text.takeBack}
-    </button>
-  );
+  return <button onClick={() => void takeBack(id, [creature])}>{text.takeBackChoice}</button>;
 }

@@ -11,6 +11,7 @@ export const text = {
   next: "From the next generation on",
   from: (generation: string) => `From generation ${generation} on`,
   takeBack: "Take back",
+  takeBackChoice: "Take back the choice",
   takeBackAll: (creatures: number) =>
     creatures === 1 ? "Take back the chosen creature" : `Take back the ${creatures} chosen creatures`,
   creature: (name: string) => `Creature ${name}`,
