@@ -107,6 +107,10 @@ class Run(Record):
         None until that begins."""
         return _choices(self._connection.read(f"{self._path}/choices"))
 
+    def exported_choices(self) -> dict[str, Any]:
+        """Return the file with which `microcosmos evolve SPEC --choices FILE` repeats it."""
+        return self._connection.read(f"{self._path}/choices.json")
+
     def delete(self) -> Self:
         """Move it to the bin; `restore` brings it back within a day."""
         try:

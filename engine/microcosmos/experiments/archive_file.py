@@ -143,9 +143,6 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
             initial["creature"], from_columns(state.elites.genotypes, initial["genomes"])
         ),
     )
-    if "choices" in tree:
-        genes = from_columns(state.elites.genotypes, tree["choices"]["genotypes"])
-        restored = replace(restored, choices=Choices(**tree["choices"] | {"genotypes": genes}))
     if "model" in loop:
         predictions = np.stack([tree["screening"][name] for name in PREDICTIONS], 1)
         columns_of = {name: np.asarray(x) for name, x in loop["model"].items()}
@@ -153,8 +150,16 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
         restored = replace(restored, screened=Screened(model, predictions))
     if restored.first is not None:
         restored = replace(restored, first=restored.first.replaced(cells, archive["first"]))
-    restored = _with_container(restored, tree)
+    restored = _with_container(_with_choices(restored, tree), tree)
     return prolonged(restored) if restored.generation < plan.generations else restored
+
+
+def _with_choices(state: State, tree: file.Tree) -> State:
+    if "choices" not in tree:
+        return state
+    columns_of = tree["choices"]
+    genes = from_columns(state.elites.genotypes, columns_of["genotypes"])
+    return replace(state, choices=Choices(**columns_of | {"genotypes": genes}))
 
 
 def _hold_container(tree: dict[str, Any], state: State) -> None:
