@@ -25,7 +25,7 @@ export function ChoicesCard({ run, choices, children }: Props) {
     <Card id="chosen" title={text.chosen}>
       <p class="quiet small">
         {text.about(percent(share), number(half_life))}
-        {children !== null && ` ${text.now(count(children), count(batch))}`}
+        {children !== null && ` ${text.now(children, count(batch))}`}
       </p>
       <ol class="chosen">
         {groupsOf(choices).map((group) => (

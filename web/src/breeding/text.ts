@@ -7,7 +7,8 @@ export const text = {
   chosen: "Chosen to breed",
   about: (share: string, halfLife: string) =>
     `${share} of the next generation descends from the chosen. This share halves every ${halfLife} generations.`,
-  now: (children: string, batch: string) => `${children} of the last ${batch} offspring descend from them.`,
+  now: (children: number, batch: string) =>
+    `${children} of the last ${batch} offspring ${children === 1 ? "descends" : "descend"} from them.`,
   next: "From the next generation on",
   from: (generation: string) => `From generation ${generation} on`,
   takeBack: "Take back",

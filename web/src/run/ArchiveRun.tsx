@@ -6,7 +6,6 @@ import { useChoices } from "../store/choices";
 import { lazy } from "../ui/lazy";
 import { ArchiveCard } from "../archive/ArchiveCard";
 import { CurvesCard, SearchCard, useComparedRuns } from "./RunCurves";
-import { newest } from "../charts/curves/plots";
 import { text } from "./text";
 import "./run.css";
 
@@ -41,7 +40,7 @@ export function ArchiveRun({ run, detail, query }: Props) {
       {chosen && (
         <ChoicesCard
           {...{ run, choices: chosen }}
-          children={newest(curves?.summary["chosen: children"] ?? [])}
+          children={curves?.summary["chosen: children"]?.at(-1) ?? null}
         />
       )}
       {curves && <SearchCard {...{ run, curves, query, compared }} />}
