@@ -43,10 +43,10 @@ def parse(data: bytes) -> dict[int, Files]:
         found = TypeAdapter(Document).validate_json(data)
     except ValidationError as error:
         first = error.errors()[0]
-        needed = first["msg"].removeprefix("Input should be ")
-        raise CreatureError(
-            field_path(first["loc"]) or "file", needed, first["input"]
-        ) from None
+        field, needed = field_path(first["loc"]), first["msg"].removeprefix("Input should be ")
+        if first["type"] == "missing":
+            needed = "a value"
+        raise CreatureError(field or "file", needed, first["input"]) from None
     files = {one["sha256"]: one for one in map(parse_creature, found.creatures)}
     chosen: dict[int, Files] = {}
     for choice in sorted(set(found.choices), key=lambda one: (one.generation, one.creature)):

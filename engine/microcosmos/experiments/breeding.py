@@ -53,13 +53,13 @@ def choose(plan: Plan, state: State, files: Sequence[Mapping[str, Any]]) -> Stat
     Raise `UnknownCreature` for one that never entered the archive.
     """
     assert plan.breeding is not None, "`spec.breeding_refusal` says why"
+    if not files:
+        return state
     given = {file["sha256"]: file["identity"]["genome"] for file in files}
     generation, names = state.generation + 1, sorted(given)
     known = {bytes(name).hex() for name in state.lineage.creature}
     if unknown := [name for name in names if name not in known]:
         raise UnknownCreature(generation, unknown, plan.device)
-    if not names:
-        return state
     rows = rows_of(names, [genomes.read(given[name], plan.encoding) for name in names])
     new = Choices(np.full(len(names), generation, np.int32), *rows)
     choices = jax.tree.map(lambda *parts: np.concatenate(parts), state.choices, new)

@@ -116,6 +116,9 @@ def test_evolve_sets_fields_and_makes_the_folder_of_its_file(invoke, tmp_path, m
     assert carried[0][0].world.viscosity == 0.07
     assert (tmp_path / "new" / "folder").is_dir()
     invoke(*command, "--set", "world.viscosity=-1", code=2)
+    (tmp_path / "choices.json").write_text('{"choices": []}')
+    refused = invoke(*command, "--choices", "choices.json", code=2)
+    assert "--choices: choices.json: `creatures` needs a value" in refused
 
 
 @pytest.mark.long
