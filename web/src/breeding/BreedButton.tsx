@@ -1,7 +1,7 @@
 /** The button that chooses creatures for the next generations to descend from. */
 
 import type { Run } from "../api/types";
-import { MAX_CHOSEN, choose, refusalOf, takeBack, useChoices, useKnownChoices } from "../store/choices";
+import { MAX_CHOSEN, choose, goesOn, takeBack, useChoices, useKnownChoices } from "../store/choices";
 import { useRefusal } from "../store/principal";
 import { useFetched } from "../store/fetch";
 import { applyResponse, useStore } from "../store/store";
@@ -15,12 +15,12 @@ interface Props {
   onChosen?: () => void;
 }
 
-/** Nothing where the run is somebody else's, or no search whose creatures can be chosen. */
+/** Nothing where the run has ended or is somebody else's; a press says why a search refuses. */
 export function BreedButton({ run, creatures, onChosen }: Props) {
   const choices = useKnownChoices(run.id);
   const forbidden = useRefusal(run);
-  if (!choices || forbidden || run.status === "finished") return null;
-  const refusal = creatures.length > MAX_CHOSEN ? text.tooMany(MAX_CHOSEN) : refusalOf(run, choices);
+  if (!choices || forbidden || !goesOn(run)) return null;
+  const refusal = creatures.length > MAX_CHOSEN ? text.tooMany(MAX_CHOSEN) : choices.refusal;
   const press = async () => {
     if (refusal) showToast({ kind: "wrong", text: refusal });
     else if (await choose(run.id, creatures)) onChosen?.();
@@ -42,8 +42,7 @@ export function BreedCreature({ run: id, creature }: { run: string; creature: st
   const { error } = useFetched(() => applyResponse("response", api.readRun(id)), [id]);
   const run = useStore((state) => state.runs.get(id));
   const choices = useChoices(run);
-  if (error || !run || !choices || choices.refusal) return null;
-  if (!["queued", "running", "paused"].includes(run.status)) return null;
+  if (error || !run || !choices || choices.refusal || !goesOn(run)) return null;
   const waits = choices.items.some((one) => one.creature === creature && one.generation === null);
   if (!waits) return <BreedButton run={run} creatures={[creature]} />;
   return <button onClick={() => void takeBack(id, [creature])}>{text.takeBackChoice}</button>;

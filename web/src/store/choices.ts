@@ -47,11 +47,8 @@ export async function takeBack(id: string, creatures: string[]): Promise<void> {
   if (choices) keep(id, choices);
 }
 
-/** Why no creatures of a run can be chosen; null if they can. */
-export function refusalOf({ status }: Run, choices: Choices): string | null {
-  if (choices.refusal) return choices.refusal;
-  return ["queued", "running", "paused"].includes(status) ? null : text.noNextGeneration;
-}
+/** True while a run may have another generation to begin. */
+export const goesOn = ({ status }: Run) => ["queued", "running", "paused"].includes(status);
 
 export interface Group {
   /** The first generation that descends from them; null until it begins. */

@@ -8,7 +8,6 @@ export const text = {
   inBin: (title: string) => `${title} is in the bin.`,
   chosen: (creatures: number) =>
     `${creatures === 1 ? "1 creature" : `${creatures} creatures`} chosen. The next generations descend from ${creatures === 1 ? "it" : "them"}, too.`,
-  noNextGeneration: "The run has ended: no generation follows. Start a new run from the creatures.",
   readOnly: "Your token is read-only.",
   ownerOnly: (owner: string | null) => `Only ${owner ? `${owner} or an admin` : "an admin"} can change it.`,
   outcomes: { pause: "will pause", resume: "queued again", cancel: "will be cancelled" },
