@@ -26,7 +26,7 @@ def read_runs(
     curves = _curves(session, runs)
     reasons = position.reasons(services, session, runs) if queue else {}
     names = tokens.owner_names(session, (run.owner for run in runs))
-    faces = _faces(session, runs)
+    faces = faces_of(session, runs)
     return [
         _read(
             run,
@@ -60,7 +60,7 @@ def _curves(session: Session, runs: Sequence[Run]) -> dict[UUID, list[Generation
     return curves
 
 
-def _faces(session: Session, runs: Sequence[Run]) -> dict[UUID, str]:
+def faces_of(session: Session, runs: Sequence[Run]) -> dict[UUID, str]:
     """Return the best creature of each run that has one."""
     best = (
         select(Elite.creature)

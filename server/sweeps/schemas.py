@@ -157,6 +157,10 @@ class SweepRun(Wire):
     status: Status
     generation: int
     generations: int
+    face: str | None
+    """Its best creature."""
+    best: float | None
+    """The fitness of that creature."""
 
 
 class CaseSummary(Wire):

@@ -11,6 +11,7 @@ from sqlalchemy.orm import Session
 
 from ..runs.curves import numbers, thinned
 from ..runs.lifecycle import NOT_IN_BIN
+from ..runs.overview import faces_of
 from ..tables import CANCELLED, CORRECTED, FAILED, FINISHED, Generation, Run, Sweep
 from .overview import combinations
 from .schemas import (
@@ -48,7 +49,7 @@ class Recorded:
 
 def recorded(session: Session, sweep: Sweep, points: int | None) -> Recorded:
     """Read all generations, or about `points` of them; fewer for very many runs."""
-    names = ("id", "sweep_index", "status", "generation", "generations")
+    names = ("id", "sweep_index", "status", "generation", "generations", "best")
     columns = [getattr(Run, name) for name in names]
     mine = select(*columns).where(Run.sweep == sweep.id, NOT_IN_BIN).order_by(Run.sweep_index)
     runs = session.execute(mine).all()
@@ -94,6 +95,7 @@ def summary(session: Session, sweep: Sweep, points: int | None) -> SweepSummary:
     cases = combinations(sweep.grid)
     of_case = np.array([run.sweep_index for run in found.runs], int) % len(cases)
     seeds = [seed for seed in sweep.seeds or [None] for _ in cases]
+    faces = faces_of(session, found.runs)
     members = [
         SweepRun(
             run=run.id,
@@ -101,6 +103,8 @@ def summary(session: Session, sweep: Sweep, points: int | None) -> SweepSummary:
             status=run.status,
             generation=run.generation,
             generations=run.generations,
+            face=faces.get(run.id),
+            best=run.best,
         )
         for run in found.runs
     ]

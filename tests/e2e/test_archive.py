@@ -123,8 +123,9 @@ def test_the_history_plays_to_its_end(page, size):
 def test_colours_and_axes_offer_every_recorded_measure(page, searched):
     page.get_by_label("Colour").select_option("age")
     expect(page.get_by_role("img", name=re.compile("^Age"))).to_be_visible()
+    page.get_by_text("More", exact=True).click()
     page.get_by_label("Palette").select_option("cividis")
-    page.get_by_label("Horizontal axis").select_option("path_length")
+    page.get_by_label("Across", exact=True).select_option("path_length")
     page.wait_for_url(re.compile("x=path_length"))
     page.get_by_label("Symmetry, from").fill("8")
     page.wait_for_url(re.compile(r"only\.symmetry=8-"))

@@ -101,7 +101,7 @@ def test_opening_a_run_shifts_no_layout(shared, page, width):
     page.set_viewport_size({"width": width, "height": 800})
     page.add_init_script(SHIFT)
     page.goto(f"{shared.product.url}/runs/{shared.finished('search')}")
-    expect(page.locator(".map-plot canvas")).to_be_visible()
+    expect(page.locator(".map-plot canvas").first).to_be_visible()
     page.wait_for_load_state("networkidle")
     assert page.evaluate("window.shift") <= MOST_SHIFT
 

@@ -18,11 +18,12 @@ def test_a_run_is_re_projected_onto_measures_and_components(shared, page: Page):
         return f"fill {found['all_time']['elites']} of {found['cells']} cells"
 
     page.goto(f"{shared.product.url}/runs/{run}?x=curvature_mean&y=mach")
+    page.get_by_text("More", exact=True).click()
     page.get_by_role("button", name="All that ever entered").click()
     figures = page.locator(".reprojection")
     expect(figures).to_contain_text(filled("curvature_mean,mach"))
-    for name, axis in (("Horizontal", "pc1"), ("Vertical", "pc2")):
-        page.get_by_label(f"{name} axis").select_option(axis)
+    for name, axis in (("Across", "pc1"), ("Up", "pc2")):
+        page.get_by_label(name, exact=True).select_option(axis)
     expect(figures).to_contain_text(filled("pc1,pc2"))
     expect(figures).to_contain_text("of the variance)")
     the_map(page).focus()
@@ -33,6 +34,7 @@ def test_a_run_is_re_projected_onto_measures_and_components(shared, page: Page):
     page.locator(".selection-bar").get_by_role("link").click()
     expect(page).to_have_url(re.compile(r"/new\?fork=.*&creature=[0-9a-f]{64}$"))
     page.go_back()
+    page.get_by_text("More", exact=True).click()
     page.get_by_role("button", name="Present elites").click()
     expect(figures).to_have_count(0)
     expect(page).not_to_have_url(re.compile("of=|cells?="))

@@ -1,5 +1,6 @@
 """A real server on a free port, over each database, with a real Redis under its own prefix."""
 
+import inspect
 import json
 import socket
 import time
@@ -27,6 +28,10 @@ from server.runs.submission import submit
 from server.services.services import Services
 from server.settings import Settings
 from server.tables import Base, Run
+
+# A busy machine answers late; httpx gives up after 5 seconds unless told otherwise.
+PATIENCE = inspect.signature(httpx.get).parameters["timeout"].default
+PATIENCE.read = PATIENCE.connect = 30.0
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])

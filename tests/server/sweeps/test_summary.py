@@ -51,6 +51,18 @@ def test_quantiles_are_those_of_the_runs_that_reached_a_generation(api, services
     assert line["coverage"] == [*scores[line["run"]][:, 1], None, None]
 
 
+def test_each_run_shows_its_best_creature(api, post, claimed, report):
+    sweep = post(seeds=2).json()
+    first, second = sweep["cases"][0]["runs"]
+    made = report(1, {0: 1.0, 1: 3.0, 2: 2.0})
+    claimed(first).record(made, 1.0)
+    best = api.get(f"runs/{first}/archive").json()["creature"][1]
+    (case,) = api.get(f"sweeps/{sweep['id']}/summary").json()["cases"]
+    shown = [(member["run"], member["face"]) for member in case["members"]]
+    assert shown == [(first, best), (second, None)]
+    assert [member["best"] for member in case["members"]] == [made.best, None]
+
+
 def test_a_run_restored_during_a_summary_is_not_mixed_up(api, services, post):
     sweep = post(seeds=3).json()
     runs = sweep["cases"][0]["runs"]
@@ -102,7 +114,7 @@ def test_a_summary_takes_as_many_queries_for_many_runs_as_for_few(services, post
         with services.sessions.read() as session:
             sweep = session.get_one(Sweep, sweep_id)
             sizes.append(statements(summary, session, sweep, None))
-    assert sizes == [2, 2]
+    assert sizes == [3, 3]
 
 
 def test_finals_of_a_table_come_from_its_summary(claimed, api, sweep, table):

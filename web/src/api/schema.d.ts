@@ -3163,6 +3163,10 @@ export interface components {
          * @description A run of a sweep in short.
          */
         SweepRun: {
+            /** Best */
+            best: number | null;
+            /** Face */
+            face: string | null;
             /** Generation */
             generation: number;
             /** Generations */

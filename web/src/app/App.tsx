@@ -1,7 +1,7 @@
 /** The frame around every page: navigation, connection, notes. */
 
 import type { FunctionComponent } from "preact";
-import { useEffect } from "preact/hooks";
+import { useEffect, useState } from "preact/hooks";
 import { readHealth } from "../api/client";
 import { lazy } from "../ui/lazy";
 import { loadPrincipal, useRefusal, useSignedOut } from "../store/principal";
@@ -13,6 +13,7 @@ import { DropTarget, OpenButton } from "../ui/DropTarget";
 import { NotFound, useTitle } from "../ui/Page";
 import { RunsPage } from "../runs/RunsPage";
 import { type PageLocation, useLocation } from "../store/router";
+import { usePageKeys } from "./keys";
 import { text } from "./text";
 import "./app.css";
 
@@ -29,22 +30,26 @@ const PAGES: Record<string, FunctionComponent<{ id: string; query: URLSearchPara
   "run-tree": lazy(async () => (await import("../tree/TreePage")).RunTreePage),
   "creature-tree": lazy(async () => (await import("../tree/TreePage")).CreatureTreePage),
 };
+const Shortcuts = lazy(async () => (await import("./shortcuts/Shortcuts")).Shortcuts);
 const SignInPage = lazy(async () => (await import("../settings/SettingsPage")).SignInPage);
 
 export function App() {
   const location = useLocation();
   const { page } = location.route;
   const signedOut = useSignedOut();
+  const [shortcuts, showShortcuts] = useState(false);
+  usePageKeys(() => showShortcuts((shown) => !shown));
   useEffect(() => void loadPrincipal(), []);
   useTitle(signedOut ? text.signIn : ((text.titles as Record<string, string>)[page] ?? null));
   return (
     <>
       <header class="top">
         <Brand />
-        {!signedOut && <Navigation page={page} />}
+        {!signedOut && <Navigation page={page} onShortcuts={() => showShortcuts(true)} />}
       </header>
       {signedOut ? <SignInPage /> : <RoutedPage {...location} />}
       {!signedOut && <DropTarget />}
+      {shortcuts && <Shortcuts onClose={() => showShortcuts(false)} />}
       <Toasts />
     </>
   );
@@ -71,18 +76,19 @@ const LINKS: [href: string, name: string, page: string | null][] = [
   ["/commons", text.commons, null],
   ["/settings", text.titles.settings, "settings"],
 ];
-const HELP: (typeof LINKS)[0] = ["/help/", text.help, null];
 
-function Navigation({ page }: { page: string }) {
+function Navigation({ page, onShortcuts }: { page: string; onShortcuts: () => void }) {
   const refusal = useRefusal();
   const health = useFetched(readHealth, []);
-  const links = health.value?.help ? [...LINKS, HELP] : LINKS;
+  const chapter = (text.chapters as Record<string, string>)[page] ?? "";
+  const help: (typeof LINKS)[0] = [`/help/${chapter}`, text.help, null];
+  const links = health.value?.help ? [...LINKS, help] : LINKS;
   return (
     <>
       <nav aria-label={text.pages}>
         {links.map(([href, name, linkedPage]) => (
           <a
-            key={href}
+            key={name}
             href={href}
             target={linkedPage ? undefined : "_self"}
             aria-current={linkedPage === page ? "page" : undefined}
@@ -93,6 +99,14 @@ function Navigation({ page }: { page: string }) {
       </nav>
       <span class="spring" />
       {!refusal && <OpenButton />}
+      <button
+        class="plain wide-only"
+        title={text.shortcutsKey}
+        aria-label={text.shortcutsKey}
+        onClick={onShortcuts}
+      >
+        ?
+      </button>
       <Connection />
     </>
   );

@@ -8,7 +8,7 @@ import { navigate, setQuery } from "../store/router";
 import { containerOf, measureOf, objectiveOf } from "./axes";
 import { ArchiveMap } from "./ArchiveMap";
 import { BinElites } from "./BinElites";
-import { MapOptions, ReprojectionFigures, Slices } from "./MapOptions";
+import { MapOptions, kindOf, ReprojectionFigures, Slices } from "./MapOptions";
 import { TimeSlider } from "../replay/TimeSlider";
 import { count } from "../ui/format";
 import { Segments } from "../ui/Select";
@@ -44,19 +44,26 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
   const selection = useSelection(query, view.elites);
   const props = useViewProps(run, view, gallery ? view.grid : view.map, selection, query);
   // Other creatures or axes are another map, in which no cell has changed.
+  const owner = view.of === "elites" ? run.id : null;
   const key = [view.axes[0].name, view.axes[1].name, view.of, view.reprojection !== null].join(" ");
   return (
     <div data-tour={tourPart}>
-      <Head count={view.elites.size} gallery={gallery} onTour={tour.begin} />
-      <MapOptions run={run} archive={archive} view={view} />
+      <Head
+        count={view.elites.size}
+        kind={owner && kindOf(run, archive)}
+        gallery={gallery}
+        onTour={tour.begin}
+      />
+      <MapOptions archive={archive} view={view} />
       {view.reprojection && <ReprojectionFigures archive={view.archive} reprojection={view.reprojection} />}
       <Slices slices={view.slices} />
       {gallery ? (
-        <Gallery key={key} {...props} {...{ at, query }} run={view.of === "elites" ? run.id : null} />
+        <Gallery key={key} {...props} {...{ at, query }} run={owner} />
       ) : (
         <ArchiveMap
           key={key}
           {...props}
+          {...{ run: owner, at }}
           elites={view.elites}
           onFocus={setFocused}
           inset={focused && <ElitePreview sha={focused.creature} />}
@@ -66,22 +73,40 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
       {view.error && <p class="banner wrong">{view.error}</p>}
       <TimeSlider last={run.generation} at={at} ready={view.ready} onMove={setAt} />
       <SelectionBar {...{ run, at }} of={view.of} elites={view.elites} {...selection} />
-      {tour.open && (
-        <Tour
-          steps={stepsOf(run, view)}
-          requested={tour.requested}
-          onStep={({ part }) => {
-            setTourPart(part);
-            const best = fittest(view.elites);
-            if (part === "legend" && best && props.marked === null) props.onMark(best[0]);
-          }}
-          onEnd={() => {
-            setTourPart(null);
-            tour.end();
-          }}
-        />
-      )}
+      <ArchiveTour
+        {...{ run, view, tour }}
+        onPart={setTourPart}
+        onMark={props.marked === null ? props.onMark : null}
+      />
     </div>
+  );
+}
+
+interface TourProps {
+  run: Run;
+  view: ArchiveView;
+  tour: ReturnType<typeof useTour>;
+  onPart: (part: string | null) => void;
+  /** Marks a cell; null if one is marked already. */
+  onMark: ((cell: number) => void) | null;
+}
+
+function ArchiveTour({ run, view, tour, onPart, onMark }: TourProps) {
+  if (!tour.open) return null;
+  return (
+    <Tour
+      steps={stepsOf(run, view)}
+      requested={tour.requested}
+      onStep={({ part }) => {
+        onPart(part);
+        const best = fittest(view.elites);
+        if (part === "legend" && best) onMark?.(best[0]);
+      }}
+      onEnd={() => {
+        onPart(null);
+        tour.end();
+      }}
+    />
   );
 }
 
@@ -120,11 +145,20 @@ function useViewProps(
   };
 }
 
-function Head({ count: elites, gallery, onTour }: { count: number; gallery: boolean; onTour: () => void }) {
+interface HeadProps {
+  count: number;
+  /** What the places of the archive are. */
+  kind: string | null;
+  gallery: boolean;
+  onTour: () => void;
+}
+
+function Head({ count: elites, kind, gallery, onTour }: HeadProps) {
   return (
     <div class="card-head archive-head">
       <h2 id="archive-title">{text.archive}</h2>
       <span class="quiet">{text.elites(count(elites))}</span>
+      {kind && <span class="quiet small">{kind}</span>}
       <span class="spring" />
       <button class="plain small-button" onClick={onTour}>
         {text.explain}

@@ -4,16 +4,22 @@ import type { ComponentChildren } from "preact";
 import { useLayoutEffect, useMemo, useRef } from "preact/hooks";
 import type { Elite, Elites } from "../store/elites";
 import { type ArchiveViewProps, tileUnder, useBinFocus } from "./binFocus";
-import { useBoxSelect } from "./boxSelect";
 import { EliteMeasures } from "./EliteMeasures";
 import { AxisLabels, ColourLegend } from "./labels";
 import type { Layout, Position } from "./layout";
+import { useLasso } from "./lasso";
+import { MapBodies } from "./MapBodies";
 import { useMapCanvas } from "./mapCanvas";
-import { type Box, binsOf, binsWithin, cellsIn, isAdditive, toggle, union } from "./selection";
+import { useSize } from "../ui/canvas";
+import { type Region, binsOf, binsWithin, cellsIn, isAdditive, toggle, union } from "./selection";
 import { text } from "./text";
 
 interface Props extends ArchiveViewProps {
   elites: Elites;
+  /** The run whose cells these are; null if they are others. */
+  run: string | null;
+  /** The generation shown; null for the newest. */
+  at: number | null;
   /** Called with the elite under the pointer, or the marked one. */
   onFocus: (elite: Elite | null) => void;
   /** Shown beside the focused cell. */
@@ -37,21 +43,23 @@ export function ArchiveMap(props: Props) {
   );
 }
 
-/** The canvas, with the outline, the selection box and the inset above it. */
+/** The canvas, with the outline, the selected region and the inset above it. */
 function MapPlot({ focus, ...props }: Props & { focus: ReturnType<typeof useBinFocus> }) {
-  const { projection, elites, colouring, onSelect } = props;
+  const { run, at, projection, elites, colouring, onSelect } = props;
   const { layout, tiles } = projection;
   const { hovered, setHovered, focused } = focus;
   const plot = useRef<HTMLDivElement>(null);
-  const drag = useBoxSelect(onSelect !== null, (box, event) => {
-    const inside = cellsIn(binsWithin(box, layout, tiles), projection);
+  const drag = useLasso(onSelect !== null, (region, event) => {
+    const inside = cellsIn(binsWithin(region, layout, tiles), projection);
     onSelect!(isAdditive(event) ? union(props.selected, inside) : inside);
   });
   const selected = useMemo(
-    () => (drag.box ? new Set(binsWithin(drag.box, layout, tiles)) : binsOf(props.selected, projection)),
-    [drag.box, props.selected, projection],
+    () =>
+      drag.region ? new Set(binsWithin(drag.region, layout, tiles)) : binsOf(props.selected, projection),
+    [drag.region, props.selected, projection],
   );
-  const canvas = useMapCanvas(plot, { layout, tiles, colouring, selected }, elites);
+  const size = useSize(plot);
+  const canvas = useMapCanvas(size, { layout, tiles, colouring, selected }, elites);
   const click = (event: MouseEvent) => {
     const bin = tileUnder(event, plot.current!, projection);
     if (bin === null || drag.wasDrag()) return;
@@ -73,15 +81,25 @@ function MapPlot({ focus, ...props }: Props & { focus: ReturnType<typeof useBinF
       }}
       onPointerLeave={() => setHovered(null)}
       onClick={click}
-      onKeyDown={(event) => !drag.box && focus.press(event)}
+      onKeyDown={(event) => !drag.region && focus.press(event)}
     >
       <canvas ref={canvas} />
-      <svg class="map-mark" viewBox="0 0 1 1" preserveAspectRatio="none" aria-hidden="true">
-        {focus.tile && <BinOutline layout={layout} bin={focused!} />}
-        {drag.box && <SelectionBox {...drag.box} />}
-      </svg>
-      {focus.tile && !drag.box && <PlacedBeside position={layout.centre(focused!)} children={props.inset} />}
+      <MapBodies {...{ run, at, projection, colouring, selected, size }} />
+      <Marks layout={layout} bin={focus.tile ? focused : null} region={drag.region} />
+      {focus.tile && !drag.region && (
+        <PlacedBeside position={layout.centre(focused!)} children={props.inset} />
+      )}
     </div>
+  );
+}
+
+/** The outline of the focused bin, and the region that is drawn. */
+function Marks({ layout, bin, region }: { layout: Layout; bin: number | null; region: Region | null }) {
+  return (
+    <svg class="map-mark" viewBox="0 0 1 1" preserveAspectRatio="none" aria-hidden="true">
+      {bin !== null && <BinOutline layout={layout} bin={bin} />}
+      {region && <polygon class="lasso" points={region.join(" ")} />}
+    </svg>
   );
 }
 
@@ -94,12 +112,6 @@ function BinOutline({ layout, bin }: { layout: Layout; bin: number }) {
       <polygon points={points} />
     </>
   );
-}
-
-function SelectionBox({ from, to }: Box) {
-  const [x, y] = [Math.min(from[0], to[0]), Math.min(from[1], to[1])];
-  const [width, height] = [Math.abs(from[0] - to[0]), Math.abs(from[1] - to[1])];
-  return <rect {...{ x, y, width, height }} />;
 }
 
 /** Content beside a bin, placed so that it hides neither the bin nor much of the map. */

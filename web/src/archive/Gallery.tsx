@@ -1,10 +1,9 @@
 /** The archive as a gallery of moving creatures, placed by their descriptors. */
 
 import type { ComponentChildren, RefObject } from "preact";
-import { useMemo, useRef, useState } from "preact/hooks";
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { useSteps } from "../replay/clock";
-import * as api from "../api/client";
-import { type ReadBatch, type Visible, usePoses } from "../store/poses";
+import { readArchiveBatch, usePoses } from "../store/poses";
 import { setQuery } from "../store/router";
 import { useKnownChoices } from "../store/choices";
 import { type Size, useOnScreen, useSize, px, useTheme } from "../ui/canvas";
@@ -133,27 +132,20 @@ function Tiles({ run, at, projection, selected: cells, ...props }: TilesProps) {
     [tiles, side, scroll, size.width, size.height],
   );
   const visible = bins.map((bin) => tiles.get(bin)!).map(({ cell, elite }) => ({ cell, ...elite }));
-  const poses = usePoses(run === null ? null : batchOf(run, at), visible);
+  const poses = usePoses(run === null ? null : readArchiveBatch(run, at), visible);
   const selected = useMemo(() => binsOf(cells, projection), [cells, projection]);
   const choices = useKnownChoices(run ?? "");
   const chosen = useMemo(() => new Set(choices?.items.map(({ creature }) => creature)), [choices]);
   const picture = { shape, side, tiles, bins, colouring, poses, theme, marked, selected, chosen };
+  const complete = visible.length > 0 && visible.every(({ creature }) => poses.has(creature));
   useSteps(useOnScreen(canvas), (steps) => {
     const element = canvas.current; // Null in the frame after the page was left.
     if (element && size.width > 0) drawGallery(element, size, picture, scroll, steps);
   });
+  useEffect(() => {
+    if (complete) performance.mark("gallery");
+  }, [complete]);
   return <canvas ref={canvas} style={px({ ...size })} />;
-}
-
-/** Reads the pose streams of a run's cells; `at` is null for the newest. */
-function batchOf(run: string, at: number | null): ReadBatch<Visible & { cell: number }> {
-  const when = at === null ? {} : { generation: at };
-  return (elites) =>
-    api.readArchivePoses(
-      run,
-      elites.map(({ cell }) => cell),
-      when,
-    );
 }
 
 interface RailProps {

@@ -4,6 +4,7 @@ import type { Archive, Reprojection, Run } from "../api/types";
 import { valueAt } from "../charts/plot/scale";
 import { setQuery } from "../store/router";
 import { PALETTES } from "../ui/colours";
+import { Dropdown } from "../ui/Dropdown";
 import { count, number, percent, words } from "../ui/format";
 import { Segments, Select } from "../ui/Select";
 import { type ArchiveView, setSlice } from "./archiveView";
@@ -11,12 +12,12 @@ import { type MapAxis, containerOf, scaleOf } from "./axes";
 import { coloursOf } from "./colouring";
 import type { Slice } from "./projection";
 import { setOf, setReprojectedAxes } from "./reprojection";
+import { TRUST_CHOICES } from "./trust";
 import { containerText, text } from "./text";
 
 const PALETTE_CHOICES = PALETTES.map((name) => [name, words(name)] as const);
 
 interface Props {
-  run: Run;
   archive: Archive;
   view: ArchiveView;
 }
@@ -26,39 +27,54 @@ const CREATURES = [
   ["history", text.allEntered],
 ] as const;
 
-export function MapOptions({ run, archive, view }: Props) {
-  const { axes, choices, colour, of, palette } = view;
+export function MapOptions({ archive, view }: Props) {
+  const { axes, choices, colour } = view;
   const [x, y] = [axes[0].name, axes[1].name];
   const choose = (axis: "x" | "y") => (name: string) => {
     const [other, old] = axis === "x" ? [y, x] : [x, y];
     // The axes are swapped if the other one is selected.
     const changed = { x, y, [axis]: name, ...(name === other && { [axis === "x" ? "y" : "x"]: old }) };
-    if (of === "history") setReprojectedAxes(changed);
+    if (view.of === "history") setReprojectedAxes(changed);
     else setQuery(changed);
   };
   return (
-    <div class="row archive-choices">
-      <Segments label={text.creaturesShown} choices={CREATURES} value={of} onSelect={setOf} />
-      <p class="row">
+    <div class="archive-choices">
+      <div class="map-choices">
         <Select title={text.across} {...{ choices, value: x }} onChange={choose("x")} />
         <Select title={text.up} {...{ choices, value: y }} onChange={choose("y")} />
-        {of === "elites" && <span class="quiet small">{kindOf(run, archive)}</span>}
-      </p>
-      <p class="row">
         <Select
           title={text.colour}
           choices={coloursOf(archive)}
           value={colour}
           onChange={(name) => setQuery({ colour: name === "fitness" ? null : name })}
         />
-        <Select
-          title={text.palette}
-          choices={PALETTE_CHOICES}
-          value={palette}
-          onChange={(name) => setQuery({ palette: name === "viridis" ? null : name })}
-        />
-      </p>
+        <MoreOptions {...view} />
+      </div>
     </div>
+  );
+}
+
+/** What is rarely changed, in a panel over the map; a dot says that something has been. */
+function MoreOptions({ of, palette, trust }: ArchiveView) {
+  const changed = of === "history" || trust !== "" || palette !== PALETTES[0];
+  return (
+    <Dropdown title={text.more} changed={changed}>
+      <Segments label={text.creaturesShown} choices={CREATURES} value={of} onSelect={setOf} />
+      {of === "elites" && (
+        <Select
+          title={text.verdict}
+          choices={TRUST_CHOICES}
+          value={trust}
+          onChange={(verdict) => setQuery({ trust: verdict || null })}
+        />
+      )}
+      <Select
+        title={text.palette}
+        choices={PALETTE_CHOICES}
+        value={palette}
+        onChange={(name) => setQuery({ palette: name === PALETTES[0] ? null : name })}
+      />
+    </Dropdown>
   );
 }
 
@@ -96,7 +112,7 @@ export function ReprojectionFigures({
 const signed = (value: number) => `${value < 0 ? "−" : "+"}${Math.abs(value).toFixed(2)}`;
 
 /** A description of the cells, unless the map shows them. */
-function kindOf(run: Run, { kind, cells, axes }: Archive): string {
+export function kindOf(run: Run, { kind, cells, axes }: Archive): string {
   if (kind === "pool") return text.places(count(cells), containerText(containerOf(run)?.kind ?? ""));
   if (kind === "cvt") return text.voronoi(count(cells), axes.length);
   return axes.length === 2 ? "" : text.grid(count(cells), axes.length);

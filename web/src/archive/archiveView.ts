@@ -10,6 +10,7 @@ import { AGE, colourMeasure, colouringOf, coloursOf } from "./colouring";
 import { type Layout, voronoiLayout } from "./layout";
 import { type Slice, project } from "./projection";
 import { ofQuery, useReprojected, withComponents } from "./reprojection";
+import { trustOf, withVerdict } from "./trust";
 import { PALETTES } from "../ui/colours";
 
 export type ArchiveView = ReturnType<typeof useArchiveView>;
@@ -32,20 +33,20 @@ export function useArchiveView(
   const elected = useElected(run, own, live, wanted, anew ? null : at);
   const reprojected = useReprojected(run, own, anew, colour);
   const { archive, newest, elitesAt, measures, error } = reprojected ?? elected;
-  const elites = useMemo(() => (at !== null && elitesAt ? elitesAt(at) : newest), [at, elitesAt, newest]);
+  const trust = anew ? "" : trustOf(query);
+  const all = useMemo(() => (at !== null && elitesAt ? elitesAt(at) : newest), [at, elitesAt, newest]);
+  const elites = useMemo(() => withVerdict(all, trust), [all, trust]);
   // Axes and colours follow the newest elites, so that they stay while the history is played.
   const axis = (name: string) => axisOf(name, archive, newest, measures);
   const axes = useMemo(() => [axis(x), axis(y)] as const, [x, y, archive, newest, measures]);
   const others = reprojected ? [] : archive.axes.map(({ name }) => name);
   const hidden = others.filter((name) => name !== x && name !== y);
-  const requested = hidden.map((name) => query.get(`only.${name}`)).join();
-  const slices = useMemo(
-    () => hidden.map((name) => sliceOf(axis(name), query)),
-    [x, y, archive, newest, measures, requested],
-  );
+  const given = hidden.map((name) => query.get(`only.${name}`)).join();
+  const from = [x, y, archive, newest, measures, given];
+  const slices = useMemo(() => hidden.map((name) => sliceOf(axis(name), query)), from);
   const voronoi = useVoronoi(run.id, archive, [x, y]);
   const map = useMemo(() => project(elites, axes, slices, voronoi), [elites, axes, slices, voronoi]);
-  // The projection onto even bins, also if the map shows Voronoi cells.
+  // Even bins, also if the map shows Voronoi cells.
   const grid = useMemo(() => (voronoi ? project(elites, axes, slices) : map), [map, voronoi]);
   const generation = at ?? run.generation;
   const colouring = useMemo(() => {
@@ -54,7 +55,13 @@ export function useArchiveView(
     return colouringOf(measure, palette, last.tiles);
   }, [colour, palette, archive, measures, generation, map]);
   const ready = reprojected ? elitesAt !== null : at === null || elitesAt !== null;
-  const shown = { archive, of, reprojection: reprojected?.reprojection ?? null, choices: choicesOf(named) };
+  const shown = {
+    archive,
+    of,
+    trust,
+    reprojection: reprojected?.reprojection ?? null,
+    choices: choicesOf(named),
+  };
   const drawn = { axes, slices, colour, palette, map, grid, colouring };
   return { ...shown, ...drawn, elites, measures, generation, ready, error };
 }

@@ -1,9 +1,8 @@
 /** The canvas of a map: the cells of an archive, and flashes of changed cells above them. */
 
-import type { RefObject } from "preact";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import type { Elites } from "../store/elites";
-import { type Size, type Theme, prepare, useSize, prefersReducedMotion, useTheme } from "../ui/canvas";
+import { type Size, type Theme, prepare, prefersReducedMotion, useTheme } from "../ui/canvas";
 import { type Rgb, pixel } from "../ui/colours";
 import { type Colouring, binColours } from "./colouring";
 import { type Layout, rasterOf } from "./layout";
@@ -38,9 +37,8 @@ const inks = (flash: string, ground: Rgb) => ({
 const INKS = { light: inks("#0b1216", [20, 50, 70]), dark: inks("#f4f8fa", [180, 215, 235]) };
 
 /** Draw the map when it changes, and flash changed cells. */
-export function useMapCanvas(plot: RefObject<HTMLElement | null>, content: MapContent, elites: Elites) {
+export function useMapCanvas(size: Size, content: MapContent, elites: Elites) {
   const canvas = useRef<HTMLCanvasElement>(null);
-  const size = useSize(plot);
   const theme = useTheme();
   const changed = useChanges(elites);
   const raster = useMemo(() => new Raster(content.layout), [content.layout]);

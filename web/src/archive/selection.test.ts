@@ -3,7 +3,7 @@ import type { Principal } from "../api/types";
 import { refusalOf } from "../store/principal";
 import { parseCells, formatCells } from "../store/draft";
 import { elite } from "./archive.fixture";
-import { binsOf, binsWithin, cellsIn, selectByKey, toggle } from "./selection";
+import { binsOf, binsWithin, cellsIn, regionOf, selectByKey, toggle } from "./selection";
 import { gridLayout } from "./layout";
 import type { Projection } from "./projection";
 
@@ -40,7 +40,7 @@ const projection: Projection = {
 
 describe("a box on the map", () => {
   const within = (from: [number, number], to: [number, number]) =>
-    binsWithin({ from, to }, layout, projection.tiles);
+    binsWithin(regionOf([from, to]), layout, projection.tiles);
 
   it("selects the filled bins whose middle it contains, drawn either way", () => {
     expect(within([0, 0.5], [0.5, 0.99])).toEqual([0, 5]);
@@ -56,6 +56,22 @@ describe("a box on the map", () => {
     expect(cellsIn([0, 5], projection)).toEqual(set(100, 101, 102));
     expect(binsOf(set(102, 7), projection)).toEqual(set(5));
     expect(binsOf(set(), projection)).toBeNull();
+  });
+});
+
+describe("a way around cells", () => {
+  const within = (...way: [number, number][]) => binsWithin(regionOf(way), layout, projection.tiles);
+
+  it("selects what it encloses, not what its box would contain", () => {
+    const around: [number, number][] = [[0.02, 0.98], [0.02, 0.55], [0.55, 0.55], [0.3, 0.7], [0.2, 0.98]]; // prettier-ignore
+    expect(within(...around)).toEqual([0, 5]);
+    expect(within([0.02, 0.98], [0.02, 0.02], [0.98, 0.02])).toEqual([0, 15]);
+  });
+
+  it("is a box if it is nearly straight", () => {
+    expect(regionOf([[0, 0], [0.24, 0.26], [0.5, 0.5]])).toEqual([[0, 0], [0.5, 0], [0.5, 0.5], [0, 0.5]]); // prettier-ignore
+    expect(regionOf([[0, 0], [0.5, 0.1], [0.5, 0.5]])).toHaveLength(3); // prettier-ignore
+    expect(regionOf([[0, 0], [0.5, 0.5], [0.3, 0.3], [0.1, 0.1]])).toHaveLength(4); // prettier-ignore
   });
 });
 

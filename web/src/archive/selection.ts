@@ -49,20 +49,39 @@ export function selectByKey(
   return union(selected, cellsIn([from, next], projection));
 }
 
-export interface Box {
-  from: Position;
-  to: Position;
+/** The corners of a region that was drawn over the map. */
+export type Region = readonly Position[];
+
+/** A way is straight if it stays this close to the line between its ends, as a share of that line. */
+const STRAIGHT = 0.15;
+
+/** The region of a drag: the box from end to end of a straight way, else what the way encloses. */
+export function regionOf(way: Region): Region {
+  const [from, to] = [way[0]!, way.at(-1)!];
+  const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+  const straight = way.every(([x, y]) => {
+    const [px, py] = [x - from[0], y - from[1]];
+    const along = dx * px + dy * py;
+    const [aside, length] = [Math.abs(dx * py - dy * px), dx * dx + dy * dy];
+    return aside <= STRAIGHT * length && along >= -STRAIGHT * length && along <= (1 + STRAIGHT) * length;
+  });
+  return straight ? [from, [to[0], from[1]], to, [from[0], to[1]]] : way;
 }
 
-/** The filled bins with their middle in a box, and those under its two corners. */
-export function binsWithin({ from, to }: Box, layout: Layout, tiles: Tiles): number[] {
-  const [left, right] = [Math.min(from[0], to[0]), Math.max(from[0], to[0])];
-  const [top, bottom] = [Math.min(from[1], to[1]), Math.max(from[1], to[1])];
-  const ends = [from, to].map((corner) => layout.at(...corner));
-  return [...tiles.keys()].filter((bin) => {
-    const [x, y] = layout.centre(bin);
-    return (left <= x && x <= right && top <= y && y <= bottom) || ends.includes(bin);
+/** The filled bins with their middle in a region, and those under its corners. */
+export function binsWithin(region: Region, layout: Layout, tiles: Tiles): number[] {
+  const under = new Set(region.map((corner) => layout.at(...corner)));
+  return [...tiles.keys()].filter((bin) => under.has(bin) || encloses(region, layout.centre(bin)));
+}
+
+/** True if a ray from a point to the right crosses the border an odd number of times. */
+function encloses(region: Region, [x, y]: Position): boolean {
+  let inside = false;
+  region.forEach(([bx, by], i) => {
+    const [ax, ay] = region.at(i - 1)!;
+    if (ay > y !== by > y && x < ax + ((y - ay) / (by - ay)) * (bx - ax)) inside = !inside;
   });
+  return inside;
 }
 
 /** True if a click or a drag adds to the selection. */

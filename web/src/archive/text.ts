@@ -21,14 +21,16 @@ export const text = {
   gallery: "Gallery",
   view: "View of the archive",
   mapLabel: (select: boolean) => `Archive map. Arrow keys move between elites, ${keyHelp(select)}`,
-  across: "Horizontal axis",
-  up: "Vertical axis",
+  across: "Across",
+  up: "Up",
   voronoi: (cells: string, axes: number) => `${cells} Voronoi cells over ${axes} descriptors`,
   grid: (cells: string, axes: number) =>
     `${cells} cells over ${axes} ${axes === 1 ? "descriptor" : "descriptors"}`,
   places: (places: string, container: string) => `${places} places, ${container}`,
   binElites: "Elites at this position",
   creaturesShown: "Creatures",
+  verdict: "Audit",
+  anyVerdict: "any verdict",
   presentElites: "Present elites",
   allEntered: "All that ever entered",
   component: (number: string, share: string | null) =>
@@ -41,6 +43,7 @@ export const text = {
   legend: (label: string, low: unknown, high: unknown) => `${label} from ${low} to ${high}`,
   colour: "Colour",
   palette: "Palette",
+  more: "More",
   simulating: "Simulating …",
   inset: "The elite of this cell, swimming",
   fitness: "Fitness",
@@ -90,5 +93,5 @@ export const text = {
   tourOpenAbout:
     "Click a cell to open its creature: replay, network and parents. The gallery shows all creatures moving at once.",
   mapHint: (select: boolean) =>
-    `Point at a cell to see its creature swim. Click it to open it.${select ? " Drag over several cells to select them." : ""}`,
+    `Point at a cell to see its creature swim. Click it to open it.${select ? " Drag across cells, or around them, to select them." : ""}`,
 };

@@ -1,6 +1,8 @@
 /** The spec of a new run: the essentials, all settings if asked for, or JSON. */
 
+import { Fragment } from "preact";
 import { useMemo, useState } from "preact/hooks";
+import type { Estimate } from "../api/types";
 import type { Draft } from "../store/draft";
 import { Segments } from "../ui/Select";
 import type { DraftState } from "./draftState";
@@ -12,6 +14,7 @@ import { essentialsOf, searched } from "./form/essentials";
 import type { Leaf, Section } from "./form/fields";
 import { text as formText } from "./form/text";
 import { goToSweep } from "./SweepCard";
+import { TimeBudget } from "./TimeBudget";
 import { text } from "./text";
 
 export type View = "form" | "json";
@@ -104,7 +107,7 @@ function FormView({ editor }: { editor: EditorState }) {
           </>
         )}
       </div>
-      {!all && <Essentials fields={essentials} form={form} state={state} />}
+      {!all && <Essentials fields={essentials} {...{ form, state }} estimate={editor.check.estimate} />}
       {all && found.length === 0 && <p class="quiet">{formText.noSetting(words)}</p>}
       {all && <SpecForm parts={found} state={words ? { ...state, closed: new Set() } : state} />}
     </>
@@ -127,14 +130,24 @@ function RunName({ editor: { forking, runs, naming } }: { editor: EditorState })
   );
 }
 
+interface EssentialsProps {
+  fields: Leaf[];
+  form: Section;
+  state: FormState;
+  estimate: Estimate | null;
+}
+
 /** The settings that most people change. */
-function Essentials({ fields, form, state }: { fields: Leaf[]; form: Section; state: FormState }) {
+function Essentials({ fields, form, state, estimate }: EssentialsProps) {
   const body = form.fields.find(({ path }) => path === "body");
   return (
     <fieldset class="card essentials" aria-label={formText.essentialsTitle}>
       {body?.kind === "union" && <KindSelect union={body} state={state} title={formText.body} />}
       {fields.map((field) => (
-        <Entry key={field.path} field={field} state={state} />
+        <Fragment key={field.path}>
+          <Entry field={field} state={state} />
+          {field.path === "search.generations" && <TimeBudget estimate={estimate} state={state} />}
+        </Fragment>
       ))}
     </fieldset>
   );

@@ -3,6 +3,8 @@
 const ACCEPTED = "a spec, a run from the API, or a creature file, in JSON";
 
 export const text = {
+  minutes: "Minutes",
+  minutesAbout: "About as long, by the speed of earlier runs: it sets the generations.",
   restoredDraft: "Restored draft: ",
   changes: (count: number) =>
     `${count === 0 ? "Same as" : `${count} ${count === 1 ? "change" : "changes"} from`}`,

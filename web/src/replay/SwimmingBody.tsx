@@ -48,7 +48,7 @@ export function SwimmingBody({ stream, label, onWater = false, path = false, onF
     if (drawn) onFirst?.();
   }, [drawn]);
   return (
-    <div ref={box} class="swimming" aria-hidden={label === undefined}>
+    <div ref={box} class={`swimming ${onWater ? "on-water" : ""}`} aria-hidden={label === undefined}>
       <canvas
         ref={canvas}
         style={px(size)}

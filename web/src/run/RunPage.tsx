@@ -44,11 +44,10 @@ export function RunPage({ id, query }: { id: string; query: URLSearchParams }) {
   if (!run) {
     return <Page loading={!error}>{error && <NotFound what={text.noSuchRun} reason={error} id={id} />}</Page>;
   }
-  const sweep = run.sweep ? [[`/sweeps/${run.sweep}`, text.sweep] as const] : [];
   return (
-    <Page crumbs={[["/", text.runs], ...sweep]}>
+    <Page crumbs={run.sweep ? [[`/sweeps/${run.sweep}`, text.sweep]] : undefined}>
       <Header run={run} title={title} />
-      {run.deleted_at ? <BinNotice run={run} /> : <RunSections {...{ run, query, error, detail }} />}
+      {run.deleted_at ? <BinNotice run={run} /> : <RunSections {...{ run, title, query, error, detail }} />}
     </Page>
   );
 }
@@ -57,7 +56,7 @@ function Header({ run, title }: { run: Run; title: string }) {
   const refusal = useRefusal(run);
   const forceFree = forceFreeShare(run.spec);
   return (
-    <header class="page-head">
+    <header class="page-head run-head">
       <NameField
         of={run}
         title={title}
@@ -69,6 +68,7 @@ function Header({ run, title }: { run: Run; title: string }) {
         </h1>
       </NameField>
       <StatusBadge run={run} />
+      {run.status === "finished" && hasArchive(run) && <span class="quiet small">{endReasonOf(run)}</span>}
       {forceFree !== "all" && <NotForceFree some={forceFree === "some"} />}
       <span class="spring" />
       {hasArchive(run) && run.generation > 0 && !run.deleted_at && (
@@ -89,21 +89,20 @@ function Header({ run, title }: { run: Run; title: string }) {
 
 interface SectionsProps {
   run: Run;
+  title: string;
   query: URLSearchParams;
   error: string | null;
   detail: Detail | undefined;
 }
 
-function RunSections({ run, query, error, detail }: SectionsProps) {
+function RunSections({ run, title, query, error, detail }: SectionsProps) {
   return (
     <>
       {error && <p class="banner wrong">{error}</p>}
       <Banners run={run} />
       <ForkedFrom run={run} />
-      <RunFacts run={run} />
+      <RunFacts {...{ run, title }} />
       <RunActivity run={run} />
-      <SectionLinks run={run} />
-      {run.status === "finished" && hasArchive(run) && <p class="quiet ending">{endReasonOf(run)}</p>}
       {run.experiment === "gaits" && <GaitsRun run={run} query={query} />}
       {learns(run) && <LearningRun run={run} query={query} />}
       {run.experiment === "scaling" && <ScalingRun run={run} query={query} />}
@@ -138,7 +137,7 @@ function SectionLinks({ run: { experiment, spec } }: { run: Run }) {
     ["files", text.files],
   ].filter((section) => section !== false);
   return (
-    <nav class="sections row small" aria-label={text.sections}>
+    <nav class="sections small" aria-label={text.sections}>
       {sections.map(([id, name]) => (
         <a key={id} href={`#${id}`}>
           {name}
@@ -169,7 +168,8 @@ function Banners({ run }: { run: Run }) {
   );
 }
 
-function RunFacts({ run }: { run: Run }) {
+/** Progress and key figures, which stay at the top; once there, with the name of the run. */
+function RunFacts({ run, title }: { run: Run; title: string }) {
   const time = timeOf(run);
   const work: Figure[] = [
     [text.evaluations, count(run.evaluations)],
@@ -178,22 +178,28 @@ function RunFacts({ run }: { run: Run }) {
   const facts: Figure[] = [
     [generationsOf(run), `${count(run.generation)} / ${count(run.generations)}`],
     [time.label, time.text],
-    ...(hasArchive(run) ? work : []),
     ...figuresOf(run),
+    ...(hasArchive(run) ? work : []),
   ];
   return (
     <section class="run-facts" aria-label={text.status}>
       <RunProgress run={run} />
-      <dl class="facts">
-        {facts.map(([name, value]) => (
-          <div key={name}>
-            <dt>
-              <Term name={name} />
-            </dt>
-            <dd>{value}</dd>
-          </div>
-        ))}
-      </dl>
+      <div class="run-line">
+        <strong class="run-stuck" aria-hidden="true">
+          {title}
+        </strong>
+        <dl class="facts">
+          {facts.map(([name, value]) => (
+            <div key={name}>
+              <dt>
+                <Term name={name} />
+              </dt>
+              <dd>{value}</dd>
+            </div>
+          ))}
+        </dl>
+        <SectionLinks run={run} />
+      </div>
     </section>
   );
 }

@@ -7,11 +7,10 @@ import { useRefusal } from "../store/principal";
 import { useStore } from "../store/store";
 import { editRun, restore, addTag, removeNote, removeTag } from "../store/commands";
 import { NotForceFree, forceFreeShare } from "../ui/coupling";
-import { DASH, dateTime, number, shortId, titleOf } from "../ui/format";
-import { keyFigureOf } from "../run/figures";
-import { CommandButtons, StatusBadge, RunProgress, timeOf } from "../run/RunStatus";
+import { dateTime, shortId, titleOf } from "../ui/format";
+import { CommandButtons, timeOf } from "../run/RunStatus";
 import { NameField } from "../run/NameField";
-import { Sparkline } from "../charts/Sparkline";
+import type { RunColumn } from "./columns";
 import { text } from "./text";
 import { setQuery } from "../store/router";
 import { InlineText } from "../ui/InlineText";
@@ -21,19 +20,18 @@ interface Props {
   id: string;
   /** The pose stream of its best creature. */
   face: PoseStream | null;
+  columns: readonly RunColumn[];
   experiments: Experiment[];
   selected: boolean;
   knownTags: string;
   onSelect: () => void;
 }
 
-export function RunRow({ id, face, experiments, selected, knownTags, onSelect }: Props) {
+export function RunRow({ id, face, columns, experiments, selected, knownTags, onSelect }: Props) {
   const run = useStore((state) => state.runs.get(id)!);
   const title = titleOf(run, experiments);
   const name = `${title} ${shortId(run.id)}`;
   const readOnly = useRefusal(run) !== null || run.deleted_at !== null;
-  const time = timeOf(run);
-  const [figureName, figure] = keyFigureOf(run);
   return (
     <tr class={selected ? "selected-row" : ""}>
       <td class="row-choice">
@@ -52,26 +50,11 @@ export function RunRow({ id, face, experiments, selected, knownTags, onSelect }:
           <NoteField {...{ run, name, readOnly }} />
         </span>
       </th>
-      <td data-label={text.state}>
-        <StatusBadge run={run} />
-      </td>
-      <td data-label={text.progress} class="with-bar">
-        <RunProgress run={run} />
-        <span class="quiet">
-          {run.generation} / {run.generations}
-        </span>
-      </td>
-      <td data-label={time.label} class="time">
-        {time.text}
-        {run.status === "running" && time.text !== DASH && <span class="quiet"> {text.left}</span>}
-      </td>
-      <td data-label={text.evaluationsPerSecond}>{number(run.evaluations_per_second)}</td>
-      <td data-label={text.result} class="with-spark">
-        <span>
-          {figure} <span class="quiet small">{figureName}</span>
-        </span>
-        {run.sparkline.length > 1 && <Sparkline values={run.sparkline} label={text.sparkline(name)} />}
-      </td>
+      {columns.map(({ id, title: column, kind, cell }) => (
+        <td key={id} data-label={id === "time" ? timeOf(run).label : column} class={kind}>
+          {cell(run, name)}
+        </td>
+      ))}
       <RowActions {...{ run, title, name }} />
     </tr>
   );

@@ -2,47 +2,27 @@
 
 import { useState } from "preact/hooks";
 import { MAX_LINES } from "../charts/lineStyle";
-import type { Experiment, RunQuery } from "../api/types";
+import type { RunQuery } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { useExperiments } from "../store/fetch";
 import { loadMoreRuns, useRunList, useTags } from "../store/runList";
-import { readTankBatch, usePoses } from "../store/poses";
-import { useEach, useStore } from "../store/store";
+import { useStore } from "../store/store";
 import { useSweeps } from "../store/sweeps";
 import { showFailure } from "../store/toasts";
 import { setQuery } from "../store/router";
 import { hasTakenTour } from "../archive/tour";
 import { Tank } from "../tank/Tank";
 import { Empty, Page } from "../ui/Page";
-import { Heading } from "../ui/Table";
-import {
-  Filters,
-  NO_FILTERS,
-  WITHOUT_SWEEP,
-  ariaSort,
-  groupsSweeps,
-  isFiltered,
-  nextSort,
-  queryOf,
-} from "./Filters";
-import { RunRow } from "./RunRow";
+import { Filters, NO_FILTERS, WITHOUT_SWEEP, groupsSweeps, isFiltered, queryOf } from "./Filters";
+import { RunTable, TAGS_ID } from "./RunTable";
 import { SweepRows } from "./SweepRows";
+import { TableOptions } from "./TableOptions";
 import { text } from "./text";
 import "./runs.css";
 
 /** Number of sweeps above the list, at first and after “Show more”. */
 const FIRST_SWEEPS = 5;
 const MAX_SWEEPS = 100;
-const TAGS_ID = "known-tags";
-
-const COLUMNS: { title: string; key?: string; falling?: boolean }[] = [
-  { title: text.run, key: "name" },
-  { title: text.state, key: "status" },
-  { title: text.progress, key: "progress", falling: true },
-  { title: text.time },
-  { title: text.evaluationsPerSecond },
-  { title: text.result, key: "qd_score", falling: true },
-];
 
 export function RunsPage({ query: address }: { query: URLSearchParams }) {
   const query = queryOf(address);
@@ -71,7 +51,10 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
       >
         <Welcome />
         {(listed.length > 0 || hasSweeps || isFiltered(query)) && (
-          <Filters query={query} experiments={experiments} tags={tags} onChange={setQuery} />
+          <div class="row list-options">
+            <Filters query={query} experiments={experiments} tags={tags} onChange={setQuery} />
+            <TableOptions address={address} />
+          </div>
         )}
         {selected.length > 0 && <CompareBar ids={selected} onClear={() => setSelected([])} />}
         {empty && <NothingListed query={query} />}
@@ -79,15 +62,23 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
         {hasSweeps && (
           <SweepRows page={sweeps!} onMore={maxSweeps < MAX_SWEEPS ? () => setMaxSweeps(MAX_SWEEPS) : null} />
         )}
-        {listed.length > 0 && <Table {...{ query, listed, experiments, selected }} onSelect={choose} />}
-        <datalist id={TAGS_ID}>
-          {tags.map((tag) => (
-            <option key={tag} value={tag} />
-          ))}
-        </datalist>
+        {listed.length > 0 && (
+          <RunTable {...{ query, address, listed, experiments, selected }} onSelect={choose} />
+        )}
+        <KnownTags tags={tags} />
         {next && <LoadMore query={listedQuery} />}
       </Page>
     </>
+  );
+}
+
+function KnownTags({ tags }: { tags: string[] }) {
+  return (
+    <datalist id={TAGS_ID}>
+      {tags.map((tag) => (
+        <option key={tag} value={tag} />
+      ))}
+    </datalist>
   );
 }
 
@@ -105,60 +96,6 @@ function HeaderLinks({ bin }: { bin: boolean }) {
         </a>
       )}
     </>
-  );
-}
-
-interface TableProps {
-  query: RunQuery;
-  listed: readonly string[];
-  experiments: Experiment[];
-  selected: string[];
-  onSelect: (id: string) => void;
-}
-
-function Table({ query, listed, experiments, selected, onSelect }: TableProps) {
-  const faces = useEach(listed, ({ runs }, id) => runs.get(id)?.face ?? null);
-  const poses = usePoses(
-    readTankBatch,
-    faces.filter((face) => face !== null).map((creature) => ({ creature })),
-  );
-  return (
-    <table class="runs">
-      <thead>
-        <tr>
-          <th scope="col">
-            <span class="unseen">{text.compare}</span>
-          </th>
-          <th scope="col">
-            <span class="unseen">{text.face}</span>
-          </th>
-          {COLUMNS.map(({ title, key, falling = false }) => (
-            <Heading
-              key={title}
-              title={title}
-              order={key ? ariaSort(query.sort, key) : undefined}
-              onSort={key ? () => setQuery({ sort: nextSort(query.sort, key, falling) }) : undefined}
-            />
-          ))}
-          <th scope="col">
-            <span class="unseen">{text.actions}</span>
-          </th>
-        </tr>
-      </thead>
-      <tbody>
-        {listed.map((id, i) => (
-          <RunRow
-            key={id}
-            id={id}
-            face={(faces[i] && poses.get(faces[i])) || null}
-            experiments={experiments}
-            selected={selected.includes(id)}
-            knownTags={TAGS_ID}
-            onSelect={() => onSelect(id)}
-          />
-        ))}
-      </tbody>
-    </table>
   );
 }
 

@@ -23,6 +23,17 @@ export type ReadBatch<T extends Visible> = (some: readonly T[]) => Promise<Array
 export const readTankBatch = (some: readonly Visible[]) =>
   api.readTankPoses(some.map(({ creature }) => creature));
 
+/** Reads the pose streams of a run's cells; `at` is a generation, null for the newest. */
+export function readArchiveBatch(run: string, at: number | null): ReadBatch<Visible & { cell: number }> {
+  const when = at === null ? {} : { generation: at };
+  return (elites) =>
+    api.readArchivePoses(
+      run,
+      elites.map(({ cell }) => cell),
+      when,
+    );
+}
+
 const cache = new Map<string, PoseStream>();
 /** Creatures whose batch is on its way. */
 const batched = new Set<string>();
@@ -33,10 +44,14 @@ const requests = new Map<string, () => void>();
 let pending: string[] = [];
 const listeners = new Set<() => void>();
 
-/** The loaded streams; missing ones are requested in batches, or one at a time if there are none. */
+/**
+ * The loaded streams; missing ones are requested in batches. What no batch has is requested one at a
+ * time, which renders it, unless `render` is false.
+ */
 export function usePoses<T extends Visible>(
   readBatch: ReadBatch<T> | null,
   visible: readonly T[],
+  render = true,
 ): ReadonlyMap<string, PoseStream> {
   const [, redraw] = useState(0);
   useEffect(() => {
@@ -48,13 +63,17 @@ export function usePoses<T extends Visible>(
     };
   }, []);
   useEffect(() => {
-    const timer = setTimeout(() => request(readBatch, visible), DEBOUNCE_MS);
+    const timer = setTimeout(() => request(readBatch, visible, render), DEBOUNCE_MS);
     return () => clearTimeout(timer);
   }, [readBatch === null, visible.map(({ creature }) => creature).join()]);
   return cache;
 }
 
-function request<T extends Visible>(readBatch: ReadBatch<T> | null, visible: readonly T[]): void {
+function request<T extends Visible>(
+  readBatch: ReadBatch<T> | null,
+  visible: readonly T[],
+  render: boolean,
+): void {
   for (const { creature } of visible) {
     const stream = cache.get(creature);
     if (!stream) continue;
@@ -62,16 +81,20 @@ function request<T extends Visible>(readBatch: ReadBatch<T> | null, visible: rea
     cache.set(creature, stream); // Now the newest.
   }
   const missing = visible.filter(({ creature }) => !cache.has(creature));
-  const alone = (sha: string) => (readBatch === null || lacking.has(sha)) && !requests.has(sha);
+  const alone = (sha: string) => render && (readBatch === null || lacking.has(sha)) && !requests.has(sha);
   pending = missing.map(({ creature }) => creature).filter(alone);
   const unknown = missing.filter(({ creature }) => !lacking.has(creature) && !batched.has(creature));
   for (let first = 0; readBatch && first < unknown.length; first += BATCH) {
-    void requestBatch(readBatch, unknown.slice(first, first + BATCH));
+    void requestBatch(readBatch, unknown.slice(first, first + BATCH), render);
   }
   startRequests();
 }
 
-async function requestBatch<T extends Visible>(readBatch: ReadBatch<T>, elites: T[]): Promise<void> {
+async function requestBatch<T extends Visible>(
+  readBatch: ReadBatch<T>,
+  elites: T[],
+  render: boolean,
+): Promise<void> {
   for (const { creature } of elites) batched.add(creature);
   // After a failure the creatures are requested one at a time, which is repeated.
   for (const stream of await readBatch(elites).then(decodePoseBatch, () => [])) add(stream);
@@ -79,7 +102,7 @@ async function requestBatch<T extends Visible>(readBatch: ReadBatch<T>, elites: 
     batched.delete(creature);
     if (cache.has(creature)) continue;
     lacking.add(creature);
-    if (listeners.size > 0) pending.push(creature);
+    if (render && listeners.size > 0) pending.push(creature);
   }
   startRequests();
 }

@@ -39,7 +39,7 @@ export function Cases({ cases, selected, onSelect }: LegendProps) {
   );
 }
 
-function CaseName({ shown: { caseIndex, name } }: { shown: ShownCase }) {
+export function CaseName({ shown: { caseIndex, name } }: { shown: ShownCase }) {
   return (
     <>
       <LineSample index={caseIndex} /> {name}

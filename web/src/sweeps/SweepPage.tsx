@@ -22,6 +22,7 @@ import { ConfirmButton } from "../ui/ConfirmButton";
 import { NameField } from "../run/NameField";
 import { MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
 import { CurveBar, QueryCheck } from "../charts/curves/CurveOptions";
+import { CaseCreatures } from "./CaseCreatures";
 import { Cases, Finals, Members } from "./CaseTables";
 import { text } from "./text";
 
@@ -58,6 +59,7 @@ function LoadedSweep({ value, query, each }: { value: SweepDetail; query: URLSea
         {cases.length > 1 && <Cases cases={cases} selected={selected} onSelect={choose} />}
         <CaseCurves {...{ shown, query }} curves={each ? curves : null} />
       </Card>
+      <CaseCreatures shown={shown} />
       <Finals cases={cases} generation={summary.generation} />
       <Members cases={cases} />
     </>

@@ -9,7 +9,8 @@ const none = { median: [null], low: [null], high: [null], min: [null], max: [nul
 function summaryOf(generation: number[], median: number[]): CaseSummary {
   const band = { median, low: median.map((v) => v - 1), high: median.map((v) => v + 1) };
   const qd_score = { ...band, min: band.low, max: band.high };
-  const members = [{ run: "a", seed: 0, status: "running" as const, generation: 2, generations: 3 }];
+  const progress = { status: "running" as const, generation: 2, generations: 3 };
+  const members = [{ run: "a", seed: 0, ...progress, face: null, best: null }];
   const empty = generation.length > 0 ? none : { median: [], low: [], high: [], min: [], max: [] };
   const runs = generation.map(() => 1);
   return { values: {}, members, generation, runs, qd_score, coverage: empty, best: empty, finals: {} };

@@ -3,6 +3,10 @@
 export const text = {
   cases: "Cases",
   evaluations: "Evaluations",
+  creatures: "Creatures",
+  creaturesAbout: "the best of each run, with its fitness",
+  bestOf: (run: string) => `The best creature of the run with ${run}`,
+  sideBySide: "The best of each case side by side",
   figures: "Figures",
   figuresAbout: (generation: number | null) =>
     generation === null

@@ -115,7 +115,7 @@ function useScene(
   paused: boolean,
 ): RefObject<Scene> & { current: Scene } {
   const scene = useRef<Scene>({ swimmers: [], nearest: 1 });
-  const poses = usePoses(readTankBatch, tank.swimmers);
+  const poses = usePoses(readTankBatch, tank.swimmers, false);
   const streams = useMemo(
     () => tank.swimmers.flatMap(({ creature }) => poses.get(creature) ?? []),
     [tank, tank.swimmers.filter(({ creature }) => poses.has(creature)).length],

@@ -11,13 +11,37 @@ const [FAR, NEAR, POINTED] = [
   [253, 248, 236],
   [255, 206, 130],
 ] as const;
-/** A body is drawn several times, from its glow to its core: width and opacity. */
-const GLOW = [
-  [6, 0.045],
-  [3.6, 0.07],
-  [2, 0.14],
-  [1, 1],
-] as const;
+/** How elaborately creatures are drawn. */
+interface Style {
+  /** A body is drawn several times, from its glow to its core: width and opacity. */
+  strokes: readonly (readonly [width: number, opacity: number])[];
+  /** Farther bodies have no glow. */
+  glowing: number;
+  /** Pieces of a trail, each fainter than the next. */
+  pieces: number;
+}
+const STYLE: Style = {
+  strokes: [
+    [6, 0.045],
+    [3.6, 0.07],
+    [2, 0.14],
+    [1, 1],
+  ],
+  glowing: 0.25,
+  pieces: 4,
+};
+/** For phones, which are slower: in windows narrower than this. */
+const [PLAIN, PHONE]: [Style, number] = [
+  {
+    strokes: [
+      [3.4, 0.13],
+      [1, 1],
+    ],
+    glowing: 0.6,
+    pieces: 2,
+  },
+  640,
+];
 /** Sides of the square in which `traceBody` draws a body, in radii. */
 const SIDE = 1 / 0.42;
 
@@ -31,7 +55,8 @@ export function drawTank(
 ): void {
   const context = prepare(canvas, size);
   context.lineJoin = context.lineCap = "round";
-  for (const one of swimmers) drawSwimmer(context, one, nearest, one.creature === pointed);
+  const style = size.width < PHONE ? PLAIN : STYLE;
+  for (const one of swimmers) drawSwimmer(context, one, nearest, one.creature === pointed, style);
 }
 
 function drawSwimmer(
@@ -39,20 +64,21 @@ function drawSwimmer(
   one: Swimmer,
   nearest: number,
   pointed: boolean,
+  { strokes, glowing, pieces }: Style,
 ): void {
   const presence = presenceOf(one);
   const colour = pointed ? POINTED : mixed(one.depth);
   const scale = scaleAt(one.depth, nearest);
   const ink = `rgb(${colour.join(" ")})`;
   context.strokeStyle = ink;
-  drawTrail(context, one, presence);
+  drawTrail(context, one, presence, pieces);
   const side = SIDE * scale * radiusOf(one.stream) * (0.4 + 0.6 * presence);
   context.save();
   context.translate(...one.position);
   context.rotate(-one.heading);
   traceBody(context, one.stream, one.steps, [-side / 2, -side / 2, side]);
   const width = (pointed ? 3.4 : 2.6) * (0.5 + 0.5 * one.depth);
-  for (const [share, strength] of GLOW) {
+  for (const [share, strength] of one.depth < glowing ? strokes.slice(-1) : strokes) {
     context.globalAlpha = presence * strength * (0.35 + 0.65 * one.depth);
     context.lineWidth = share * width;
     context.stroke();
@@ -83,20 +109,21 @@ function drawRipple(
 }
 
 /** The way that it came, fainter the longer ago. */
-function drawTrail(context: CanvasRenderingContext2D, one: Swimmer, presence: number): void {
+function drawTrail(context: CanvasRenderingContext2D, one: Swimmer, presence: number, pieces: number): void {
   const points: (Point | null)[] = [...one.trail, one.position];
-  const pieces = 4;
   for (let piece = 0; piece < pieces; piece++) {
     const first = Math.floor((piece * (points.length - 1)) / pieces);
     const last = Math.floor(((piece + 1) * (points.length - 1)) / pieces);
     context.globalAlpha = presence * (0.03 + 0.2 * one.depth) * ((piece + 1) / pieces) ** 2;
     context.lineWidth = 0.5 + 1.5 * one.depth * ((piece + 1) / pieces);
     context.beginPath();
-    for (let i = first; i < last; i++) {
-      const [from, to] = [points[i]!, points[i + 1]!];
-      if (!from || !to) continue;
-      context.moveTo(...from);
-      context.lineTo(...to);
+    // A line along many points is drawn faster than one between each two of them.
+    let drawing = false;
+    for (let i = first; i <= last; i++) {
+      const point = points[i];
+      if (point && drawing) context.lineTo(...point);
+      else if (point) context.moveTo(...point);
+      drawing = !!point;
     }
     context.stroke();
   }

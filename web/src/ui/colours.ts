@@ -56,6 +56,15 @@ function between(anchors: Rgb[], t: number): Rgb {
   return a.map((value, channel) => Math.round(value + (b[channel]! - value) * (place - i))) as Rgb;
 }
 
+/** The relative luminance of a colour, from 0 to 1 (WCAG 2.2). */
+export function luminance(colour: Rgb): number {
+  const [red, green, blue] = colour.map((value) => {
+    const share = value / 255;
+    return share <= 0.04045 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4;
+  }) as Rgb;
+  return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+}
+
 export function css([red, green, blue]: Rgb): string {
   return `rgb(${red} ${green} ${blue})`;
 }

@@ -1,0 +1,24 @@
+/** Keys that work on every page. */
+
+import { useListener } from "../store/polling";
+import { navigate } from "../store/router";
+
+/** Elements that take text. */
+const FIELDS = "input:not([type=checkbox], [type=range]), textarea, select, [contenteditable]";
+
+export function usePageKeys(toggleShortcuts: () => void): void {
+  const actions: Record<string, () => void> = {
+    "?": toggleShortcuts,
+    "/": () => document.querySelector<HTMLInputElement>("main input[type=search]")?.focus(),
+    n: () => navigate("/new"),
+  };
+  useListener("keydown", (event: KeyboardEvent) => {
+    const target = event.target as Element;
+    if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (target.closest?.(FIELDS) || (target.closest?.("dialog") && event.key !== "?")) return;
+    const action = actions[event.key];
+    if (!action) return;
+    event.preventDefault();
+    action();
+  });
+}
