@@ -19,6 +19,7 @@ from .auth.authenticate import Authenticator
 from .auth.authorize import MAY_READ, PUBLIC, SHARE_HEADER
 from .auth.middleware import PrincipalMiddleware
 from .auth.tokens import watch
+from .choices import routes as choices
 from .core import api, errors, logs, static_files
 from .core.answers import AnswerCache
 from .core.processes import die_with_parent, on_stop_signal
@@ -53,7 +54,18 @@ from .tank import routes as tank
 from .workers import routes as workers
 
 ROUTES = (
-    *(experiments, runs, forks, deletion, sweeps, details, archives, phylogenies, creatures),
+    *(
+        experiments,
+        runs,
+        choices,
+        forks,
+        deletion,
+        sweeps,
+        details,
+        archives,
+        phylogenies,
+        creatures,
+    ),
     *(renderings, tank, shares, events, workers, queue, tokens, health),
 )
 

@@ -11,6 +11,7 @@ const LAYERS = [
   ["ui"],
   ["charts"],
   ["replay", "publish", "simulate"],
+  ["breeding"],
   ["archive", "creature"],
   ["run"],
   ["sweeps", "tank"],

@@ -2,6 +2,7 @@
 
 import time
 from contextlib import AbstractContextManager, nullcontext, suppress
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -9,9 +10,11 @@ from microcosmos.build import build
 from microcosmos.cluster import over
 from microcosmos.device import prepare
 from microcosmos.experiments import Experiment, OtherDevice, Stopped
+from microcosmos.experiments.breeding import UnknownCreature
 from microcosmos.experiments.evolution import Evolution
 from microcosmos.plugins import Broken, Missing
 from microcosmos.spec import field_path, parse
+from server.attempts import choices
 from server.attempts.attempt import Attempt
 from server.settings import Settings
 
@@ -53,12 +56,28 @@ def compute(attempt: Attempt) -> None:
     with on_cluster(experiment, attempt.services.settings) as computing, suppress(Stopped):
         while not (computing.done(state) or attempt.interrupted()):
             started = time.monotonic()
-            state, report = computing.advance(state, stop=attempt.interrupted)
+            before = with_choices(attempt, computing, state)
+            state, report = computing.advance(before, stop=attempt.interrupted)
             attempt.record(report, time.monotonic() - started)
             if attempt.checkpoint_due():
                 attempt.checkpoint(report.generation, experiment.save(state))
     done, generation = experiment.done(state), state.generation
     attempt.end(done, generation, lambda: experiment.save(state))
+
+
+def with_choices(attempt: Attempt, experiment: Experiment, state: Any) -> Any:
+    """Return the state in which creatures count that were chosen for the next generation."""
+    if not isinstance(experiment, Evolution) or experiment.plan.breeding is None:
+        return state
+    generation = state.generation + 1
+    files = choices.begin(attempt, generation)
+    try:
+        return experiment.choose(state, files)
+    except UnknownCreature as error:
+        # The run went on, from before they entered, on another kind of device.
+        choices.forget(attempt, generation, error.names)
+        known = [file for file in files if file["sha256"] not in error.names]
+        return experiment.choose(state, known)
 
 
 def on_cluster(

@@ -103,7 +103,7 @@ class Attempt:
                 f"The checkpoint of generation {self.generation} is damaged; "
                 f"the run resumes from generation {intact.generation}."
             )
-            with self._current(warning=text) as (session, run):
+            with self.current(warning=text) as (session, run):
                 fall_back(session, run, intact, damaged)
                 log.note(session, run, text, "warning")
             logger.warning("run %s: %s (%s)", self.run_id, text, ", ".join(damaged))
@@ -127,14 +127,14 @@ class Attempt:
 
     @retried
     def read_request(self) -> None:
-        with self._current() as (_, run):
+        with self.current() as (_, run):
             self.requested_state = run.requested_state
 
     @retried
     def record(self, report: Report, seconds: float) -> None:
         total = self.seconds + seconds
         rows = recording.rows_of(report, total)
-        with self._current(**rows.run) as (session, run):
+        with self.current(**rows.run) as (session, run):
             # After an outage an earlier try may have been committed.
             if session.get(Generation, (self.run_id, report.generation)) is None:
                 recording.write(session, self.run_id, rows)
@@ -182,7 +182,7 @@ class Attempt:
             raise StoreUnavailable(fault)
         path = checkpoint_path(self.run_id, self.number, generation, data)
         stored = self.services.artifacts.write(path, data)
-        with self._current() as (session, run):
+        with self.current() as (session, run):
             if generation > run.generation:
                 raise ValueError(
                     "`generation` of a checkpoint must be recorded, that is at most "
@@ -246,7 +246,7 @@ class Attempt:
     @retried
     def requeue(self) -> None:
         """Return the run to the queue, as on SIGTERM: this is not a failed attempt."""
-        with self._current() as (session, _):
+        with self.current() as (session, _):
             stop_attempt(session, self.run_id)
         announce(self.services, self.run_id)
         self.services.wake.send()
@@ -270,7 +270,7 @@ class Attempt:
         **values: Any,
     ) -> None:
         """Change the run, log the reason, and count; log its status if the attempt ends."""
-        with self._current(**values) as (session, run):
+        with self.current(**values) as (session, run):
             if text is not None:
                 log.note(session, run, text, level, kind)
             if run.status != RUNNING:
@@ -280,7 +280,7 @@ class Attempt:
         announce(self.services, self.run_id)
 
     @contextmanager
-    def _current(self, **values: Any) -> Iterator[tuple[Session, Run]]:
+    def current(self, **values: Any) -> Iterator[tuple[Session, Run]]:
         """Begin a transaction, lock and change the run if the attempt is the current one."""
         with self.services.sessions.write.begin() as session:
             mine = (Run.status == RUNNING, Run.attempt == self.number)

@@ -9,6 +9,7 @@ from ..core.database import insert_missing
 from ..storage.garbage import discard
 from ..tables import (
     Artifact,
+    Choice,
     Creature,
     Elite,
     GarbageCreature,
@@ -31,6 +32,7 @@ def in_use(session: Session, names: Collection[str]) -> set[str]:
         select(Elite.creature).where(Elite.creature.in_(names)),
         select(Result.creature).where(Result.creature.in_(names)),
         select(InitialCreature.creature).where(InitialCreature.creature.in_(names)),
+        select(Choice.creature).where(Choice.creature.in_(names)),
         select(Share.creature).where(Share.creature.in_(names)),
         select(Share.cover).where(Share.cover.in_(names)),
         select(Parent.parent).where(Parent.parent.in_(names)),

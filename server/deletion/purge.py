@@ -21,6 +21,7 @@ from ..storage.artifacts import run_folder
 from ..storage.garbage import discard
 from ..tables import (
     Artifact,
+    Choice,
     Elite,
     Generation,
     Idempotency,
@@ -98,12 +99,13 @@ def _delete_run(session: Session, run_id: UUID) -> None:
         session,
         run_id,
         select(InitialCreature.creature).where(InitialCreature.run_id == run_id),
+        select(Choice.creature).where(Choice.run_id == run_id),
     )
     rows = delete(Artifact).where(Artifact.run_id == run_id).returning(Artifact.path)
     folder = run_folder(run_id)
     elsewhere = [path for path in session.scalars(rows) if not path.startswith(folder)]
     discard(session, [folder, *elsewhere])
-    for table in (InitialCreature, Idempotency, Notification, Share):
+    for table in (InitialCreature, Choice, Idempotency, Notification, Share):
         session.execute(delete(table).where(table.run_id == run_id))
     session.execute(update(Run).where(Run.forked_from == run_id).values(forked_from=None))
     session.execute(delete(Run).where(Run.id == run_id))

@@ -15,7 +15,7 @@ from .artifacts import (
     GarbageFile,
 )
 from .base import Base, Expiring, Owned, Sha256
-from .creatures import Creature, GarbageCreature, InitialCreature, Parent
+from .creatures import PENDING, Choice, Creature, GarbageCreature, InitialCreature, Parent
 from .installation import InstallationState
 from .operation import Notification, Total
 from .results import CORRECTED, Elite, Generation, Result

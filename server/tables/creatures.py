@@ -1,4 +1,4 @@
-"""Tables of creatures, their parents, and the runs that start from them."""
+"""Tables of creatures, their parents, and the runs that start or descend from them."""
 
 from datetime import datetime
 from typing import Any
@@ -55,6 +55,23 @@ class InitialCreature(Base):
     __tablename__ = "initial_creatures"
 
     run_id: Mapped[RunKey]
+    creature: Mapped[str] = mapped_column(
+        Sha256, ForeignKey("creatures.sha256"), primary_key=True, index=True
+    )
+
+
+PENDING = 0
+"""The generation of a choice that does not count yet."""
+
+
+class Choice(Base):
+    """A creature of a run that a person chose: later generations descend from it, too."""
+
+    __tablename__ = "choices"
+
+    run_id: Mapped[RunKey]
+    generation: Mapped[Place]
+    """The first generation that descends from it; `PENDING` until that begins."""
     creature: Mapped[str] = mapped_column(
         Sha256, ForeignKey("creatures.sha256"), primary_key=True, index=True
     )

@@ -114,6 +114,8 @@ class Run(Owned, Base):
     """Number of generations at the end."""
     generation: Mapped[int] = mapped_column(default=0)
     """The last recorded one."""
+    begun_generation: Mapped[int] = mapped_column(default=0)
+    """The last one that a worker ever began: choices that come later count from the next."""
     checkpoint_generation: Mapped[int] = mapped_column(default=0)
     """The generation of the last checkpoint; 0 without a checkpoint."""
     rewinds: Mapped[int] = mapped_column(default=0)

@@ -4,6 +4,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+import jax
+
 from .. import neat, search, spec
 from ..experiments.state import Plan
 from ..genomes import Encoding
@@ -39,6 +41,26 @@ def build_emission(plan: Plan) -> Callable[..., Any]:
         return children, states, counters
 
     return divided if plan.bandit else fixed
+
+
+BREEDING = 2**31 + 1
+"""Number from which the keys of children of chosen creatures derive; no generation has it."""
+
+
+def build_breeding_emission(plan: Plan) -> Callable[..., Any]:
+    """Build the function that emits children of chosen creatures; see
+    `experiments.offspring.Programs.breed`. They are drawn by their weights, as curiosity."""
+
+    def by_weight(emitter: Any) -> Any:
+        return replace(emitter, select="curiosity") if hasattr(emitter, "select") else emitter
+
+    breeders = tuple(map(by_weight, plan.emitters))
+
+    def bred(parents, counters, generation, emitter):
+        key = jax.random.fold_in(plan.key, BREEDING)
+        return emitters.emit_chosen(breeders, parents, counters, generation, emitter, key=key)
+
+    return bred
 
 
 def _build(

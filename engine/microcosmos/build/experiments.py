@@ -8,18 +8,23 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
-import numpy as np
 
 from .. import device, genomes, neat, search, spec
 from ..archive.initial import counters, genes_of
 from ..experiments import Experiment, deciding, reevaluation
 from ..experiments.evolution import Evolution
+from ..experiments.named import Breeding, InitialCreatures, rows_of
 from ..experiments.offspring import Lessons, Programs
-from ..experiments.state import InitialCreatures, Limits, Plan, Reevaluation
+from ..experiments.state import Limits, Plan, Reevaluation
 from ..search.emitters.tensorneat import TensorNeat
 from .cells import build_container
 from .creatures import build_block, build_disturbed_block, identity_template
-from .emitters import build_bandit, build_emission, build_emitters
+from .emitters import (
+    build_bandit,
+    build_breeding_emission,
+    build_emission,
+    build_emitters,
+)
 from .folding import build_folding
 from .plugins import measures_of, plugin_versions
 from .refinement import build_refinement
@@ -70,6 +75,7 @@ def build_evolution(
         forget=jitted(search.reevaluation.forget),
         lessons=build_lessons(chosen, emitters),
         screen=build_screening_programs(chosen, plan),
+        breed=jitted(build_breeding_emission(plan)) if plan.breeding else None,
     )
     return Evolution(
         plan, programs, build_repeats(chosen, plan), build_deciding(chosen, plan, jitted)
@@ -165,6 +171,7 @@ def build_plan(chosen: spec.Evolution) -> Plan:
         force_free=chosen.coupling.force_free,
         measures=measures_of(scene),
         plugins=plugin_versions(scene),
+        breeding=build_breeding(chosen),
     )
     return replace(plan, screening=build_screening(chosen, plan))
 
@@ -182,11 +189,8 @@ def with_initial(
         )
     genes = genes_of(chosen, [given[name] for name in chosen.search.initial])
     genotypes = [genomes.read(genome, plan.encoding) for genome in genes]
-    names = [np.frombuffer(bytes.fromhex(name), np.uint8) for name in chosen.search.initial]
-    rows = jax.tree.map(lambda *parts: np.stack(parts), *genotypes)
-    return replace(
-        plan, initial=InitialCreatures(np.stack(names), rows), counters=_counters(plan, genes)
-    )
+    found = InitialCreatures(*rows_of(list(chosen.search.initial), genotypes))
+    return replace(plan, initial=found, counters=_counters(plan, genes))
 
 
 def _counters(plan: Plan, genes: list[dict[str, Any]]) -> neat.Counters:
@@ -199,6 +203,14 @@ def _counters(plan: Plan, genes: list[dict[str, Any]]) -> neat.Counters:
 def build_stop_limits(stop: spec.Stop) -> Limits:
     given = {name: value for name, value in stop.model_dump().items() if value is not None}
     return Limits(**given)
+
+
+def build_breeding(chosen: spec.Evolution) -> Breeding | None:
+    """Build the settings of descent from chosen creatures, if the search allows it."""
+    asked = getattr(chosen.search, "breeding", None)
+    if asked is None or spec.breeding_refusal(chosen.model_dump(mode="json")):
+        return None
+    return Breeding(asked.share, asked.half_life)
 
 
 def build_reevaluation(chosen: spec.Evolution) -> Reevaluation | None:

@@ -8,10 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from ..archive.atomic import write_whole
-from ..experiments import Experiment, Report, Stopped
+from ..experiments import Experiment, Report, Stopped, breeding
+from ..experiments.evolution import Evolution
 from ..search import never
-from ..spec import Archive, Refinement, Spec
+from ..spec import Archive, Refinement, Spec, breeding_refusal
 from . import build
+
+Choices = Mapping[int, Sequence[Mapping[str, Any]]]
+"""Files of chosen creatures, by the generation from which they count."""
 
 
 def evolve(
@@ -23,6 +27,7 @@ def evolve(
     checkpoint_seconds: float = 60.0,
     other_device: bool = False,
     initial: Sequence[Mapping[str, Any]] = (),
+    choices: Choices | None = None,
     over: Callable[[Experiment], AbstractContextManager[Experiment]] = nullcontext,
 ) -> bool:
     """Continue a run until it is done or `stop()` is true; return whether it is done.
@@ -31,29 +36,61 @@ def evolve(
     uninterrupted one. The best creature is written beside it. `initial` are the creature files
     that `search.initial` names; a resumed run needs none. `over` may give the run other
     devices, as `partial(cluster.over, url="tls://host:8786")` does. Raises `ValueError` where
-    the file is of another spec or, without `other_device`, of another kind of device.
+    the file is of another spec or of other `choices`, where a choice is of no creature of the
+    run, and, without `other_device`, where the file is of another kind of device.
     """
+    if choices and (refusal := breeding_refusal(spec.model_dump(mode="json"))):
+        raise ValueError(refusal)
     built = build(spec, initial) if initial else build(spec)
     with over(built) as experiment:
-        return _carry_out(experiment, archive, stop, tell, checkpoint_seconds, other_device)
+        state = _begun(experiment, archive, other_device)
+        if choices:
+            _refuse_others(experiment, state, choices)
+        given = experiment, state, archive, stop, tell, checkpoint_seconds
+        return _carry_out(*given, choices or {})
+
+
+def _begun(experiment: Experiment, archive: Path, other_device: bool) -> Any:
+    if archive.exists():
+        return experiment.restore(archive.read_bytes(), other_device=other_device)
+    return experiment.init()
+
+
+def _refuse_others(experiment: Experiment, state: Any, choices: Choices) -> None:
+    """Raise `ValueError` unless the state was computed with the choices up to it."""
+    assert isinstance(experiment, Evolution)  # `breeding_refusal` refuses others.
+    given = {
+        (generation, file["sha256"])
+        for generation, files in choices.items()
+        if generation <= state.generation
+        for file in files
+    }
+    known = set(breeding.rows(state.choices))
+    if given != known:
+        generation, name = min(given ^ known)
+        raise ValueError(
+            f"`choices` must be those of the archive up to its generation {state.generation}; "
+            f"they differ in creature {name[:12]} of generation {generation}"
+        )
 
 
 def _carry_out(
     experiment: Experiment,
+    state: Any,
     archive: Path,
     stop: Callable[[], bool],
     tell: Callable[[Report], None],
     checkpoint_seconds: float,
-    other_device: bool,
+    choices: Choices,
 ) -> bool:
-    if archive.exists():
-        state = experiment.restore(archive.read_bytes(), other_device=other_device)
-    else:
-        state = experiment.init()
     saved = time.monotonic()
     try:
         while not experiment.done(state):
-            state, report = experiment.advance(state, stop)
+            files = choices.get(state.generation + 1)
+            before: Any = state
+            if files and isinstance(experiment, Evolution):
+                before = experiment.choose(state, files)
+            state, report = experiment.advance(before, stop)
             tell(report)
             if time.monotonic() - saved >= checkpoint_seconds:
                 _save(experiment, state, archive)

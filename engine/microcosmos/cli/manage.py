@@ -116,6 +116,24 @@ def fork(
 
 
 @server_command(RUNS)
+def choose(
+    client: Client,
+    id: Id,
+    creatures: Annotated[
+        list[str], Argument(metavar="SHA...", help="Creatures of the run's archive.")
+    ],
+) -> None:
+    """Let a part of the next generations descend from creatures of a run."""
+    client.run(id).choose(creatures)
+
+
+@server_command(RUNS)
+def choices(client: Client, id: Id) -> None:
+    """Print the chosen creatures of a run, as `evolve --choices` reads them."""
+    show(client.run(id).exported_choices())
+
+
+@server_command(RUNS)
 def pause(client: Client, ids: Ids) -> None:
     """Pause runs or sweeps; `resume` continues them."""
     _each(client, ids, "pause")

@@ -18,6 +18,7 @@ from rich.progress import (
 )
 from typer import Argument, Option
 
+from ..archive import choices as choices_file
 from ..archive.creature import parse
 from ..archive.file import read_table
 from ..doctor.machine import memory_bytes
@@ -27,6 +28,15 @@ from .cluster import Certificate
 from .initial import From, with_initial
 from .modules import Modules, load_modules
 from .specs import changed, presets, read_spec, with_generations
+
+Choices = Annotated[
+    Path | None,
+    Option(
+        exists=True,
+        dir_okay=False,
+        help="File of chosen creatures that generations descend from, as a server exports it.",
+    ),
+]
 
 
 @app.command()
@@ -47,6 +57,7 @@ def evolve(
     ] = 60.0,
     other_device: OtherDevice = False,
     begin_from: From = None,
+    choices: Choices = None,
     cluster: Annotated[
         str | None,
         Option(help="Scheduler whose helpers compute too, like tls://host:8786."),
@@ -66,9 +77,8 @@ def evolve(
 
     chosen, initial = with_initial(chosen, begin_from or (), path)
     console.print(f"{evaluations:,} evaluations on {device_kind()} into {path}")
-    run_with_progress(
-        chosen, path, checkpoint_seconds, other_device, initial, cluster, certificate
-    )
+    options = {**_over(cluster, certificate), "choices": _read_choices(choices)}
+    run_with_progress(chosen, path, checkpoint_seconds, other_device, initial, **options)
     best = path.with_suffix(".best.json")
     console.print(f"Done: {path}" + (f"; the best creature: {best}" if best.exists() else ""))
 
@@ -133,8 +143,7 @@ def run_with_progress(
     checkpoint_seconds: float,
     other_device: bool,
     initial: Sequence[Mapping[str, Any]] = (),
-    cluster: str | None = None,
-    certificate: Path | None = None,
+    **options: Any,
 ) -> None:
     """Carry out the run with a progress bar; exit with status 130 if a signal stops it."""
     from .. import experiments
@@ -170,13 +179,20 @@ def run_with_progress(
                 checkpoint_seconds=checkpoint_seconds,
                 other_device=other_device,
                 initial=initial,
-                **_over(cluster, certificate),
+                **options,
             )
         except experiments.OtherDevice as error:
             raise ValueError(f"{error} To continue here anyway, add --other-device.") from error
     if not done:
         console.print(f"Stopped. The same command goes on from {archive}.")
         raise typer.Exit(130)
+
+
+def _read_choices(path: Path | None) -> dict[int, choices_file.Files] | None:
+    if path is None:
+        return None
+    with failing(f"--choices: {path}"):
+        return choices_file.parse(path.read_bytes())
 
 
 def _over(cluster: str | None, certificate: Path | None) -> dict[str, Any]:

@@ -96,6 +96,21 @@ class Run(Record):
         path, key = f"{self._path}/fork", str(uuid4())
         return Run(self._connection, self._connection.send("POST", path, document, key=key))
 
+    def choose(self, creatures: Sequence[str | Creature]) -> Columns:
+        """Let a part of the next generations descend from these creatures of its archive."""
+        names = [one.sha if isinstance(one, Creature) else one for one in creatures]
+        sent = {"creatures": names}
+        return _choices(self._connection.send("POST", f"{self._path}/choices", sent))
+
+    def choices(self) -> Columns:
+        """Return the chosen creatures: `creature`, and the `generation` from which each counts,
+        None until that begins."""
+        return _choices(self._connection.read(f"{self._path}/choices"))
+
+    def exported_choices(self) -> dict[str, Any]:
+        """Return the file with which `microcosmos evolve SPEC --choices FILE` repeats it."""
+        return self._connection.read(f"{self._path}/choices.json")
+
     def delete(self) -> Self:
         """Move it to the bin; `restore` brings it back within a day."""
         try:
@@ -184,3 +199,8 @@ class Run(Record):
     def url(self) -> str:
         """Address of its page."""
         return f"{self._connection.url}/runs/{self.id}"
+
+
+def _choices(found: Mapping[str, Any]) -> Columns:
+    items = found["items"]
+    return Columns({name: [one[name] for one in items] for name in ("creature", "generation")})

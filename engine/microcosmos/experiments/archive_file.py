@@ -20,6 +20,7 @@ from ..search.leaves import filled, leaves
 from ..version import VERSION
 from . import fronts
 from .epochs import Epochs
+from .named import Choices, InitialCreatures
 from .resume_check import devices_of
 from .state import (
     CURVES,
@@ -27,7 +28,6 @@ from .state import (
     OUTCOMES,
     PREDICTIONS,
     Infeasible,
-    InitialCreatures,
     Lineage,
     Plan,
     Screened,
@@ -76,6 +76,9 @@ def save(plan: Plan, state: State) -> bytes:
     if state.initial is not None:
         genes = columns(state.initial.genotypes)
         tree["initial"] = {"creature": state.initial.creature, "genomes": genes}
+    if len(state.choices.generation):
+        genes = columns(state.choices.genotypes)
+        tree["choices"] = vars(state.choices) | {"genotypes": genes}
     return file.dump(tree, _attributes(plan, state))
 
 
@@ -147,8 +150,16 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
         restored = replace(restored, screened=Screened(model, predictions))
     if restored.first is not None:
         restored = replace(restored, first=restored.first.replaced(cells, archive["first"]))
-    restored = _with_container(restored, tree)
+    restored = _with_container(_with_choices(restored, tree), tree)
     return prolonged(restored) if restored.generation < plan.generations else restored
+
+
+def _with_choices(state: State, tree: file.Tree) -> State:
+    if "choices" not in tree:
+        return state
+    columns_of = tree["choices"]
+    genes = from_columns(state.elites.genotypes, columns_of["genotypes"])
+    return replace(state, choices=Choices(**columns_of | {"genotypes": genes}))
 
 
 def _hold_container(tree: dict[str, Any], state: State) -> None:

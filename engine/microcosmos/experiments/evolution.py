@@ -5,7 +5,7 @@ arXiv:1504.04909, 2015); an emitter with its own population only records in it.
 """
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -18,6 +18,7 @@ from ..archive.report import Elite, Report
 from ..genomes import Genotype
 from . import (
     archive_file,
+    breeding,
     deciding,
     epochs,
     fronts,
@@ -66,6 +67,11 @@ class Evolution:
             raise ValueError(f"`search.initial` names {count}, whose files are needed to begin")
         return start(self.plan)
 
+    def choose(self, state: State, files: Sequence[Mapping[str, Any]]) -> State:
+        """Return the state whose next generations also descend from chosen creatures; see
+        `breeding.choose`."""
+        return breeding.choose(self.plan, state, files)
+
     def done(self, state: State) -> bool:
         return bool(state.ended) or state.generation >= self.plan.generations
 
@@ -83,8 +89,9 @@ class Evolution:
                 self.plan, self.decide, self.devices, state, genotypes, evaluation, stop
             )
         seconds = self.devices.seconds() - offspring.began
-        after, elites, clipped, cells = self._inserted(state, offspring, decided)
+        after, elites, clipped, inserted = self._inserted(state, offspring, decided)
         after = replace(after, device_seconds=state.device_seconds + seconds)
+        cells = np.asarray(inserted.cell)
         after = self._learned(state, after, genotypes, decided.mean, cells)
         after = replace(after, ended=_ended(self.plan, after))
         corrected = (np.nan, np.nan, np.nan)
@@ -98,14 +105,14 @@ class Evolution:
         after = fronts.measured(after)
         seconds = after.device_seconds - state.device_seconds
         summary = reporting.summary(self.plan, after, seconds, np.asarray(decided.mean.status))
-        summary |= offspring.results.summary() | self.devices.summary()
+        summary |= offspring.summary(inserted) | self.devices.summary()
         return after, reporting.report(after, elites, emptied(state, after.elites), summary)
 
     def _inserted(
         self, state: State, offspring: Offspring, decided: deciding.Decided
-    ) -> tuple[State, tuple[Elite, ...], int, np.ndarray]:
+    ) -> tuple[State, tuple[Elite, ...], int, search.Inserted]:
         """Return the state with the offspring recorded, new elites, the number clipped, and
-        cells."""
+        where the offspring went."""
         programs, children, evaluation = self.programs, offspring.children, decided.mean
         candidates = search.candidates(
             state.generation + 1,
@@ -147,7 +154,7 @@ class Evolution:
             ),
             failures=_failures(state, children.genotypes, np.asarray(evaluation.status)),
         )
-        return after, new, clipped, np.asarray(inserted.cell)
+        return after, new, clipped, inserted
 
     def _placed(
         self,

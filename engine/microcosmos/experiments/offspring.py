@@ -9,16 +9,21 @@ from dataclasses import dataclass, replace
 from itertools import zip_longest
 from typing import Any
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
 from .. import neat, search
-from ..genomes import Genotype
+from ..genomes import Genotype, Graph
 from ..search.emitters.population import Population
-from . import screening
-from .state import InitialCreatures, Plan, State
+from . import breeding, screening
+from .named import InitialCreatures
+from .state import Plan, State
+
+INITIAL, BRED = -1, -2
+"""Numbers that stand for no emitter: an initial creature, and a child of a chosen one."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +83,9 @@ class Programs:
     lessons: tuple[Lessons | None, ...]
     """Lessons of each emitter whose children learn before evaluation."""
     screen: screening.Programs | None = None
+    breed: Callable[..., tuple[search.Children, neat.Counters]] | None = None
+    """Children of chosen creatures, from an archive of them, counters, a generation and the
+    emitter of each slot; None if the search cannot descend from chosen ones."""
 
 
 @dataclass(frozen=True)
@@ -95,9 +103,13 @@ class Offspring:
     from_archive: bool
     """Whether parents are elites, not initial creatures."""
     emitter: np.ndarray
-    """The number of each slot's emitter, −1 for an initial creature."""
+    """The number of each slot's emitter, `INITIAL` or `BRED`."""
     before: tuple[tuple[Any] | None, ...] = ()
     """The earlier state of each emitter some of whose children were replaced."""
+
+    def summary(self, inserted: search.Inserted) -> dict[str, float]:
+        """Return figures for the report: of lessons, and of children of chosen creatures."""
+        return self.results.summary() | breeding.summary(self.emitter == BRED, inserted)
 
     def without_replaced(self, states: tuple[Any, ...]) -> tuple[Any, ...]:
         """Return the states; emitters whose children were replaced keep the earlier one."""
@@ -112,7 +124,17 @@ def next_offspring(
     state: State,
     stop: Callable[[], bool],
 ) -> Offspring:
-    """Return the next generation's children."""
+    """Return the next generation's children, those of chosen creatures among them."""
+    return _with_bred(plan, programs, state, _unbred(plan, programs, devices, state, stop))
+
+
+def _unbred(
+    plan: Plan,
+    programs: Programs,
+    devices: search.Devices,
+    state: State,
+    stop: Callable[[], bool],
+) -> Offspring:
     first, initial = state.generation * plan.batch, state.initial
     emitter = divided(plan, state)
     if initial is None or first >= len(initial.creature):
@@ -218,8 +240,34 @@ def _with_initial(
         (kept,) if first < count and not isinstance(kept, Population) else None
         for kept, first in pairs
     )
-    emitter = put(offspring.emitter, np.full(count, -1, np.int32))
+    emitter = put(offspring.emitter, np.full(count, INITIAL, np.int32))
     return replace(offspring, children=children, before=before, emitter=emitter)
+
+
+def _with_bred(plan: Plan, programs: Programs, state: State, offspring: Offspring) -> Offspring:
+    """Return the offspring after children of chosen creatures have taken some slots."""
+    before = offspring.counters
+    new = breeding.bred(plan, programs.breed, state, before, offspring.emitter)
+    if new is None:
+        return offspring
+
+    def put(old: Any, rows: Any) -> np.ndarray:
+        whole = np.array(old)
+        whole[new.slots] = rows
+        return whole
+
+    children = jax.tree.map(put, offspring.children, new.children)
+    counters = new.counters
+    if isinstance(children.genotypes, Graph):  # Replaced children leave numbers unused.
+        genotypes, counters = neat.compacted(children.genotypes, state.counters)
+        children = eqx.tree_at(lambda one: one.genotypes, children, genotypes)
+    return replace(
+        offspring,
+        children=children,
+        counters=counters,
+        names=np.concatenate([offspring.names, new.names]),
+        emitter=put(offspring.emitter, BRED),
+    )
 
 
 def _teach(

@@ -15,6 +15,7 @@ from ..archive.poses import PoseStream
 from ..genomes import Encoding, Genotype
 from .epochs import Epochs, no_epochs
 from .first import FirstEvaluations, no_first
+from .named import Breeding, Choices, InitialCreatures, no_choices
 
 CURVES = (
     "qd_score",
@@ -83,14 +84,6 @@ class Screening:
     regression: search.screening.Regression
 
 
-class InitialCreatures(eqx.Module):
-    """Initial creatures, in the order of their names."""
-
-    creature: UInt8[np.ndarray, "row 32"]
-    genotypes: Genotype
-    """Rows of NumPy arrays."""
-
-
 @dataclass(frozen=True)
 class Plan:
     """Everything about a run that follows from its spec and its device."""
@@ -127,6 +120,8 @@ class Plan:
     """Names of the emitters, each unique."""
     initial: InitialCreatures | None = None
     """Initial creatures; a file of the run also holds them."""
+    breeding: Breeding | None = None
+    """None if the search cannot descend from chosen creatures."""
 
     @property
     def decides(self) -> bool:
@@ -222,6 +217,8 @@ class State(eqx.Module):
     """Time of evaluation, summed over devices; used only for the limit on it."""
     lineage: Lineage
     failures: Infeasible
+    choices: Choices
+    """Chosen creatures that count so far."""
     poses: Mapping[int, PoseStream]
     """The pose stream of each cell's elite."""
     devices: tuple[str, ...] = eqx.field(static=True)
@@ -290,6 +287,7 @@ def start(plan: Plan) -> State:
             descriptors=descriptors,
         ),
         failures=Infeasible(none, none, none, no_genotypes),
+        choices=no_choices(plan.genotype),
         poses={},
         devices=(plan.device,),
         initial=plan.initial,

@@ -3,6 +3,7 @@
 from .bandit import Bandit
 from .base import Part, field_path
 from .body import Body, Chain, GrownBody, PluginBody, SwimmerBody, is_unavailable, shape
+from .breeding import Breeding, breeding_refusal
 from .control import OUTPUTS, Control, Genome
 from .copies import Copies
 from .coupling import Coupling

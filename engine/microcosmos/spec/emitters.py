@@ -167,6 +167,12 @@ Emitter = Annotated[
 ]
 """One source of offspring."""
 
+VARYING = ("neat", "iso+line", "gaussian")
+"""Operators that vary any parents."""
+STATELESS = ("random", *VARYING)
+"""Operators that learn nothing from the outcome, so that any of their offspring, and any number
+of them, may be evaluated."""
+
 USING_GRADIENTS = ("lamarckian", "cma-mega")
 """Operators that need the derivatives of all descriptors."""
 

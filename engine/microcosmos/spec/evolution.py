@@ -10,12 +10,18 @@ from .body import Body, Chain, is_unavailable, resolved
 from .containers import Fronts
 from .control import Control, Genome
 from .coupling import Coupling, refuse_without_feasible
-from .emitters import Emitter, PopulationEmitter, gradients, refuse_unfit_emitters
+from .emitters import (
+    STATELESS,
+    Emitter,
+    PopulationEmitter,
+    gradients,
+    refuse_unfit_emitters,
+)
 from .encodings import Controller, refuse_cramped
 from .measures import MEASURES
 from .placement import refuse_blocked, refuse_crowded
 from .scene import Scene, refuse_misfit, refuse_senseless, refuse_swept
-from .search import MEASURED, STATELESS, Archive, Generations, Task
+from .search import MEASURED, Archive, Generations, Task
 from .world import Steric, World
 
 Name = TypeVar("Name", bound=str)

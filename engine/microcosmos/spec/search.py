@@ -10,8 +10,9 @@ from ..plugins.declaration import refuse_empty_axis
 from . import measures
 from .bandit import Bandit
 from .base import Digest, Part, field, sourced
+from .breeding import Breeding
 from .containers import Container, DominatedNovelty, Fronts, LearnedAxes
-from .emitters import Emitter, NeatEmitter, refuse_uneven, slots
+from .emitters import STATELESS, Emitter, NeatEmitter, refuse_uneven, slots
 from .plugins import OR_PLUGIN, MaybePlugin, PluginVersion, complete_plugin, completed
 from .reevaluation import Reevaluation
 from .sources import CVT, MAP_ELITES, OURS, PAPER, SCREENING
@@ -207,10 +208,6 @@ class Screening(Part):
     """Share of the offspring that is simulated whatever the prediction."""
 
 
-STATELESS = ("random", "neat", "iso+line", "gaussian")
-"""Operators that learn nothing from the outcome, so that any of their offspring, and any number
-of them, may be evaluated."""
-
 MAX_INITIAL = 4096
 """Most initial creatures of a search."""
 
@@ -257,6 +254,8 @@ class Search(Generations):
     """Prediction of offspring before they are simulated; empty: none."""
     bandit: Bandit | None = None
     """Division of each batch by the emitters' success; empty: by their `share`."""
+    breeding: Breeding = Breeding()
+    """Descent from creatures that people choose while the run goes on."""
 
     @property
     def slots(self) -> tuple[int, ...]:

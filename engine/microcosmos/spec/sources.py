@@ -41,3 +41,7 @@ MOME = (
 DOMINATED_NOVELTY = "Bahlous-Boldi et al., GECCO 2025, arXiv:2502.00593"
 AURORA = "Grillotti and Cully, IEEE Trans. Evol. Comput. 26, 1539 (2022), arXiv:2106.05648"
 SCREENING = "Gaier, Asteroth and Mouret, Evol. Comput. 26, 381 (2018)"
+BREEDING = (
+    "Picbreeder: Secretan et al., Evol. Comput. 19, 373 (2011); review: Takagi, Proc. IEEE 89, "
+    "1275 (2001)"
+)

@@ -27,6 +27,13 @@ def optional(kind: Any, *names: str) -> list[sa.Column[Any]]:
     return [sa.Column(name, kind) for name in names]
 
 
+def numbered(*names: str) -> list[sa.Column[Any]]:
+    """Return columns of a key that are numbers of a row."""
+    return [
+        sa.Column(name, sa.Integer(), primary_key=True, autoincrement=False) for name in names
+    ]
+
+
 def to_creature() -> sa.ForeignKey:
     return sa.ForeignKey("creatures.sha256")
 

@@ -107,13 +107,18 @@ def test_a_strip_states_the_verdict_of_the_creatures_own_audit(invoke, tmp_path,
 
 def test_evolve_sets_fields_and_makes_the_folder_of_its_file(invoke, tmp_path, monkeypatch):
     carried = []
-    monkeypatch.setattr(run_command, "run_with_progress", lambda *given: carried.append(given))
+    monkeypatch.setattr(
+        run_command, "run_with_progress", lambda *given, **_: carried.append(given)
+    )
     (tmp_path / "spec.json").write_text(json.dumps(SPEC))
     command = ["evolve", "spec.json", "--out", "new/folder/x.h5"]
     invoke(*command, "--set", "world.viscosity=0.07")
     assert carried[0][0].world.viscosity == 0.07
     assert (tmp_path / "new" / "folder").is_dir()
     invoke(*command, "--set", "world.viscosity=-1", code=2)
+    (tmp_path / "choices.json").write_text('{"choices": []}')
+    refused = invoke(*command, "--choices", "choices.json", code=2)
+    assert "--choices: choices.json: `creatures` needs a value" in refused
 
 
 @pytest.mark.long

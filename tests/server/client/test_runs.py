@@ -6,11 +6,13 @@ from uuid import UUID
 
 import numpy as np
 import pytest
+import reports
 from pydantic import SecretStr
 
 from microcosmos.client import Client, Conflict, NoAnswer, NotFound, Refused, polling
 from microcosmos.client.views import watch
 from microcosmos.spec.quality_diversity import DEMO
+from server.attempts.choices import begin
 from server.attempts.claim import claim
 
 
@@ -259,3 +261,17 @@ def test_a_rewound_run_drops_later_generations(client, services, run, run_id, at
     while (state := next(found)).curves["generation"] == [1, 2, 3]:
         claim(services, run_id, "worker")
     assert state.curves["generation"] == [1]
+
+
+def test_chosen_creatures_are_read_and_exported(client, run_id, attempt, record):
+    record(1, {0: 1.0, 1: 2.0})
+    names = sorted(reports.creature_of(number)["creature"] for number in (1000, 1001))
+    run = client.run(str(run_id))
+    assert run.choose(names[:1])["creature"].tolist() == names[:1]
+    begin(attempt, 2)
+    found = run.choose(names[1:])
+    assert found["creature"].tolist() == names
+    assert found.to_pandas().equals(run.choices().to_pandas())
+    exported = run.exported_choices()
+    assert exported["choices"] == [{"generation": 2, "creature": names[0]}]
+    assert [one["sha256"] for one in exported["creatures"]] == names[:1]

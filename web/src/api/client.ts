@@ -60,6 +60,14 @@ export const commandRun = (id: string, verb: RunCommand) =>
 export const deleteRun = (id: string) => typed<wire.Run>(client.DELETE("/runs/{run_id}", run(id)));
 export const restoreRun = (id: string) => typed<wire.Run>(client.POST("/runs/{run_id}/restore", run(id)));
 
+/** Creatures that people chose for the next generations to descend from. */
+export const readChoices = (id: string) => success(client.GET("/runs/{run_id}/choices", run(id)));
+export const chooseCreatures = (id: string, creatures: string[]) =>
+  success(client.POST("/runs/{run_id}/choices", { ...run(id), body: { creatures } }));
+/** Take back choices that do not count yet. */
+export const takeBackChoices = (id: string, creatures: string[]) =>
+  success(client.DELETE("/runs/{run_id}/choices", run(id, { creature: creatures })));
+
 const joined = (measures: string[]) => (measures.length > 0 ? { measures: measures.join(",") } : {});
 
 /** Columns come as bytes, which are smaller than JSON. */

@@ -42,6 +42,8 @@ export async function downloadFile(url: string): Promise<void> {
 
 export const archiveUrl = (id: string, kind: "h5" | "csv") => `${ROOT}/runs/${id}/archive.${kind}`;
 export const resultsUrl = (id: string) => `${ROOT}/runs/${id}/results.csv`;
+/** With the spec, all that repeats a run with chosen creatures. */
+export const choicesUrl = (id: string) => `${ROOT}/runs/${id}/choices.json`;
 export type PhylogenyFile = "csv" | "nwk";
 /** `of` is the path of a run or a creature. */
 export const phylogenyUrl = (of: string, kind: PhylogenyFile) => `${ROOT}${of}/phylogeny.${kind}`;

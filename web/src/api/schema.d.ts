@@ -876,6 +876,57 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/runs/{run_id}/choices": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Choices
+         * @description Return the chosen creatures, and from which generation each counts.
+         */
+        get: operations["read_choices_api_v1_runs__run_id__choices_get"];
+        put?: never;
+        /**
+         * Choose Creatures
+         * @description Choose creatures of the run's archive. A part of the next generation that has not begun
+         *     descends from them, and ever less of those that follow (`search.breeding`).
+         */
+        post: operations["choose_creatures_api_v1_runs__run_id__choices_post"];
+        /**
+         * Take Back Choices
+         * @description Take back choices that do not count yet: those of some creatures, or all. The answer says
+         *     which choices there are now.
+         */
+        delete: operations["take_back_choices_api_v1_runs__run_id__choices_delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/runs/{run_id}/choices.json": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Export Choices
+         * @description Return the choices that count with the files of their creatures: with the spec, all that
+         *     `microcosmos evolve SPEC --choices FILE` needs to repeat the run.
+         */
+        get: operations["export_choices_api_v1_runs__run_id__choices_json_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/runs/{run_id}/extend": {
         parameters: {
             query?: never;
@@ -1794,6 +1845,31 @@ export interface components {
             items: components["schemas"]["Relative"][];
             /** Total */
             total: number;
+        };
+        /** ChoiceRead */
+        ChoiceRead: {
+            /** Creature */
+            creature: string;
+            /** Generation */
+            generation: number | null;
+        };
+        /**
+         * ChoicesRead
+         * @description The chosen creatures of a run.
+         */
+        ChoicesRead: {
+            /** Items */
+            items: components["schemas"]["ChoiceRead"][];
+            /** Refusal */
+            refusal: string | null;
+        };
+        /**
+         * Chosen
+         * @description Creatures to choose, by name.
+         */
+        Chosen: {
+            /** Creatures */
+            creatures: string[];
         };
         /**
          * Comparison
@@ -5100,6 +5176,136 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["RunRead"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_choices_api_v1_runs__run_id__choices_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ChoicesRead"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    choose_creatures_api_v1_runs__run_id__choices_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Chosen"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ChoicesRead"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    take_back_choices_api_v1_runs__run_id__choices_delete: {
+        parameters: {
+            query?: {
+                creature?: string[];
+            };
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ChoicesRead"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    export_choices_api_v1_runs__run_id__choices_json_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": unknown;
                 };
             };
             /** @description A problem (RFC 9457) */

@@ -50,6 +50,8 @@ export interface ForkRequest {
   spec: Spec;
   name: string | null;
 }
+/** The chosen creatures of a run, to breed from. */
+export type Choices = Wire["ChoicesRead"];
 export type Worker = Wire["WorkerRead"];
 export type Queue = Wire["QueueRead"];
 export type Preset = With<Wire["PresetRead"], { spec: Spec }>;

@@ -5,6 +5,7 @@ import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { useSteps } from "../replay/clock";
 import { readArchiveBatch, usePoses } from "../store/poses";
 import { setQuery } from "../store/router";
+import { useKnownChoices } from "../store/choices";
 import { type Size, useOnScreen, useSize, px, useTheme } from "../ui/canvas";
 import { AxisLabels, ColourLegend } from "./labels";
 import type { MapAxis } from "./axes";
@@ -133,7 +134,9 @@ function Tiles({ run, at, projection, selected: cells, ...props }: TilesProps) {
   const visible = bins.map((bin) => tiles.get(bin)!).map(({ cell, elite }) => ({ cell, ...elite }));
   const poses = usePoses(run === null ? null : readArchiveBatch(run, at), visible);
   const selected = useMemo(() => binsOf(cells, projection), [cells, projection]);
-  const picture = { shape, side, tiles, bins, colouring, poses, theme, marked, selected };
+  const choices = useKnownChoices(run ?? "");
+  const chosen = useMemo(() => new Set(choices?.items.map(({ creature }) => creature)), [choices]);
+  const picture = { shape, side, tiles, bins, colouring, poses, theme, marked, selected, chosen };
   const complete = visible.length > 0 && visible.every(({ creature }) => poses.has(creature));
   useSteps(useOnScreen(canvas), (steps) => {
     const element = canvas.current; // Null in the frame after the page was left.

@@ -10,6 +10,7 @@ import { setQuery } from "../store/router";
 import { type Selection, type CellSet, cellsIn, toggle } from "./selection";
 import type { Projection } from "./projection";
 import type { Of } from "./reprojection";
+import { BreedButton } from "../breeding/BreedButton";
 import { count } from "../ui/format";
 import { ForkLink } from "../ui/links";
 import { text } from "./text";
@@ -79,6 +80,9 @@ export function SelectionBar({ run, of, elites, at, selected, onSelect }: Props)
       <span role="status">{selected.size > 0 && text.selected(which)}</span>
       {/* Outside the live region: it would be read at every step of the slider. */}
       {selected.size === 0 && creatures > 0 && <span>{which}</span>}
+      {selected.size > 0 && creatures > 0 && (
+        <BreedButton run={run} creatures={[...names]} onChosen={() => setSelection(new Set())} />
+      )}
       {creatures > 0 && of === "elites" && (
         <ForkLink
           run={run.id}

@@ -23,11 +23,13 @@ export interface GalleryPicture {
   marked: number | null;
   /** The selected bins; null without a selection. */
   selected: ReadonlySet<number> | null;
+  /** Creatures that people chose to breed. */
+  chosen: ReadonlySet<string>;
 }
 
 const INKS = {
-  light: { body: BODY_INK.light, quiet: "rgb(18 34 44 / 0.3)", tint: 0.3 },
-  dark: { body: BODY_INK.dark, quiet: "rgb(240 244 246 / 0.3)", tint: 0.38 },
+  light: { body: BODY_INK.light, quiet: "rgb(18 34 44 / 0.3)", tint: 0.3, chosen: "#b3263e" },
+  dark: { body: BODY_INK.dark, quiet: "rgb(240 244 246 / 0.3)", tint: 0.38, chosen: "#ff8da0" },
 };
 
 /** `steps` are the simulated steps so far; the window starts at `left` and `top` of the gallery. */
@@ -55,7 +57,7 @@ export function drawGallery(
 
 function drawTile(
   context: CanvasRenderingContext2D,
-  { tiles, colouring, poses, theme, selected }: GalleryPicture,
+  { tiles, colouring, poses, theme, selected, chosen }: GalleryPicture,
   bin: number,
   [left, top, side]: readonly [number, number, number],
   steps: number,
@@ -84,5 +86,36 @@ function drawTile(
     markDistrusted(context, [left + side - 9, top + 9], 3, theme);
     context.lineWidth = lineWidth;
   }
+  if (chosen.has(tile.elite.creature)) markChosen(context, [left + 5, top + 4], Math.max(8, side / 7), theme);
   context.globalAlpha = 1;
+}
+
+/** A filled heart with its top left corner at a place. */
+function markChosen(
+  context: CanvasRenderingContext2D,
+  [left, top]: readonly [number, number],
+  width: number,
+  theme: Theme,
+): void {
+  const [middle, dip, low] = [left + width / 2, top + width * 0.28, top + width * 0.95];
+  context.beginPath();
+  context.moveTo(middle, low);
+  context.bezierCurveTo(
+    left - width * 0.35,
+    top + width * 0.45,
+    left + width * 0.1,
+    top - width * 0.25,
+    middle,
+    dip,
+  );
+  context.bezierCurveTo(
+    left + width * 0.9,
+    top - width * 0.25,
+    left + width * 1.35,
+    top + width * 0.45,
+    middle,
+    low,
+  );
+  context.fillStyle = INKS[theme].chosen;
+  context.fill();
 }

@@ -15,6 +15,7 @@ import { newPlayhead } from "../replay/playhead";
 import { AUDIT_HASH, AuditCard, type AuditState, useAudit } from "./AuditCard";
 import { FactsCard } from "./FactsCard";
 import { FamilyCard } from "./FamilyCard";
+import { BreedCreature } from "../breeding/BreedButton";
 import { ForkLink } from "../ui/links";
 import { GenomeCard } from "./GenomeCard";
 import { LiveCard } from "./LiveCard";
@@ -61,6 +62,7 @@ export function CreaturePage({ id: sha, query }: Props) {
           </a>
         )}
         {creature && <PublishButton of={{ creature: sha }} file={creature} title="" />}
+        {creature && run && isEvolved(creature) && <BreedCreature run={run} creature={sha} />}
         {creature && isEvolved(creature) && <ForkLink run={run} creatures={[sha]} title={text.fork} />}
         {creature && isEvolved(creature) && <RefineButton creature={creature} run={run} />}
       </header>

@@ -2,10 +2,14 @@
 
 import type { Run } from "../api/types";
 import type { Detail } from "../store/detail";
+import { useChoices } from "../store/choices";
+import { lazy } from "../ui/lazy";
 import { ArchiveCard } from "../archive/ArchiveCard";
 import { CurvesCard, SearchCard, useComparedRuns } from "./RunCurves";
 import { text } from "./text";
 import "./run.css";
+
+const ChoicesCard = lazy(async () => (await import("../breeding/ChoicesCard")).ChoicesCard, "section");
 
 interface Props {
   run: Run;
@@ -16,6 +20,8 @@ interface Props {
 export function ArchiveRun({ run, detail, query }: Props) {
   const curves = detail?.curves && detail.curves.generation.length > 0 ? detail.curves : null;
   const compared = useComparedRuns(query, run.id);
+  const choices = useChoices(run);
+  const chosen = choices && choices.items.length > 0 ? choices : null;
   return (
     <>
       <div class={`run-columns ${query.get("view") === "gallery" ? "wide" : ""}`}>
@@ -29,8 +35,14 @@ export function ArchiveRun({ run, detail, query }: Props) {
             </>
           )}
         </section>
-        <CurvesCard {...{ run, curves, query, compared }} />
+        <CurvesCard {...{ run, curves, query, compared, chosen }} />
       </div>
+      {chosen && (
+        <ChoicesCard
+          {...{ run, choices: chosen }}
+          children={curves?.summary["chosen: children"]?.at(-1) ?? null}
+        />
+      )}
       {curves && <SearchCard {...{ run, curves, query, compared }} />}
     </>
   );

@@ -1,13 +1,15 @@
 /** Files of a run. */
 
-import { archiveUrl, resultsUrl } from "../api/files";
+import { archiveUrl, choicesUrl, resultsUrl } from "../api/files";
 import type { Run } from "../api/types";
+import { useKnownChoices } from "../store/choices";
 import { hasArchive } from "../store/fetch";
 import { FileLink } from "../ui/links";
 import { Card } from "../ui/Page";
 import { text } from "./text";
 
 export function FilesCard({ run, about }: { run: Run; about: string }) {
+  const chosen = useKnownChoices(run.id)?.items.some(({ generation }) => generation !== null);
   const [name, csv] = hasArchive(run)
     ? ["archive", archiveUrl(run.id, "csv")]
     : ["results", resultsUrl(run.id)];
@@ -16,6 +18,7 @@ export function FilesCard({ run, about }: { run: Run; about: string }) {
       <p class="links">
         <FileLink url={archiveUrl(run.id, "h5")} name={`${name}.h5`} />
         <FileLink url={csv} name={`${name}.csv`} />
+        {chosen && <FileLink url={choicesUrl(run.id)} name="choices.json" title={text.choicesAbout} />}
       </p>
       <p class="quiet">{about}</p>
     </Card>

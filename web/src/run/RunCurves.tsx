@@ -2,13 +2,13 @@
 
 import type { ComponentChildren } from "preact";
 import { sharedSlug } from "../api/address";
-import type { Run } from "../api/types";
+import type { Choices, Run } from "../api/types";
 import type { Curves as Columns } from "../store/curves";
 import { hasArchive, useCurvesOf, useExperiments } from "../store/fetch";
 import { useRuns } from "../store/store";
 import { setQuery } from "../store/router";
 import { Curves } from "../charts/curves/Curves";
-import { type OtherRun, arrangePlots, curveViewOf } from "../charts/curves/curveView";
+import { type OtherRun, arrangePlots, curveViewOf, placesOf } from "../charts/curves/curveView";
 import { REASONS, infeasibleBy, scoresOf, workOf } from "../charts/curves/plots";
 import { count, percent, shortId, titleOf, words } from "../ui/format";
 import { CurveOptions } from "../charts/curves/CurveOptions";
@@ -26,27 +26,36 @@ interface Props {
   compared: ComparedRuns;
 }
 
+interface CurvesProps extends Props {
+  /** Creatures chosen to breed, if any: plots mark their generations. */
+  chosen: Choices | null;
+}
+
 interface ComparedRuns {
   ids: string[];
   others: OtherRun[];
   error: string | null;
 }
 
-export function CurvesCard({ run, curves, query, compared: { ids, others, error } }: Props) {
+export function CurvesCard({ run, curves, query, compared: { ids, others, error }, chosen }: CurvesProps) {
   const view = curveViewOf(query);
+  const marks = curves && chosen ? placesOf(generationsOf(chosen), curves, view) : [];
   return (
     <Card id="curves" kind="curves-card" title={text.curves}>
       {curves && <CurveOptions view={view} />}
       {curves && !sharedSlug && <ComparedList {...{ run, ids, others }} />}
       {error && <p class="wrong-text small">{error}</p>}
       {curves ? (
-        <Curves plots={arrangePlots(scoresOf, curves, others, view)} view={view} />
+        <Curves plots={arrangePlots(scoresOf, curves, others, view)} view={view} marks={marks} />
       ) : (
         <p class="quiet waiting">{text.noCurves}</p>
       )}
+      {marks.length > 0 && <p class="quiet small">{text.chosenMarks}</p>}
     </Card>
   );
 }
+
+const generationsOf = ({ items }: Choices) => items.flatMap(({ generation }) => generation ?? []);
 
 export function SearchCard({ run, curves, query, compared }: Props & { curves: Columns }) {
   const view = curveViewOf(query);

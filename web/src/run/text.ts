@@ -6,6 +6,7 @@ export const text = {
   archive: "Archive",
   loadingArchive: "Loading archive …",
   files: "Files",
+  choicesAbout: "The chosen creatures: with the spec they repeat the run",
   filesAbout: (archive: boolean, created: string, { attempt, version, device }: Run) =>
     `${archive ? "The archive files hold" : "results.h5 holds"} the last checkpoint. Created ${created}, attempt ${attempt}, version ${version}${device ? `, on ${device}` : ""}.`,
   deleteRun: (title: string) => `Delete ${title}`,
@@ -42,6 +43,7 @@ export const text = {
   showWorkers: "Show workers",
   curves: "Curves",
   noCurves: "Curves appear after the first generation.",
+  chosenMarks: "Vertical lines mark the generations from which chosen creatures count.",
   search: "Search by generation",
   noneInfeasible: "Every evaluation was feasible.",
   infeasibleCaption: "Infeasible evaluations, which cannot become elites",

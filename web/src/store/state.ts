@@ -15,6 +15,8 @@ export interface State {
   principal: wire.Principal | null;
   runs: ReadonlyMap<string, wire.Run>;
   details: ReadonlyMap<string, details.Detail>;
+  /** The chosen creatures of each run that was shown. */
+  choices: ReadonlyMap<string, wire.Choices>;
   /** Counts changes of the results table of each run. */
   tableVersions: ReadonlyMap<string, number>;
   /** Counts events of each sweep and its runs. */
@@ -43,6 +45,7 @@ export const INITIAL_STATE: State = {
   principal: null,
   runs: new Map(),
   details: new Map(),
+  choices: new Map(),
   tableVersions: new Map(),
   sweepVersions: new Map(),
   query: "",

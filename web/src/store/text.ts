@@ -6,6 +6,8 @@ export const text = {
   tagRemoved: (tag: string) => `Removed the tag ${tag}.`,
   noteRemoved: "Removed the note.",
   inBin: (title: string) => `${title} is in the bin.`,
+  chosen: (creatures: number) =>
+    `${creatures === 1 ? "1 creature" : `${creatures} creatures`} chosen. The next generations descend from ${creatures === 1 ? "it" : "them"}, too.`,
   readOnly: "Your token is read-only.",
   ownerOnly: (owner: string | null) => `Only ${owner ? `${owner} or an admin` : "an admin"} can change it.`,
   outcomes: { pause: "will pause", resume: "queued again", cancel: "will be cancelled" },

@@ -12,6 +12,7 @@ from server.tables.migrations.columns import (
     JSON_OR_NULL,
     KEYS,
     MOMENT,
+    numbered,
     optional,
     required,
     to_creature,
@@ -19,9 +20,7 @@ from server.tables.migrations.columns import (
 )
 
 revision = "0001"
-down_revision = None
-branch_labels = None
-depends_on = None
+down_revision = branch_labels = depends_on = None
 
 
 def upgrade() -> None:
@@ -65,7 +64,7 @@ def _creatures() -> None:
     op.create_table(
         "parents",
         sa.Column("child", HASH, to_creature(), primary_key=True),
-        sa.Column("position", sa.Integer(), primary_key=True, autoincrement=False),
+        *numbered("position"),
         sa.Column("parent", HASH, nullable=False),
     )
     op.create_index("ix_parents_parent", "parents", ["parent"])
@@ -111,16 +110,16 @@ def _runs() -> None:
         *required(sa.String(length=16), "status", "priority"),
         sa.Column("requested_state", sa.String(length=16)),
         sa.Column("memory_bytes", sa.BigInteger()),
-        sa.Column("device_patience", sa.Double()),
         *optional(MOMENT, "requested_at", "released_at", "started_at", "finished_at"),
         *optional(MOMENT, "heartbeat_at", "deleted_at", "purge_at"),
         *required(MOMENT, "created_at", "queued_at"),
         *required(sa.Integer(), "attempt", "attempts_without_checkpoint", "rewinds"),
-        *required(sa.Integer(), "generations", "generation", "checkpoint_generation"),
+        *required(sa.Integer(), "generations", "generation", "begun_generation"),
+        sa.Column("checkpoint_generation", sa.Integer(), nullable=False),
         *optional(sa.String(length=255), "worker", "avoided_worker"),
         *required(sa.BigInteger(), "evaluations", "infeasible"),
         sa.Column("seconds", sa.Double(), nullable=False),
-        *optional(sa.Double(), "qd_score", "coverage", "best"),
+        *optional(sa.Double(), "qd_score", "coverage", "best", "device_patience"),
         *optional(sa.Double(), "corrected_qd_score", "corrected_coverage", "hit_rate"),
         *optional(sa.Uuid(), "sweep", "forked_from", "owner"),
         *optional(sa.Integer(), "sweep_index", "n_initial"),
@@ -214,30 +213,29 @@ def _files() -> None:
         sa.UniqueConstraint("creature", "kind"),
         sa.UniqueConstraint("run_id", "kind", "number"),
     )
-    op.create_table(
-        "initial_creatures",
-        sa.Column("run_id", sa.Uuid(), to_run(), primary_key=True),
-        sa.Column("creature", HASH, to_creature(), primary_key=True),
-    )
-    op.create_index("ix_initial_creatures_creature", "initial_creatures", ["creature"])
+    for name, numbers in {"initial_creatures": (), "choices": ("generation",)}.items():
+        op.create_table(
+            name,
+            sa.Column("run_id", sa.Uuid(), to_run(), primary_key=True),
+            *numbered(*numbers),
+            sa.Column("creature", HASH, to_creature(), primary_key=True),
+        )
 
 
 def _results() -> None:
     op.create_table(
         "elites",
         sa.Column("run_id", sa.Uuid(), to_run(), primary_key=True),
-        sa.Column("cell", sa.Integer(), primary_key=True, autoincrement=False),
-        sa.Column("generation", sa.Integer(), primary_key=True, autoincrement=False),
+        *numbered("cell", "generation"),
         sa.Column("fitness", sa.Double()),
         sa.Column("descriptors", sa.JSON()),
         sa.Column("creature", HASH, to_creature()),
     )
-    op.create_index("ix_elites_creature", "elites", ["creature"])
     op.create_index("ix_elites_run_id_fitness_cell", "elites", ["run_id", "fitness", "cell"])
     op.create_table(
         "generations",
         sa.Column("run_id", sa.Uuid(), to_run(), primary_key=True),
-        sa.Column("generation", sa.Integer(), primary_key=True, autoincrement=False),
+        *numbered("generation"),
         *optional(sa.Double(), "qd_score", "coverage", "best", "mean"),
         *required(sa.BigInteger(), "evaluations", "infeasible"),
         sa.Column("seconds", sa.Double(), nullable=False),
@@ -246,12 +244,13 @@ def _results() -> None:
     op.create_table(
         "results",
         sa.Column("run_id", sa.Uuid(), to_run(), primary_key=True),
-        sa.Column("number", sa.Integer(), primary_key=True, autoincrement=False),
+        *numbered("number"),
         sa.Column("generation", sa.Integer(), nullable=False),
         sa.Column("values", JSON_OR_NULL, nullable=False),
         sa.Column("creature", HASH, to_creature()),
     )
-    op.create_index("ix_results_creature", "results", ["creature"])
+    for name in ("initial_creatures", "choices", "elites", "results"):
+        op.create_index(f"ix_{name}_creature", name, ["creature"])
 
 
 def _shares() -> None:

@@ -12,47 +12,34 @@ import "uplot/dist/uPlot.min.css";
 import "../lineStyle.css";
 import "./curves.css";
 
-export function Curves({ plots, view }: { plots: Plot[]; view: CurveView }) {
+interface Props {
+  plots: Plot[];
+  view: CurveView;
+  /** Places on the x axis with a vertical line. */
+  marks?: readonly number[];
+}
+
+export function Curves({ plots, view, marks = NO_MARKS }: Props) {
   return (
     <div class="curves">
       {plots.map((plot) => (
-        <Curve key={plot.title} {...{ plot, view }} />
+        <Curve key={plot.title} {...{ plot, view, marks }} />
       ))}
     </div>
   );
 }
 
 const NONE: readonly Band[] = [];
+const NO_MARKS: readonly number[] = [];
 
-function Curve({ plot, view }: { plot: Plot; view: CurveView }) {
-  const { title, format, series, bands = NONE } = plot;
-  const host = useRef<HTMLDivElement>(null);
-  const chart = useRef<uPlot | null>(null);
-  const { width, height } = useSize(host);
-  const theme = useTheme();
-  const drawn = width > 0;
+interface CurveProps extends Required<Omit<Props, "plots">> {
+  plot: Plot;
+}
+
+function Curve({ plot, view, marks }: CurveProps) {
+  const { title, format, series } = plot;
   const { over, log } = view;
-  const style = series
-    .map(({ name, colour, dots, dash, faint, edge }) => [name, colour, dots, dash, faint, edge].join(" "))
-    .join();
-  const table = useMemo(() => tableOf(series, log), [log, ...series.flatMap(columnsOf)]);
-  const changed = [drawn, theme, style, over, log, format];
-
-  useEffect(() => {
-    if (!drawn) return;
-    const options = optionsOf({ series, bands, format, over, log, ink: colourResolver(host.current!) });
-    chart.current = new uPlot(options, [[], ...series.map(() => [])], host.current!);
-    return () => chart.current?.destroy();
-  }, changed);
-
-  useEffect(() => {
-    if (drawn) chart.current?.setSize({ width, height });
-  }, [width, height, ...changed]);
-
-  useEffect(() => {
-    chart.current?.setData(table);
-  }, [table, ...changed]);
-
+  const host = useChart({ plot, view, marks });
   const lines = series.filter(({ faint, edge }) => !faint && !edge);
   const now = lines.map(({ name, y }) => [...(lines.length > 1 ? [name] : []), format(newest(y))]);
   const label = text.label(title, text.over[over], now.map((each) => each.join(" ")).join(", "));
@@ -70,6 +57,37 @@ function Curve({ plot, view }: { plot: Plot; view: CurveView }) {
       )}
     </figure>
   );
+}
+
+/** Keep a chart in the returned element. */
+function useChart({ plot: { format, series, bands = NONE }, view: { over, log }, marks }: CurveProps) {
+  const host = useRef<HTMLDivElement>(null);
+  const chart = useRef<uPlot | null>(null);
+  const { width, height } = useSize(host);
+  const theme = useTheme();
+  const drawn = width > 0;
+  const style = series
+    .map(({ name, colour, dots, dash, faint, edge }) => [name, colour, dots, dash, faint, edge].join(" "))
+    .join();
+  const table = useMemo(() => tableOf(series, log), [log, ...series.flatMap(columnsOf)]);
+  const changed = [drawn, theme, style, over, log, format, marks.join()];
+
+  useEffect(() => {
+    if (!drawn) return;
+    const ink = colourResolver(host.current!);
+    const options = optionsOf({ series, bands, marks, format, over, log, ink });
+    chart.current = new uPlot(options, [[], ...series.map(() => [])], host.current!);
+    return () => chart.current?.destroy();
+  }, changed);
+
+  useEffect(() => {
+    if (drawn) chart.current?.setSize({ width, height });
+  }, [width, height, ...changed]);
+
+  useEffect(() => {
+    chart.current?.setData(table);
+  }, [table, ...changed]);
+  return host;
 }
 
 /** Resolve a CSS variable to a colour for a canvas, with an opacity in percent. */

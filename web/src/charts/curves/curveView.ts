@@ -106,6 +106,15 @@ export function runningMean(y: Column, generation: readonly number[], window: nu
   });
 }
 
+/** The places of generations on the x axis; those without a point yet have none. */
+export function placesOf(generations: readonly number[], curves: Curves, { over }: CurveView): number[] {
+  const places = generations.map((generation) => {
+    const i = curves.generation.findIndex((at) => at >= generation);
+    return i < 0 ? null : curves[over][i];
+  });
+  return [...new Set(places.filter((place) => place != null))];
+}
+
 type Cell = number | null | undefined;
 
 /** Columns for uPlot: undefined without a value, which a line skips; null if a log scale cannot show it, which breaks the line. */

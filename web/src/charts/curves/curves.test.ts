@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { type Curves, MAX_POINTS, NO_CURVES, appendCurves } from "../../store/curves";
-import { arrangePlots, curveViewOf, overlayPlots, runningMean, tableOf } from "./curveView";
+import { arrangePlots, curveViewOf, overlayPlots, placesOf, runningMean, tableOf } from "./curveView";
 import { type Plot, infeasibleBy, scoresOf, valueAt, workOf } from "./plots";
 
 const curvesOf = (qd_score: (number | null)[], batch = 16, summary = {}): Curves => {
@@ -18,6 +18,12 @@ describe("the view of curves", () => {
     const requested = new URLSearchParams("over=seconds&log=1&smooth=20");
     expect(curveViewOf(requested)).toEqual({ over: "seconds", log: true, smooth: 20 });
     expect(curveViewOf(new URLSearchParams("over=moons&log=yes&smooth=7"))).toEqual(plain);
+  });
+
+  it("marks generations at the first point from them on, each place once", () => {
+    const curves = { ...curvesOf([1, 2, 3]), generation: [1, 5, 9] };
+    expect(placesOf([1, 4, 5, 10], curves, plain)).toEqual([1, 5]);
+    expect(placesOf([4], curves, { ...plain, over: "evaluations" })).toEqual([32]);
   });
 
   it("smooths by the mean of known values in a window of generations", () => {

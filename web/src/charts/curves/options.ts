@@ -15,13 +15,14 @@ type Ink = (variable: string, opacity?: number) => string;
 interface Drawing {
   series: Series[];
   bands: readonly Band[];
+  marks: readonly number[];
   format: Plot["format"];
   over: Axis;
   log: boolean;
   ink: Ink;
 }
 
-export function optionsOf({ series, bands, format, over, log, ink }: Drawing): uPlot.Options {
+export function optionsOf({ series, bands, marks, format, over, log, ink }: Drawing): uPlot.Options {
   const axis: uPlot.Axis = {
     stroke: ink("--quiet"),
     grid: { stroke: ink("--line"), width: 1 },
@@ -47,7 +48,7 @@ export function optionsOf({ series, bands, format, over, log, ink }: Drawing): u
       series: [high + 1, low + 1],
       fill: ink(colour, 17),
     })),
-    plugins: [tooltip(series, format, over)],
+    plugins: [tooltip(series, format, over), verticals(marks, ink("--accent"))],
   };
 }
 
@@ -106,6 +107,25 @@ function tooltip(series: Series[], format: Plot["format"], over: Axis): uPlot.Pl
     },
   };
 }
+
+/** Dashed vertical lines at places of the x axis. */
+const verticals = (places: readonly number[], stroke: string): uPlot.Plugin => ({
+  hooks: {
+    drawAxes: ({ ctx, bbox: { top, height }, valToPos }) => {
+      ctx.save();
+      Object.assign(ctx, { strokeStyle: stroke, lineWidth: devicePixelRatio });
+      ctx.setLineDash([4 * devicePixelRatio, 3 * devicePixelRatio]);
+      ctx.beginPath();
+      for (const place of places) {
+        const x = Math.round(valToPos(place, "x", true));
+        ctx.moveTo(x, top);
+        ctx.lineTo(x, top + height);
+      }
+      ctx.stroke();
+      ctx.restore();
+    },
+  },
+});
 
 function valuesAt(plot: uPlot, series: Series[], format: Plot["format"], idx: number): string[] {
   return series.flatMap(({ name, faint, dots, edge }, i) => {

@@ -1,0 +1,56 @@
+"""Files of choices: creatures that people chose in a run, and when each began to count."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from pydantic import Field, TypeAdapter, ValidationError
+
+from ..spec.base import Digest, Part, field_path
+from ..spec.creature import CreatureError
+from .creature import parse as parse_creature
+
+Files = list[dict[str, Any]]
+"""Creature files."""
+
+
+class Choice(Part):
+    """A creature, and the generation from which it counts."""
+
+    generation: int = Field(ge=2, lt=2**31)
+    creature: Digest
+
+
+class Document(Part):
+    choices: tuple[Choice, ...]
+    creatures: tuple[dict[str, Any], ...]
+    """The file of each chosen creature."""
+
+
+def document(
+    rows: Iterable[tuple[int, str]], files: Iterable[Mapping[str, Any]]
+) -> dict[str, Any]:
+    """Return the file of choices, given by generation and name, with their creature files."""
+    choices = [{"generation": number, "creature": name} for number, name in sorted(rows)]
+    return {"choices": choices, "creatures": list(files)}
+
+
+def parse(data: bytes) -> dict[int, Files]:
+    """Return the creature files of each generation with choices.
+
+    Raises `ValueError`, which names the field, what was needed and what came.
+    """
+    try:
+        found = TypeAdapter(Document).validate_json(data)
+    except ValidationError as error:
+        first = error.errors()[0]
+        field, needed = field_path(first["loc"]), first["msg"].removeprefix("Input should be ")
+        if first["type"] == "missing":
+            needed = "a value"
+        raise CreatureError(field or "file", needed, first["input"]) from None
+    files = {one["sha256"]: one for one in map(parse_creature, found.creatures)}
+    chosen: dict[int, Files] = {}
+    for choice in sorted(set(found.choices), key=lambda one: (one.generation, one.creature)):
+        if choice.creature not in files:
+            raise CreatureError("creatures", "the file of each choice", choice.creature)
+        chosen.setdefault(choice.generation, []).append(files[choice.creature])
+    return chosen

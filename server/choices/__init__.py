@@ -1,0 +1,1 @@
+"""Choices: creatures that people choose for the next generations to descend from."""

@@ -1,0 +1,26 @@
+import { describe, expect, it } from "vitest";
+import type { Choices, Run } from "../api/types";
+import { goesOn, groupsOf } from "./choices";
+
+const choices = (...items: [generation: number | null, creature: string][]): Choices => ({
+  items: items.map(([generation, creature]) => ({ generation, creature })),
+  refusal: null,
+});
+
+describe("choices", () => {
+  it("are shown by generation, those that wait first, then the newest", () => {
+    const found = groupsOf(choices([4, "aa"], [4, "bb"], [9, "aa"], [null, "cc"]));
+    expect(found).toEqual([
+      { generation: null, creatures: ["cc"] },
+      { generation: 9, creatures: ["aa"] },
+      { generation: 4, creatures: ["aa", "bb"] },
+    ]);
+    expect(groupsOf(choices())).toEqual([]);
+  });
+
+  it("can be made until a run has ended", () => {
+    const can = (status: string) => goesOn({ status } as Run);
+    expect(["queued", "running", "paused"].every(can)).toBe(true);
+    expect(["finished", "failed", "cancelled"].some(can)).toBe(false);
+  });
+});
