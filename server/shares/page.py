@@ -1,5 +1,6 @@
 """The page of a share, with the tags from which other sites make a preview."""
 
+import re
 from html import escape
 
 from fastapi import APIRouter, Request
@@ -10,14 +11,36 @@ from sqlalchemy.orm import Session
 from ..archives import elites
 from ..core import static_files
 from ..core.errors import ProblemError
+from ..core.security_headers import POLICY
 from ..services.services import SessionDep
 from ..tables import Creature, Run, Share
-from .access import find_live
+from .access import SLUG, find_live
 
 WIDTH, HEIGHT = 1200, 630
 """Size of the preview: most sites cut pictures to it."""
 
+ADDRESS = re.compile(
+    r"(?P<server>https?://[a-zA-Z0-9.-]+(:[0-9]{1,5})?(/[a-zA-Z0-9._~-]+)*)"
+    rf"/s/(?P<slug>{SLUG.pattern})(/creatures/[0-9a-f]{{64}})?/?"
+)
+"""The address of a share, or of a creature in one, made of characters without a meaning in a
+Content Security Policy."""
+
 router = APIRouter(include_in_schema=False)
+
+
+@router.get("/import")
+def read_import_page(share: str = "") -> Response:
+    """Return the page that imports from an address; it may request that share's file alone."""
+    index = static_files.BUILT / "index.html"
+    if not index.is_file():
+        return HTMLResponse(static_files.MISSING, 503)
+    found = ADDRESS.fullmatch(share)
+    headers = dict(static_files.FRESH)
+    if found:
+        file = f"{found['server']}/api/v1/shares/{found['slug']}/creature.json"
+        headers["Content-Security-Policy"] = f"{POLICY}; connect-src 'self' {file}"
+    return HTMLResponse(index.read_text(), headers=headers)
 
 
 @router.get("/s/{slug}")

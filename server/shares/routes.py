@@ -1,7 +1,7 @@
 """Routes of shares: publish, read, list, revoke."""
 
 import logging
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from pydantic import StringConstraints
@@ -16,6 +16,7 @@ from ..core.database import now
 from ..core.errors import ProblemError
 from ..core.json_body import json_route
 from ..core.paging import MOMENT, Order
+from ..creatures import storage as creatures
 from ..creatures.deps import find_creature
 from ..renderings import responses
 from ..renderings import storage as renderings
@@ -25,7 +26,7 @@ from ..storage.garbage import discard
 from ..tables import PREVIEW, Share
 from . import access, archive_files, publishing
 from .page import public_address
-from .schemas import ShareCreate, SharePage, ShareRead
+from .schemas import Digest, ShareCreate, SharePage, ShareRead
 
 log = logging.getLogger(__name__)
 BODY_BYTES = 1 << 16
@@ -80,6 +81,19 @@ PNG = sends("image/png", {202: {"model": Rendering}})
 @router.get("/shares/{slug}", dependencies=[PUBLIC])
 def read_share(request: Request, share: ShareDep, session: SessionDep) -> ShareRead:
     return share_read(request, session, share)
+
+
+@router.get("/shares/{slug}/creature.json", dependencies=[PUBLIC])
+def read_shared_creature(
+    share: ShareDep, session: SessionDep, creature: Digest | None = None
+) -> dict[str, Any]:
+    """Return the file of a creature with its ancestors, for import; of an archive the best.
+
+    Pages of other installations may read it.
+    """
+    live, name = access.LiveShare(share), creature or share.cover
+    live.refuse_unless_holds(session, name)
+    return live.licensed(creatures.with_ancestors(session, find_creature(session, name)))
 
 
 @router.get("/shares/{slug}/preview.png", **PNG, dependencies=[PUBLIC])
