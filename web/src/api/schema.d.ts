@@ -1229,6 +1229,28 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/shares/{slug}/creature.json": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Shared Creature
+         * @description Return the file of a creature with its ancestors, for import; of an archive the best.
+         *
+         *     Pages of other installations may read it.
+         */
+        get: operations["read_shared_creature_api_v1_shares__slug__creature_json_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/shares/{slug}/preview.png": {
         parameters: {
             query?: never;
@@ -5794,6 +5816,41 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ShareRead"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_shared_creature_api_v1_shares__slug__creature_json_get: {
+        parameters: {
+            query?: {
+                creature?: string | null;
+            };
+            header?: never;
+            path: {
+                slug: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": {
+                        [key: string]: unknown;
+                    };
                 };
             };
             /** @description A problem (RFC 9457) */

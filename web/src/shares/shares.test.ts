@@ -5,6 +5,7 @@ import { isPublicPage } from "../api/address";
 import type { Share } from "../api/types";
 import { requestOf } from "../publish/PublishDialog";
 import { routeOf } from "../store/router";
+import { bibtex, citation } from "./citation";
 import { headingOf } from "./SharedPage";
 
 const form = (fields: Record<string, string>) => {
@@ -65,5 +66,33 @@ describe("the heading of a share", () => {
     [share("Archive", "run"), true, ["Creature", "0123abcd"]],
   ])("contains the id once", (shared, inside, heading) => {
     expect(headingOf(shared, "0123abcd".padEnd(64, "0"), inside)).toEqual(heading);
+  });
+});
+
+describe("the citation of a share", () => {
+  const share = {
+    title: "An eel & 50 %",
+    credit: ["Ada Byron", "Bob_2"],
+    url: "https://lab.example/s/slug",
+    created_at: "2026-03-01T00:00:00Z",
+    generation: null,
+  };
+  const sha = "0123abcd".padEnd(64, "0");
+
+  it("names people, year, title, creature and address", () => {
+    expect(citation({ ...share, sha })).toBe(
+      `Ada Byron, Bob_2 (2026). An eel & 50 %. Creature of Microcosmos, SHA-256 ${sha}. https://lab.example/s/slug`,
+    );
+    expect(citation({ ...share, credit: [], sha: null, generation: 12 })).toBe(
+      "Anonymous (2026). An eel & 50 %. Archive of Microcosmos, generation 12. https://lab.example/s/slug",
+    );
+  });
+
+  it("escapes what BibTeX would read as a command", () => {
+    const lines = bibtex({ ...share, sha }).split("\n");
+    expect(lines[0]).toBe("@misc{microcosmos-0123abcd,");
+    expect(lines[1]).toBe("  author = {{Ada Byron} and {Bob\\_2}},");
+    expect(lines[2]).toBe("  title = {{An eel \\& 50 \\%}},");
+    expect(lines.at(-1)).toBe("}");
   });
 });

@@ -16,7 +16,7 @@ export interface PageLocation {
   query: URLSearchParams;
 }
 
-const PAGES = ["new", "compare", "workers", "shares", "commons", "settings"];
+const PAGES = ["new", "compare", "workers", "shares", "commons", "settings", "import"];
 const PAGES_OF_ONE: Record<string, string> = { runs: "run", sweeps: "sweep", creatures: "creature" };
 /** Trees of one: below their pages. */
 const TREES: Record<string, string> = { runs: "run-tree", creatures: "creature-tree" };
