@@ -37,7 +37,6 @@ export const text = {
   open: "Open",
   allShares: "All shares",
   done: "Done",
-  unreachable:
-    "Nobody else can open this link: it leads to this machine. Start the server where others reach it, with",
+  unreachable: "Nobody else can open a link to this machine. Start the server where others reach it, with",
   unreachableHow: " set to its address, such as https://swim.example.org.",
 };

@@ -100,7 +100,7 @@ function SharedCreature({ share, id, query }: PartProps) {
   const address = share.creature ? share.url : `${share.url}/creatures/${id}`;
   return (
     <>
-      <CreatureView {...{ creature, query }} />
+      <CreatureView {...{ creature, query, address }} title={share.title} />
       <TakeAway {...{ share, address }} sha={id} />
     </>
   );
