@@ -24,18 +24,20 @@ export function SavedPage({ about, replay, readInputs }: Props) {
       <h1>{title}</h1>
       <Terms {...about} />
       <div class="saved-columns">
-        <section class="card" aria-label={text.motion}>
-          <LoopPlayer replay={replay} />
-        </section>
         <div class="stack">
-          {isEvolved(creature) && <LiveCard readInputs={readInputs} />}
-          {creature.measured && <VerifyCard measured={creature.measured} readInputs={readInputs} />}
+          <section class="card" aria-label={text.motion}>
+            <LoopPlayer replay={replay} />
+          </section>
           <Card id="about" title={text.about}>
             <p class="small">{text.aboutText}</p>
             <p class="small">
               SHA-256 <code class="long">{creature.sha256}</code>
             </p>
           </Card>
+        </div>
+        <div class="stack">
+          {isEvolved(creature) && <LiveCard readInputs={readInputs} />}
+          {creature.measured && <VerifyCard measured={creature.measured} readInputs={readInputs} />}
         </div>
       </div>
     </main>

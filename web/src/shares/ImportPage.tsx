@@ -17,7 +17,9 @@ export function ImportPage({ query }: { query: URLSearchParams }) {
   const url = foreignFileUrl(address);
   return (
     <Page title={text.importTitle}>
-      <ImportForm address={address} />
+      <section class="card">
+        <ImportForm address={address} />
+      </section>
       {address && !url && <p class="banner wrong">{text.noAddress}</p>}
       {url && <Incoming key={url} url={url} />}
     </Page>
@@ -27,7 +29,7 @@ export function ImportPage({ query }: { query: URLSearchParams }) {
 /** The address is submitted by a new request of the page, whose policy then permits that file alone. */
 export function ImportForm({ address }: { address: string }) {
   return (
-    <form class="card import-form" action="/import">
+    <form class="import-form" action="/import">
       <label class="over">
         {text.shareAddress}
         <input name="share" type="url" required defaultValue={address} placeholder="https://…/s/…" />

@@ -10,6 +10,7 @@ import { CreatureView } from "../creature/CreaturePage";
 import { FilesCard } from "../run/FilesCard";
 import { Loading, NotFound, Page, useTitle, Empty } from "../ui/Page";
 import { TrustBadge } from "../ui/TrustBadge";
+import { isLoopback } from "../publish/Unreachable";
 import { Fact } from "./Fact";
 import { TakeAway } from "./TakeAway";
 import { text } from "./text";
@@ -100,7 +101,11 @@ function SharedCreature({ share, id, query }: PartProps) {
   const address = share.creature ? share.url : `${share.url}/creatures/${id}`;
   return (
     <>
-      <CreatureView {...{ creature, query, address }} title={share.title} />
+      <CreatureView
+        {...{ creature, query }}
+        title={share.title}
+        address={isLoopback(address) ? null : address}
+      />
       <TakeAway {...{ share, address }} sha={id} />
     </>
   );

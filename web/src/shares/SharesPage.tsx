@@ -7,7 +7,7 @@ import { usePages } from "../store/paging";
 import { orShowError, showToast } from "../store/toasts";
 import { dateTime } from "../ui/format";
 import { ConfirmButton } from "../ui/ConfirmButton";
-import { Empty, Page } from "../ui/Page";
+import { Card, Empty, Page } from "../ui/Page";
 import { type Column, Table } from "../ui/Table";
 import { TrustBadge } from "../ui/TrustBadge";
 import { copyText } from "../ui/clipboard";
@@ -38,10 +38,9 @@ export function SharesPage() {
       )}
       {more && <button onClick={more}>{text.showMore}</button>}
       {!refusal && (
-        <section aria-labelledby="import-title">
-          <h2 id="import-title">{text.importTitle}</h2>
+        <Card id="import" title={text.importTitle}>
           <ImportForm address="" />
-        </section>
+        </Card>
       )}
     </Page>
   );
