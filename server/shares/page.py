@@ -26,6 +26,8 @@ ADDRESS = re.compile(
 """The address of a share, or of a creature in one, made of characters without a meaning in a
 Content Security Policy."""
 
+EMBEDDABLE = POLICY.replace("frame-ancestors 'none'", "frame-ancestors *")
+
 router = APIRouter(include_in_schema=False)
 
 
@@ -45,8 +47,13 @@ def read_import_page(share: str = "") -> Response:
 
 @router.get("/s/{slug}")
 @router.get("/s/{slug}/{rest:path}")
-def read_share_page(request: Request, slug: str, session: SessionDep) -> Response:
-    """Return the page itself, which explains a missing, expired or revoked share."""
+def read_share_page(
+    request: Request, slug: str, session: SessionDep, rest: str = ""
+) -> Response:
+    """Return the page itself, which explains a missing, expired or revoked share.
+
+    Other sites may show `embed` in a frame: it has nothing to click but a link and a player.
+    """
     if not (static_files.BUILT / "index.html").is_file():
         return HTMLResponse(static_files.MISSING, 503)
     index = (static_files.BUILT / "index.html").read_text()
@@ -55,8 +62,9 @@ def read_share_page(request: Request, slug: str, session: SessionDep) -> Respons
     except ProblemError as error:
         return HTMLResponse(index, error.problem.status)
     request.state.listed = share.listed
+    headers = {"Content-Security-Policy": EMBEDDABLE} if rest == "embed" else None
     found = tags(public_address(request), share, description(session, share))
-    return HTMLResponse(with_tags(index, found))
+    return HTMLResponse(with_tags(index, found), headers=headers)
 
 
 def public_address(request: Request) -> str:

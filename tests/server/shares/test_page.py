@@ -52,6 +52,19 @@ def test_the_address_outside_is_what_the_settings_say(serve, built, known):
         )
 
 
+def test_other_sites_may_frame_the_embedded_page_alone(api, address, built, known):
+    slug = api.post("shares", json={"creature": known}).json()["slug"]
+    for path, ancestors in (
+        (f"s/{slug}/embed", "*"),
+        (f"s/{slug}", "'none'"),
+        (f"s/{slug}/embed/x", "'none'"),
+        ("s/none/embed", "'none'"),
+        ("embed", "'none'"),
+    ):
+        policy = api.get(f"{address}/{path}").headers["content-security-policy"]
+        assert policy.split("; ")[-1] == f"frame-ancestors {ancestors}", path
+
+
 def test_the_page_of_a_revoked_share_shows_nothing(api, address, built, known):
     slug = api.post("shares", json={"creature": known}).json()["slug"]
     api.delete(f"shares/{slug}")

@@ -5,6 +5,7 @@ import { importPage } from "../api/foreign";
 import { copyText } from "../ui/clipboard";
 import { Card } from "../ui/Page";
 import { bibtex, citation } from "./citation";
+import { embedCode } from "./embedding";
 import { text } from "./text";
 
 /** The page of an installation on the visitor's own machine. */
@@ -16,14 +17,24 @@ export function TakeAway({ share, address, sha }: { share: Share; address: strin
   const commands = sha ? text.importCommands(address) : text.evolveCommands(address);
   return (
     <div class="take-away">
-      <Card id="import" title={text.ownTitle} actions={<OpenOwn address={address} />}>
-        <p class="small">{text.ownAbout}</p>
-        <Copied
-          title={sha ? text.runTitle : text.runArchiveTitle}
-          content={commands}
-          note={text.commandsCopied}
-        />
-      </Card>
+      <div class="stack">
+        <Card id="import" title={text.ownTitle} actions={<OpenOwn address={address} />}>
+          <p class="small">{text.ownAbout}</p>
+          <Copied
+            title={sha ? text.runTitle : text.runArchiveTitle}
+            content={commands}
+            note={text.commandsCopied}
+          />
+        </Card>
+        <Card id="embed" title={text.embed}>
+          <Copied
+            title={text.embedAbout}
+            content={embedCode(share, sha)}
+            note={text.embedCopied}
+            name={text.copyEmbed}
+          />
+        </Card>
+      </div>
       <Card id="cite" title={text.cite}>
         <Copied title={text.citation} content={citation(cited)} note={text.citationCopied} />
         <Copied title={text.bibtex} content={bibtex(cited)} note={text.bibtexCopied} />
@@ -40,13 +51,24 @@ function OpenOwn({ address }: { address: string }) {
   );
 }
 
-function Copied({ title, content, note }: { title: string; content: string; note: string }) {
+interface CopiedProps {
+  title: string;
+  content: string;
+  note: string;
+  name?: string;
+}
+
+function Copied({ title, content, note, name = text.copy }: CopiedProps) {
   return (
     <figure class="copied">
       <figcaption>
         {title}
-        <button class="slim" aria-label={text.copyOf(title)} onClick={() => void copyText(content, note)}>
-          {text.copy}
+        <button
+          class="slim"
+          aria-label={name === text.copy ? text.copyOf(title) : undefined}
+          onClick={() => void copyText(content, note)}
+        >
+          {name}
         </button>
       </figcaption>
       <pre class="command" tabIndex={0}>

@@ -6,6 +6,7 @@ import type { Share } from "../api/types";
 import { requestOf } from "../publish/PublishDialog";
 import { routeOf } from "../store/router";
 import { bibtex, citation } from "./citation";
+import { embedCode } from "./embedding";
 import { headingOf } from "./SharedPage";
 
 const form = (fields: Record<string, string>) => {
@@ -50,8 +51,9 @@ describe("public pages", () => {
 
   it("show a share, or a creature of a shared archive", () => {
     expect(routeOf("/s/abc")).toEqual({ page: "share", slug: "abc" });
+    expect(routeOf("/s/abc/embed")).toEqual({ page: "embed", slug: "abc" });
     expect(routeOf("/s/abc/creatures/12")).toEqual({ page: "share", slug: "abc", sha: "12" });
-    for (const path of ["/s", "/s/abc/runs/1", "/s/abc/creatures/1/2"]) {
+    for (const path of ["/s", "/s/abc/runs/1", "/s/abc/embed/1", "/s/abc/creatures/1/2"]) {
       expect(routeOf(path)).toEqual({ page: "unknown" });
     }
   });
@@ -94,5 +96,20 @@ describe("the citation of a share", () => {
     expect(lines[1]).toBe("  author = {{Ada Byron} and {Bob\\_2}},");
     expect(lines[2]).toBe("  title = {{An eel \\& 50 \\%}},");
     expect(lines.at(-1)).toBe("}");
+  });
+});
+
+describe("the embed code", () => {
+  const share = { url: "https://lab.example/s/slug", title: 'An "eel" <b>', run: null } as Share;
+
+  it("cannot be broken by a title", () => {
+    expect(embedCode(share, "0123")).toContain(
+      'src="https://lab.example/s/slug/embed" title="An &quot;eel&quot; &lt;b>"',
+    );
+  });
+
+  it("names the creature of an archive", () => {
+    expect(embedCode({ ...share, run: "run" }, "0123")).toContain("/embed?creature=0123");
+    expect(embedCode({ ...share, run: "run" }, null)).not.toContain("creature");
   });
 });

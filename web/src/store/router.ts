@@ -33,6 +33,7 @@ export function routeOf(path: string): Route {
 
 function sharedRoute(slug: string, [kind, sha, ...more]: string[]): Route {
   if (kind === undefined) return { page: "share", slug };
+  if (kind === "embed" && sha === undefined) return { page: "embed", slug };
   const isCreature = kind === "creatures" && sha !== undefined && more.length === 0;
   return isCreature ? { page: "share", slug, sha } : { page: "unknown" };
 }
