@@ -8,16 +8,17 @@ from fastapi.responses import HTMLResponse, Response
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
+from microcosmos.viz.card import FILM, PICTURE
+
 from ..archives import elites
 from ..core import static_files
 from ..core.errors import ProblemError
 from ..core.security_headers import POLICY
-from ..services.services import SessionDep
-from ..tables import Creature, Run, Share
+from ..renderings import storage as renderings
+from ..services.services import Services, SessionDep
+from ..tables import LOOP, PREVIEW, Creature, Run, Share
+from . import previews
 from .access import SLUG, find_live
-
-WIDTH, HEIGHT = 1200, 630
-"""Size of the preview: most sites cut pictures to it."""
 
 ADDRESS = re.compile(
     r"(?P<server>https?://[a-zA-Z0-9.-]+(:[0-9]{1,5})?(/[a-zA-Z0-9._~-]+)*)"
@@ -63,7 +64,10 @@ def read_share_page(
         return HTMLResponse(index, error.problem.status)
     request.state.listed = share.listed
     headers = {"Content-Security-Policy": EMBEDDABLE} if rest == "embed" else None
-    found = tags(public_address(request), share, description(session, share))
+    services: Services = request.app.state.services
+    previews.order(services, session, share.cover, anonymous=True)
+    has_film = renderings.find(session, share.cover, LOOP) is not None
+    found = tags(public_address(request), share, description(session, share), has_film)
     return HTMLResponse(with_tags(index, found), headers=headers)
 
 
@@ -82,17 +86,30 @@ def description(session: Session, share: Share) -> str:
         count = session.scalars(select(func.count()).select_from(there)).one()
         text = f"An archive of {count:,} swimmers after {share.generation:,} generations."
     else:
-        measured = session.get_one(Creature, share.cover).measured
-        distance = (measured or {}).get("measures", {}).get("displacement")
-        text = "A creature of Microcosmos."
-        if distance is not None:
-            text = f"An evolved swimmer that travels {distance:.3g} cells."
+        text = creature_description(session.get_one(Creature, share.cover))
     return text + by + licence
 
 
-def tags(base: str, share: Share, description: str) -> dict[str, str]:
+def creature_description(creature: Creature) -> str:
+    """Return what a creature is, and its scale as far as it was measured."""
+    measures = (creature.measured or {}).get("measures", {})
+    length, distance = measures.get("total_length"), measures.get("displacement")
+    if distance is None:
+        return "A creature of Microcosmos."
+    scale = "" if length is None else f", {length:.3g} cells long,"
+    return f"An evolved swimmer{scale} that travels {distance:.3g} cells."
+
+
+def tags(base: str, share: Share, description: str, has_film: bool) -> dict[str, str]:
     """Return the names and contents of Open Graph's and Twitter's tags."""
-    picture = f"{base}/api/v1/shares/{share.slug}/preview.png"
+    files = f"{base}/api/v1/shares/{share.slug}"
+    picture = f"{files}/{PREVIEW}"
+    film = {
+        "og:video": f"{files}/{LOOP}",
+        "og:video:type": "video/mp4",
+        "og:video:width": str(FILM[0]),
+        "og:video:height": str(FILM[1]),
+    }
     return {
         "og:site_name": "Microcosmos",
         "og:type": "website",
@@ -101,9 +118,10 @@ def tags(base: str, share: Share, description: str) -> dict[str, str]:
         "og:description": description,
         "og:image": picture,
         "og:image:type": "image/png",
-        "og:image:width": str(WIDTH),
-        "og:image:height": str(HEIGHT),
+        "og:image:width": str(PICTURE[0]),
+        "og:image:height": str(PICTURE[1]),
         "og:image:alt": f"{share.title}: a swimmer over the flow that it makes",
+        **(film if has_film else {}),
         "twitter:card": "summary_large_image",
         "twitter:title": share.title,
         "twitter:description": description,

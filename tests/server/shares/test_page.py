@@ -6,6 +6,8 @@ import httpx
 import pytest
 
 from server.core import static_files
+from server.renderings import storage as renderings
+from server.tables import LOOP, PREVIEW
 
 INDEX = "<!doctype html><html><head><title>Microcosmos</title>\n</head><body></body></html>"
 HOSTILE = """</title><script>alert("x")</script>'&"""
@@ -37,6 +39,26 @@ def test_the_page_of_a_share_has_previews_for_other_sites(api, address, built, k
     assert "<script>" not in answer.text
     for name in ("x-robots-tag", "referrer-policy"):
         assert name in answer.headers
+
+
+def test_a_film_is_named_once_it_exists(api, address, built, services, known):
+    slug = api.post("shares", json={"creature": known}).json()["slug"]
+    assert "og:video" not in api.get(f"{address}/s/{slug}").text
+    renderings.save(services, known, LOOP, b"MP4")
+    text = api.get(f"{address}/s/{slug}").text
+    film = f"{address}/api/v1/shares/{slug}/loop.mp4"
+    assert f'<meta property="og:video" content="{film}" />' in text
+    assert '<meta property="og:video:type" content="video/mp4" />' in text
+
+
+def test_a_lost_preview_is_ordered_again_by_its_next_visitor(
+    api, address, built, services, known
+):
+    slug = api.post("shares", json={"creature": known}).json()["slug"]
+    services.jobs.renderings.empty()
+    assert api.get(f"{address}/s/{slug}").status_code == 200
+    jobs = services.jobs.renderings.get_jobs()
+    assert [job.args for job in jobs] == [[known, PREVIEW], [known, LOOP]]
 
 
 def test_the_address_outside_is_what_the_settings_say(serve, built, known):
