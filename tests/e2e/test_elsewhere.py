@@ -1,4 +1,4 @@
-"""Shares live on elsewhere: imported by pasting, saved as one file, embedded in another page."""
+"""Shares live elsewhere: imported by pasting, saved as one file, embedded in another page."""
 
 import re
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer

@@ -3,6 +3,7 @@
 import pytest
 
 from microcosmos.archive import file
+from microcosmos.client import Client, shared
 from server.attempts.claim import claim
 from server.renderings import storage as renderings
 from server.tables import LOOP, PREVIEW, REPLAY
@@ -119,3 +120,18 @@ def test_a_deleted_run_leaves_the_commons_until_restored(
     assert api.post(f"runs/{run_id}/restore").status_code == 200
     assert api.get("commons").json()["items"] == [share]
     assert through(share["slug"], film).status_code == 200
+
+
+def test_a_client_carries_out_a_shared_run_again(address, archive, spec):
+    at = shared.address(f"{address}/s/{archive['slug']}")
+    assert at
+    with Client(address) as client:
+        run = client.submit(f"{address}/s/{archive['slug']}")
+        assert run.spec == shared.spec(at)
+    assert run.id != archive["run"]
+
+
+def test_the_address_of_an_archive_stands_for_its_best(archive):
+    at = shared.address(archive["url"])
+    assert at
+    assert shared.creature(at)["sha256"] == archive["cover"]
