@@ -2,7 +2,8 @@
 
 import { describe, expect, it } from "vitest";
 import { nameOf } from "../decode/identity";
-import { foreignFileUrl, importPage, verified } from "./foreign";
+import { verified } from "./foreign";
+import { foreignFileUrl, importPage } from "./shareAddress";
 import type { Creature } from "./types";
 
 const SHA = "ab".repeat(32);

@@ -1,4 +1,4 @@
-/** Shared creatures of other installations: their addresses, and their files, verified by hash. */
+/** Shared creatures of other installations: their files, verified by hash. */
 
 import { nameOf } from "../decode/identity";
 import { Problem, problemOf } from "./problem";
@@ -14,20 +14,6 @@ export interface ForeignCreature {
 
 /** The largest file that a server imports. */
 const MAX_BYTES = 8 << 20;
-const ADDRESS =
-  /^(https?:\/\/[a-zA-Z0-9.-]+(?::\d+)?(?:\/[\w.~-]+)*)\/s\/([\w-]{1,43})(?:\/creatures\/([0-9a-f]{64}))?\/?$/;
-
-/** The address of the page that imports from a share's address; null for any other text. */
-export const importPage = (address: string): string | null =>
-  ADDRESS.test(address.trim()) ? `/import?${new URLSearchParams({ share: address.trim() })}` : null;
-
-/** The address of the file at a share's address; null for any other text. */
-export function foreignFileUrl(address: string): string | null {
-  const [, server, slug, creature] = ADDRESS.exec(address.trim()) ?? [];
-  if (!slug) return null;
-  return `${server}/api/v1/shares/${slug}/creature.json${creature ? `?creature=${creature}` : ""}`;
-}
-
 /** Read a file without telling its server who asks; throw unless each hash is right. */
 export async function readForeignCreature(url: string): Promise<ForeignCreature> {
   const answer = await fetch(url, { credentials: "omit", referrerPolicy: "no-referrer", redirect: "error" });

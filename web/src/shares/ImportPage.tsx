@@ -1,7 +1,8 @@
 /** Import a shared creature of another installation, after its hash is verified in this browser. */
 
 import { importCreature } from "../api/client";
-import { type ForeignCreature, foreignFileUrl, readForeignCreature } from "../api/foreign";
+import { type ForeignCreature, readForeignCreature } from "../api/foreign";
+import { foreignFileUrl } from "../api/shareAddress";
 import { useFetched } from "../store/fetch";
 import { useRefusal } from "../store/principal";
 import { navigate } from "../store/router";

@@ -5,10 +5,9 @@ import type { Share } from "../api/types";
 import { useFetched, useRunDetail } from "../store/fetch";
 import { useStore } from "../store/store";
 import { count, dateTime, shortId } from "../ui/format";
-import { ArchiveRun } from "../run/ArchiveRun";
-import { CreatureView } from "../creature/CreaturePage";
 import { FilesCard } from "../run/FilesCard";
 import { Loading, NotFound, Page, useTitle, Empty } from "../ui/Page";
+import { lazy } from "../ui/lazy";
 import { TrustBadge } from "../ui/TrustBadge";
 import { isLoopback } from "../publish/Unreachable";
 import { Fact } from "./Fact";
@@ -19,6 +18,9 @@ import { usePages } from "../store/paging";
 import { usePolled } from "../store/polling";
 import { SwimmingBody } from "../replay/SwimmingBody";
 import "./shares.css";
+
+const CreatureView = lazy(async () => (await import("../creature/CreaturePage")).CreatureView, "section");
+const ArchiveRun = lazy(async () => (await import("../run/ArchiveRun")).ArchiveRun, "section");
 
 interface Props {
   slug: string;

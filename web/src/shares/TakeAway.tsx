@@ -1,7 +1,7 @@
 /** How a share lives on elsewhere: open it in one's own installation, run it, cite it. */
 
 import type { Share } from "../api/types";
-import { importPage } from "../api/foreign";
+import { importPage } from "../api/shareAddress";
 import { copyText } from "../ui/clipboard";
 import { Card } from "../ui/Page";
 import { bibtex, citation } from "./citation";
