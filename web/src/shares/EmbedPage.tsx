@@ -33,12 +33,14 @@ function Embedded({ share, sha }: { share: Share; sha: string }) {
         {stream && <SwimmingBody stream={stream} label={title} path />}
       </ReplayStatus>
       {replay && <LoopPlayer replay={replay} />}
-      <p class="small">
-        <a href={url} target="_blank" rel="noopener">
-          {title}
-        </a>{" "}
+      <header class="small">
+        <h1>
+          <a href={url} target="_blank" rel="noopener">
+            {title}
+          </a>
+        </h1>
         <span class="quiet">{[...credit, licence.slice(0, 40), "Microcosmos"].join(" · ")}</span>
-      </p>
+      </header>
     </main>
   );
 }

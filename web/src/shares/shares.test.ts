@@ -51,6 +51,8 @@ describe("public pages", () => {
 
   it("show a share, or a creature of a shared archive", () => {
     expect(routeOf("/s/abc")).toEqual({ page: "share", slug: "abc" });
+    expect(routeOf("/s/abc/tree")).toEqual({ page: "share-tree", slug: "abc" });
+    expect(routeOf("/s/abc/creatures/12/tree")).toEqual({ page: "share-tree", slug: "abc", sha: "12" });
     expect(routeOf("/s/abc/embed")).toEqual({ page: "embed", slug: "abc" });
     expect(routeOf("/s/abc/creatures/12")).toEqual({ page: "share", slug: "abc", sha: "12" });
     for (const path of ["/s", "/s/abc/runs/1", "/s/abc/embed/1", "/s/abc/creatures/1/2"]) {

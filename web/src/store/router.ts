@@ -34,6 +34,10 @@ export function routeOf(path: string): Route {
 function sharedRoute(slug: string, [kind, sha, ...more]: string[]): Route {
   if (kind === undefined) return { page: "share", slug };
   if (kind === "embed" && sha === undefined) return { page: "embed", slug };
+  if (kind === "tree" && sha === undefined) return { page: "share-tree", slug };
+  if (kind === "creatures" && sha !== undefined && more.join() === "tree") {
+    return { page: "share-tree", slug, sha };
+  }
   const isCreature = kind === "creatures" && sha !== undefined && more.length === 0;
   return isCreature ? { page: "share", slug, sha } : { page: "unknown" };
 }

@@ -14,7 +14,8 @@ interface Props {
   creature: number;
   /** The side of the window on which it is shown. */
   side: "left" | "right";
-  hrefOf: (creature: number) => string;
+  /** The page of a creature; null if a share lacks it. */
+  hrefOf: (creature: number) => string | null;
 }
 
 /** Delay between requests while the pointer moves. */
@@ -32,7 +33,8 @@ export function TreeCreature({ creature, side, ...props }: Props) {
 function Facts({ tree, layout, creature, hrefOf }: Omit<Props, "side">) {
   const sha = nameAt(tree, creature);
   const shown = useThrottled(sha, HOVER_MS);
-  const { stream } = usePoseStream(shown);
+  const page = hrefOf(creature);
+  const { stream } = usePoseStream(page === null ? null : shown);
   const [run, generation, lost] = [tree.run[creature]!, tree.generation[creature]!, tree.lost[creature]!];
   const operator = tree.operators[tree.operator[creature]!];
   const parents = parentsOf(tree, creature);
@@ -43,9 +45,13 @@ function Facts({ tree, layout, creature, hrefOf }: Omit<Props, "side">) {
         {stream && shown === sha && <SwimmingBody key={sha} stream={stream} path />}
       </div>
       <div class="tree-facts small">
-        <a href={hrefOf(creature)}>
-          {text.open} <code>{shortId(sha)}</code>
-        </a>
+        {page === null ? (
+          <code>{shortId(sha)}</code>
+        ) : (
+          <a href={page}>
+            {text.open} <code>{shortId(sha)}</code>
+          </a>
+        )}
         <span>
           {text.fitness} <b>{number(tree.fitness[creature]!)}</b>
         </span>
@@ -81,7 +87,7 @@ function Parents({ tree, parents, hrefOf }: ParentsProps) {
       {parents.map((parent, i) => (
         <span key={parent}>
           {i > 0 && ", "}
-          <a href={hrefOf(parent)}>
+          <a href={hrefOf(parent) ?? undefined}>
             <code>{shortId(nameAt(tree, parent))}</code>
           </a>
         </span>
