@@ -104,3 +104,13 @@ def test_a_share_plays_within_the_page_of_another_site(blog, share, anonymous_pa
     expect(frame.get_by_label("Time in the replay")).to_be_visible(timeout=SLOW)
     link = frame.get_by_role("link", name=share["title"])
     expect(link).to_have_attribute("href", share["url"])
+
+
+def test_the_tree_of_a_share_leads_back_to_its_creature(share, page):
+    page.goto(share["url"])
+    page.get_by_role("link", name="Tree of life").click()
+    page.wait_for_url(f"{share['url']}/tree")
+    window = page.get_by_role("application", name=re.compile("^Tree of life"))
+    expect(window).to_have_attribute("aria-busy", "false")
+    page.get_by_role("region", name="Creature", exact=True).get_by_role("link").first.click()
+    page.wait_for_url(share["url"])

@@ -1,5 +1,6 @@
 /** The creature of a tree that is pointed at or selected, swimming, with its facts. */
 
+import type { ComponentChildren } from "preact";
 import { type Phylogeny, NONE, nameAt, parentsOf } from "../decode/phylogeny";
 import { SwimmingBody } from "../replay/SwimmingBody";
 import { usePoseStream } from "../store/poses";
@@ -34,24 +35,23 @@ function Facts({ tree, layout, creature, hrefOf }: Omit<Props, "side">) {
   const sha = nameAt(tree, creature);
   const shown = useThrottled(sha, HOVER_MS);
   const page = hrefOf(creature);
-  const { stream } = usePoseStream(page === null ? null : shown);
+  const { stream } = usePoseStream(page === null || shown !== sha ? null : shown);
   const [run, generation, lost] = [tree.run[creature]!, tree.generation[creature]!, tree.lost[creature]!];
   const operator = tree.operators[tree.operator[creature]!];
   const parents = parentsOf(tree, creature);
   const status = run === NONE ? null : lost === NONE ? text.elite : text.lost(count(lost));
   return (
     <>
-      <div class="tree-body">
-        {stream && shown === sha && <SwimmingBody key={sha} stream={stream} path />}
-      </div>
+      {page !== null && (
+        <div class="tree-body">
+          {stream && <SwimmingBody key={sha} stream={stream} path />}
+        </div>
+      )}
       <div class="tree-facts small">
-        {page === null ? (
+        <Linked page={page}>
+          {page !== null && `${text.open} `}
           <code>{shortId(sha)}</code>
-        ) : (
-          <a href={page}>
-            {text.open} <code>{shortId(sha)}</code>
-          </a>
-        )}
+        </Linked>
         <span>
           {text.fitness} <b>{number(tree.fitness[creature]!)}</b>
         </span>
@@ -87,11 +87,14 @@ function Parents({ tree, parents, hrefOf }: ParentsProps) {
       {parents.map((parent, i) => (
         <span key={parent}>
           {i > 0 && ", "}
-          <a href={hrefOf(parent) ?? undefined}>
+          <Linked page={hrefOf(parent)}>
             <code>{shortId(nameAt(tree, parent))}</code>
-          </a>
+          </Linked>
         </span>
       ))}
     </span>
   );
 }
+
+const Linked = ({ page, children }: { page: string | null; children: ComponentChildren }) =>
+  page === null ? <span>{children}</span> : <a href={page}>{children}</a>;
