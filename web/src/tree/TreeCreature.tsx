@@ -43,9 +43,7 @@ function Facts({ tree, layout, creature, hrefOf }: Omit<Props, "side">) {
   return (
     <>
       {page !== null && (
-        <div class="tree-body">
-          {stream && <SwimmingBody key={sha} stream={stream} path />}
-        </div>
+        <div class="tree-body">{stream && <SwimmingBody key={sha} stream={stream} path />}</div>
       )}
       <div class="tree-facts small">
         <Linked page={page}>
