@@ -14,7 +14,13 @@ import { CheckCard } from "./CheckCard";
 import { LiveStage } from "./LiveStage";
 import { text } from "./text";
 
-const FIELDS = (["vorticity", "speed"] as const).map((name) => [name, replayText.fields[name]] as const);
+const FIELDS = [
+  ["vorticity", replayText.fields.vorticity],
+  ["speed", replayText.fields.speed],
+  ["dye", text.dye],
+] as const;
+/** Of the slider of the stroke's speed. */
+const SPEEDS = [0.25, 2] as const;
 /** Viscosities of the slider, whose values are powers of 10. */
 const RANGE = [-2, 0] as const;
 /** A push beside the creature. */
@@ -81,11 +87,12 @@ async function begin(inputs: ArrayBuffer): Promise<Live> {
 
 function LiveView({ live, onFail }: { live: Live; onFail: (reason: unknown) => void }) {
   const [viscosity, setViscosity] = useState(live.stage.viscosity);
-  const [field, setField] = useState<FieldName>("vorticity");
+  const [speed, setSpeed] = useState(1);
+  const [field, setField] = useState<FieldName | "dye">("vorticity");
   const pushes = useMemo<Push[]>(() => [], [live]);
   return (
     <>
-      <LiveStage {...{ live, viscosity, field, pushes, onFail }} />
+      <LiveStage {...{ live, viscosity, speed, field, pushes, onFail }} />
       <div class="row">
         <Segments label={replayText.field} choices={FIELDS} value={field} onSelect={setField} />
         <label class="row">
@@ -98,6 +105,18 @@ function LiveView({ live, onFail }: { live: Live; onFail: (reason: unknown) => v
             value={Math.log10(viscosity)}
             aria-valuetext={number(viscosity, 2)}
             onInput={({ currentTarget }) => setViscosity(10 ** currentTarget.valueAsNumber)}
+          />
+        </label>
+        <label class="row">
+          {text.strokeSpeed(number(speed, 2))}
+          <input
+            type="range"
+            min={SPEEDS[0]}
+            max={SPEEDS[1]}
+            step={0.25}
+            value={speed}
+            aria-valuetext={number(speed, 2)}
+            onInput={({ currentTarget }) => setSpeed(currentTarget.valueAsNumber)}
           />
         </label>
         <button onClick={() => pushes.push(STIR)}>{text.stir}</button>

@@ -9,6 +9,7 @@ import { drawScene, sceneOf } from "../replay/scene";
 import type { Live, Push } from "../simulate/live";
 import type { Frame, Stage } from "../simulate/swim";
 import { useTheme } from "../ui/canvas";
+import { Dye } from "./dye";
 import { text } from "./text";
 
 /** Frames in a stroke. */
@@ -19,25 +20,31 @@ const FASTEST = 0.05;
 interface Props {
   live: Live;
   viscosity: number;
-  field: FieldName;
+  /** Of the stroke, relative to the recorded one. */
+  speed: number;
+  field: FieldName | "dye";
   /** Pushes that wait for the next step. */
   pushes: Push[];
   onFail: (reason: unknown) => void;
 }
 
-export function LiveStage({ live, viscosity, field, pushes, onFail }: Props) {
+export function LiveStage({ live, viscosity, speed, field, pushes, onFail }: Props) {
   const theme = useTheme();
   const [replay, setReplay] = useState<Replay | null>(null);
-  const wanted = useRef(viscosity);
-  wanted.current = viscosity;
+  const dye = useRef<Dye | null>(null);
+  const wanted = useRef({ viscosity, speed });
+  wanted.current = { viscosity, speed };
   const steps = Math.max(1, Math.round(live.stage.stroke / FRAMES));
   useEffect(() => {
     let active = true;
     const next = async () => {
-      const frame = await live.advance({ steps, viscosity: wanted.current, pushes: pushes.splice(0) });
+      const frame = await live.advance({ steps, ...wanted.current, pushes: pushes.splice(0) });
       if (!active) return;
       if (!frame.positions.every(Number.isFinite)) throw new Error(text.diverged);
-      setReplay(replayOf(live.stage, frame));
+      const now = replayOf(live.stage, frame);
+      dye.current ??= new Dye(now);
+      dye.current.drift(now, steps);
+      setReplay(now);
       requestAnimationFrame(() => active && next().catch(onFail));
     };
     next().catch((reason) => active && onFail(reason));
@@ -51,9 +58,10 @@ export function LiveStage({ live, viscosity, field, pushes, onFail }: Props) {
   };
   const draw = (canvas: HTMLCanvasElement, size: { width: number; height: number }) => {
     if (!replay) return;
-    const shown = fieldOf(field, [replay], theme);
+    const shown = field === "dye" ? null : fieldOf(field, [replay], theme);
     const painter = shown && new FluidPainter(replay, shown);
-    drawScene(canvas, size, sceneOf(replay, { painter, follow: true, theme }), 0);
+    const tracers = field === "dye" ? dye.current : null;
+    drawScene(canvas, size, sceneOf(replay, { painter, follow: true, theme, tracers }), 0);
   };
   return (
     <div class="live-water" onPointerMove={push}>

@@ -187,6 +187,8 @@ export const text = {
   diverged: "The simulation diverged. Start it again with a higher viscosity or weaker pushes.",
   viscosity: (value: string) => `Viscosity ${value}`,
   stir: "Push the water",
+  strokeSpeed: (value: string) => `Stroke ${value} ×`,
+  dye: "Dye",
   restAngles: "Rest angles (applied)",
   bodyAngles: "Angles of the body",
   angleUnit: "rad, change from the start",

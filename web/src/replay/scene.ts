@@ -4,7 +4,7 @@ import { type Replay, solidColumns } from "../decode/replay";
 import { type Size, type Theme, prepare } from "../ui/canvas";
 import type { FluidPainter } from "./fluid";
 import { type Point, BODY_INK, chainsOf, meanOf, positionsAt, splineOf } from "./motion";
-import { type Tracers, drawTracers } from "./tracers";
+import { type Particles, drawTracers } from "./tracers";
 
 /** Cells between points of the grid, which is fixed in the world. */
 const GRID = 8;
@@ -21,7 +21,7 @@ interface Scene {
   follow: boolean;
   /** The brightness of the background. */
   theme: Theme;
-  tracers?: Tracers | null;
+  tracers?: Particles | null;
 }
 
 const INK = {
@@ -39,7 +39,7 @@ const INK = {
   },
 };
 
-export function sceneOf(replay: Replay, view: Pick<Scene, "painter" | "follow" | "theme">): Scene {
+export function sceneOf(replay: Replay, view: Pick<Scene, "painter" | "follow" | "theme" | "tracers">): Scene {
   const { frames, edges } = replay.header;
   const path = Array.from({ length: frames }, (_, frame) => meanOf(positionsAt(replay, frame)));
   return { replay, chains: chainsOf(edges), obstacles: obstaclesOf(replay), path, ...view };

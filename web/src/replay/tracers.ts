@@ -14,15 +14,20 @@ const MAX_STEP = 0.5;
 const TRAIL_FRAMES = 32;
 const TRAIL_PIECES = 4;
 
-export class Tracers {
-  readonly count: number;
+/** Particles in the water of a replay. */
+export interface Particles {
+  readonly replay: Replay;
+  /** Their places (particle, 2) at a frame, unwrapped. */
+  at(frame: number): Float32Array;
+}
+
+export class Tracers implements Particles {
   /** (particle, 2) for each frame so far, unwrapped. */
   private readonly tracks: Float32Array[];
 
   constructor(readonly replay: Replay) {
     const [width, height] = replay.header.size;
-    this.count = Math.min(MAX_COUNT, Math.round((width * height) / CELLS_PER_PARTICLE));
-    this.tracks = [initialPositions(this.count, width, height)];
+    this.tracks = [initialPositions(width, height)];
   }
 
   /** Positions at a frame. */
@@ -54,7 +59,8 @@ export class Tracers {
 }
 
 /** Quasirandom positions: the additive recurrence of the plastic number (M. Roberts, 2018). */
-function initialPositions(count: number, width: number, height: number): Float32Array {
+export function initialPositions(width: number, height: number): Float32Array {
+  const count = Math.min(MAX_COUNT, Math.round((width * height) / CELLS_PER_PARTICLE));
   const plastic = 1.324717957244746;
   return Float32Array.from({ length: 2 * count }, (_, i) => {
     const share = (0.5 + ((i >> 1) + 1) / plastic ** (1 + (i & 1))) % 1;
@@ -93,7 +99,7 @@ interface View {
 }
 
 /** Draw each particle with its trail, in the tile around the camera. */
-export function drawTracers(context: CanvasRenderingContext2D, tracers: Tracers, view: View) {
+export function drawTracers(context: CanvasRenderingContext2D, tracers: Particles, view: View) {
   const now = Math.floor(view.time);
   const first = Math.max(0, now - TRAIL_FRAMES);
   const share = view.time - now;
@@ -134,7 +140,7 @@ function drawTrails(
 }
 
 /** Shifts in pixels that bring each particle into the tile around the camera. */
-function shiftsOf(heads: Float32Array, tracers: Tracers, { camera, scale }: View): Float32Array {
+function shiftsOf(heads: Float32Array, tracers: Particles, { camera, scale }: View): Float32Array {
   const { size } = tracers.replay.header;
   return heads.map((value, i) => {
     const [side, middle] = [size[i & 1]!, camera[i & 1]!];

@@ -20,6 +20,8 @@ export interface Push {
 export interface Steps {
   steps: number;
   viscosity: number;
+  /** Of the stroke, relative to the recorded one. */
+  speed: number;
   pushes: Push[];
 }
 

@@ -28,6 +28,8 @@ export interface Stage {
 const WINDOW = { start: 3, stop: 4, strokes: 5 };
 /** The place of the viscosity among the parameters of a rollout. */
 const VISCOSITY = 0;
+/** Most steps at a time. */
+const MOST = 64;
 const PLACES = { planes: 0, positions: 9, angles: 10, energy: 11, collected: 12 };
 
 export class Swim {
@@ -42,7 +44,11 @@ export class Swim {
   private readonly nothing: Area;
   private state: Results;
   private spare: Results = [];
+  /** The recorded step at which it is, which may lie between two. */
   private step: number;
+  private readonly scratch = new Map<string, Area>();
+  /** Recorded steps of its stroke in each step. */
+  speed = 1;
 
   /** Evaluate a creature, and stand at the end. */
   constructor(module: WebAssembly.Module, inputs: EvaluationInputs) {
@@ -56,7 +62,7 @@ export class Swim {
     this.parameters = kernel.put(kernel.read(begin.get("parameters")!));
     this.nothing = kernel.put(new Float32Array(0));
     this.state = end;
-    this.step = this.window.stop;
+    this.step = this.window.start;
     const present = kernel.readIntegers(begin.get("present")!);
     this.nodes = [...present.keys()].filter((node) => present[node]);
     const { height, width } = this.numbers;
@@ -72,10 +78,9 @@ export class Swim {
   /** Take steps, with the rest shapes of the last strokes again and again. */
   advance(steps: number): void {
     for (let left = steps; left > 0;) {
-      if (this.step >= this.window.stop) this.step = this.window.start;
-      const taken = Math.min(left, this.window.stop - this.step);
+      const taken = Math.min(left, MOST);
       this.take(taken);
-      this.step += taken;
+      this.step = this.within(this.step + taken * this.speed);
       left -= taken;
     }
   }
@@ -129,9 +134,30 @@ export class Swim {
     this.spare = state;
   }
 
-  /** The rest shapes of the next steps. */
+  /** The rest shapes of the next steps, between the recorded ones. */
   private rows(name: string, items: number, steps: number): Area {
-    return { address: this.rest.get(name)!.address + (4 * this.step * items) / steps, items };
+    const each = items / steps;
+    const known = this.scratch.get(name) ?? this.kernel.put(new Float32Array(MOST * each));
+    this.scratch.set(name, known);
+    const area = { address: known.address, items };
+    const from = this.kernel.view({ ...this.rest.get(name)!, items: this.window.stop * each });
+    const to = this.kernel.view(area);
+    for (let step = 0; step < steps; step++) {
+      const at = this.within(this.step + step * this.speed);
+      const [before, share] = [Math.floor(at), at % 1];
+      const after = this.within(before + 1);
+      for (let i = 0; i < each; i++) {
+        const value = from[before * each + i]!;
+        to[step * each + i] = share === 0 ? value : value + share * (from[after * each + i]! - value);
+      }
+    }
+    return area;
+  }
+
+  /** A step of the window of the last strokes, which repeat. */
+  private within(step: number): number {
+    const { start, stop } = this.window;
+    return step < stop ? step : start + ((step - start) % (stop - start));
   }
 
   private planes(): Plane[] {

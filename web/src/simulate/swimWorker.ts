@@ -14,6 +14,7 @@ self.onmessage = ({ data }: MessageEvent<Begin | Steps>) => {
       answer({ stage: swim.stage });
     } else {
       swim!.viscosity = data.viscosity;
+      swim!.speed = data.speed;
       for (const { away, velocity } of data.pushes) swim!.push(away, velocity);
       swim!.advance(data.steps);
       answer({ frame: swim!.frame() });
