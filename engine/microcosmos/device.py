@@ -110,6 +110,11 @@ def kernel_version() -> str | None:
     return _installed()
 
 
+def has_gpu_kernel() -> bool:
+    """Return whether the kernel for GPUs simulates the worlds that it covers."""
+    return kernel() == "auto" and jax.default_backend() in ("gpu", "cuda")
+
+
 def _installed() -> str | None:
     try:
         return version("microcosmos-kernels")
