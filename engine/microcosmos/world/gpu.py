@@ -96,7 +96,9 @@ def operands_of(
     dtype, nodes = state.positions.dtype, len(state.positions)
     filled = plan.nodes - nodes
     positions = jnp.pad(state.positions.T, ((0, 0), (0, filled)), mode="edge")
-    shapes = jnp.swapaxes(filaments.rest_positions(rest, world.layout), 1, 2)
+    shapes = filaments.rest_positions(rest, world.layout)
+    middles = jax.vmap(lambda one: mean(one, world.present))(shapes)
+    shapes = jnp.swapaxes(shapes - middles[:, None], 1, 2)
     rates, limits = fluid.rates(world.viscosity, world.form.magic), world.limits
     bounds = [jnp.inf if one is None else one for one in (limits.displacement, limits.force)]
     values = [rates.even, rates.odd, *bounds]

@@ -61,9 +61,10 @@ def rollout(plan: Plan, operands: Sequence[Array]) -> list[Array]:
     returned, have time first.
     """
     shapes = [
-        (2, 9, plan.cells),
-        (2, plan.cells),
+        (2 * 9 * plan.cells,),
+        (2 * plan.cells,),
         (plan.nodes, ROW * ROW),
+        (2, plan.delta.points, plan.nodes, plan.nodes),
         (plan.steps, 2, plan.nodes),
         (plan.steps, 2, plan.nodes),
         (plan.steps, len(OBSERVED)),
@@ -75,43 +76,48 @@ def rollout(plan: Plan, operands: Sequence[Array]) -> list[Array]:
         interpret=plan.interpreted,
         name="microcosmos_rollout",
     )
-    f, _, _, *found = call(*operands)
-    return [f, *found]
+    f, _, _, _, *found = call(*operands)
+    return [f.reshape(2, 9, plan.cells), *found]
 
 
-def _rollout(plan: Plan, start, placed, present, shapes, numbers, f, force, window, *out):
+def _rollout(plan: Plan, start, placed, present, shapes, numbers, f, force, window, tables, *out):
     """Carry one world through all steps; arguments after the plan are memory."""
     rates = fluid.Rates(numbers[0], numbers[1])
     there = present[:]
+    count = jnp.sum(there)
     _prepare(plan, start, f, force)
 
     def step(time, position: Pair) -> Pair:
-        now = jax.lax.rem(time, 2)
-        cells, velocity = _interpolate(plan, f, window, now, position, there)
+        now = _divided(time, 2)[1]
+        velocity = _interpolate(plan, f, window, now, position, there)
+        _tabulate(plan, tables, position, there)
         _wait(plan)
         shape = shapes[time, 0, :], shapes[time, 1, :]
-        fitted = _fitted(shape, _sum(position, velocity), there)
+        fitted = _fitted(shape, _sum(position, velocity), there, count)
         wanted, speed, held = _limited(_difference(fitted, position), numbers[2])
-        weights = _weights(plan, position, there)
         forcing, target, scale = _forced(
-            plan, window, weights, position, there, velocity, wanted, numbers[3]
+            plan, window, tables, position, there, velocity, wanted, numbers[3]
         )
-        _spread(plan, force, weights, position, forcing)
+        _spread(plan, force, tables, position, forcing)
         _wait(plan)
         fastest = _flow(plan, f, force, now, rates)
         _wait(plan)
-        for axis in range(2):
-            triton.store(force.at[axis, cells], jnp.zeros(cells.shape, f.dtype))
+        _clear(plan, force, position)
+        _wait(plan)
         position = _sum(position, (there * target[0], there * target[1]))
         held = jnp.where(scale < 1, there, held)
         power = forcing[0] * target[0] + forcing[1] * target[1]
-        count = jnp.sum(there)
         means = jnp.sum(there * speed) / count, jnp.sum(there * held) / count
         pushed = jnp.sum(power), jnp.sum(forcing[0]), jnp.sum(forcing[1])
         _record(out, time, position, fitted, (fastest, *means, *pushed))
         return position
 
-    jax.lax.fori_loop(0, plan.steps, step, (placed[0, :], placed[1, :]))
+    _repeat(plan.steps, step, (placed[0, :], placed[1, :]))
+
+
+def _repeat(times: int, work: Callable, carry: Any) -> Any:
+    """Return what `work` makes of `carry` after all times; written out, it needs more registers."""
+    return jax.lax.fori_loop(0, times, work, carry)
 
 
 def _record(out: tuple[Ref, ...], time, position: Pair, fitted: Pair, values: tuple) -> None:
@@ -130,12 +136,12 @@ def _prepare(plan: Plan, start: Ref, f: Ref, force: Ref) -> None:
         at, inside = _cells(plan, number)
         for i in range(9):
             values = triton.load(start.at[i, at], mask=inside, other=_other(inside))
-            triton.store(f.at[0, i, at], values, mask=inside)
+            triton.store(f.at[i * plan.cells + at], values, mask=inside)
         for axis in range(2):
-            triton.store(force.at[axis, at], jnp.zeros(at.shape, f.dtype), mask=inside)
+            triton.store(force.at[axis * plan.cells + at], jnp.zeros(at.shape, f.dtype), mask=inside)
         return carry
 
-    jax.lax.fori_loop(0, -(-plan.cells // TILE), copy, 0)
+    _repeat(-(-plan.cells // TILE), copy, 0)
     _wait(plan)
 
 
@@ -156,28 +162,28 @@ def _flow(plan: Plan, f: Ref, force: Ref, now, rates: fluid.Rates):
         at, inside = _cells(plan, number)
         other = _other(inside)
         planes = tuple(
-            triton.load(f.at[now, i, at], mask=inside, other=other) for i in range(9)
+            triton.load(f.at[(now * 9 + i) * plan.cells + at], mask=inside, other=other) for i in range(9)
         )
         pushed = tuple(
-            triton.load(force.at[axis, at], mask=inside, other=other) for axis in range(2)
+            triton.load(force.at[axis * plan.cells + at], mask=inside, other=other) for axis in range(2)
         )
         rho, momentum = fluid.density(planes), fluid.momentum(planes)
         collided = fluid.collide(planes, rho, momentum, pushed, rates)
         x, y = _divided(at, plan.size[1])
         for i, (dx, dy) in enumerate(fluid.DIRECTIONS):
             to = _wrapped(x + dx, plan.size[0]) * plan.size[1] + _wrapped(y + dy, plan.size[1])
-            triton.store(f.at[1 - now, i, to], collided[i], mask=inside)
+            triton.store(f.at[((1 - now) * 9 + i) * plan.cells + to], collided[i], mask=inside)
         square = momentum[0] * momentum[0] + momentum[1] * momentum[1]
         return jnp.maximum(fastest, square / (rho * rho))
 
     still = jnp.zeros((1, TILE), f.dtype)
-    fastest = jax.lax.fori_loop(0, -(-plan.cells // TILE), collide, still)
+    fastest = _repeat(-(-plan.cells // TILE), collide, still)
     return jnp.sqrt(jnp.max(fastest) + 1e-24)
 
 
 def _divided(number, by: int) -> Pair:
     """Return quotient and remainder of numbers that are not negative."""
-    by = jnp.int32(by)
+    by = jnp.asarray(by, number.dtype)
     return jax.lax.div(number, by), jax.lax.rem(number, by)
 
 
@@ -201,51 +207,81 @@ def _bases(plan: Plan, position: Pair) -> tuple[Pair, Pair]:
     return tuple(inside), tuple(bases)
 
 
-def _interpolate(plan: Plan, f: Ref, window: Ref, now, position: Pair, there):
-    """Return the cells of all windows and the velocity of the fluid at the nodes.
+def _interpolate(plan: Plan, f: Ref, window: Ref, now, position: Pair, there) -> Pair:
+    """Return the velocity of the fluid at the nodes.
 
     `window` gets the weights over the density.
     """
     inside, bases = _bases(plan, position)
-    lane = jax.lax.broadcasted_iota(jnp.int32, (plan.nodes, ROW * ROW), 1)
-    offsets = _divided(lane, ROW)
-    weight, places = there[:, None], []
-    for axis in range(2):
-        cell = bases[axis][:, None] + offsets[axis].astype(f.dtype)
-        weight = weight * plan.delta.weight(inside[axis][:, None] - cell)
-        places.append(_wrapped(cell, plan.size[axis]).astype(jnp.int32))
-    cells = places[0] * plan.size[1] + places[1]
-    planes = tuple(triton.load(f.at[now, i, cells]) for i in range(9))
-    weight = weight / fluid.density(planes)
-    window[:, :] = weight
-    return cells, tuple(jnp.sum(weight * one, 1) for one in fluid.momentum(planes))
+    lane = jax.lax.broadcasted_iota(jnp.int32, (plan.nodes, ROW), 1)
+    node = jax.lax.broadcasted_iota(jnp.int32, (plan.nodes, ROW), 0)
+
+    def read(line, velocity: Pair) -> Pair:
+        along_x = plan.delta.weight(inside[0] - (bases[0] + line.astype(f.dtype)))
+        along_y = plan.delta.weight(inside[1][:, None] - (bases[1][:, None] + lane.astype(f.dtype)))
+        cells = _line(plan, bases, line)
+        planes = tuple(triton.load(f.at[(9 * now + i) * plan.cells + cells]) for i in range(9))
+        weight = (there * along_x)[:, None] * along_y / fluid.density(planes)
+        triton.store(window.at[node, ROW * line + lane], weight)
+        x, y = fluid.momentum(planes)
+        return velocity[0] + jnp.sum(weight * x, 1), velocity[1] + jnp.sum(weight * y, 1)
+
+    return _repeat(plan.delta.points, read, (jnp.zeros_like(there), jnp.zeros_like(there)))
 
 
-def _weights(plan: Plan, position: Pair, there) -> list[list[Any]]:
-    """Return, for each axis and line of a window, the weights there of all nodes."""
+def _line(plan: Plan, bases: Pair, line):
+    """Return the cells of a line of all windows, (node, lane)."""
+    lane = jax.lax.broadcasted_iota(jnp.int32, (plan.nodes, ROW), 1).astype(bases[0].dtype)
+    x = _wrapped(bases[0] + line.astype(lane.dtype), plan.size[0]).astype(jnp.int32)
+    y = _wrapped(bases[1][:, None] + lane, plan.size[1]).astype(jnp.int32)
+    return (x * plan.size[1])[:, None] + y
+
+
+def _clear(plan: Plan, force: Ref, position: Pair) -> None:
+    """Set the force in the cells of all windows to zero."""
+    bases = _bases(plan, position)[1]
+
+    def write(line, carry):
+        cells = _line(plan, bases, line)
+        for axis in range(2):
+            triton.store(force.at[axis * plan.cells + cells], jnp.zeros(cells.shape, force.dtype))
+        return carry
+
+    _repeat(plan.delta.points, write, 0)
+
+
+def _tabulate(plan: Plan, tables: Ref, position: Pair, there) -> None:
+    """Write, for each axis and line of a window, the weights there of all nodes."""
     inside, bases = _bases(plan, position)
-    found = []
-    for x, base, cells in zip(inside, bases, plan.size, strict=True):
-        lines = []
-        for offset in range(plan.delta.points):
-            away = x[None, :] - _wrapped(base + offset, cells)[:, None]
-            away = away - cells * jnp.floor(away / cells + 0.5)
-            lines.append(there[None, :] * plan.delta.weight(away))
-        found.append(lines)
-    return found
+
+    def write(axis: int, line, carry):
+        cells = plan.size[axis]
+        cell = _wrapped(bases[axis] + line.astype(there.dtype), cells)
+        away = inside[axis][None, :] - cell[:, None]
+        away = away - cells * jnp.floor(away / cells + 0.5)
+        tables[axis, line, :, :] = there[None, :] * plan.delta.weight(away)
+        return carry
+
+    for axis in range(2):
+        _repeat(plan.delta.points, partial(write, axis), 0)
 
 
 def _forced(
-    plan: Plan, window: Ref, weights, position: Pair, there, velocity: Pair, target: Pair, limit
+    plan: Plan, window: Ref, tables: Ref, position: Pair, there, velocity, target: Pair, limit
 ):
     """Return the force on the fluid, the target less its rigid part, and the limiting factor.
 
     See `coupling.multi_direct_forcing`; J S / ρ is a matrix here.
     """
-    matrix = jnp.zeros((plan.nodes, plan.nodes), there.dtype)
-    for k, along_x in enumerate(weights[0]):
-        for m, along_y in enumerate(weights[1]):
-            matrix = matrix + window[:, ROW * k + m][:, None] * (along_x * along_y)
+    node = jax.lax.broadcasted_iota(jnp.int32, (plan.nodes,), 0)
+
+    def add(number, matrix):
+        x, y = _divided(number, plan.delta.points)
+        weight = triton.load(window.at[node, ROW * x + y])
+        return matrix + weight[:, None] * (tables[0, x, :, :] * tables[1, y, :, :])
+
+    nothing = jnp.zeros((plan.nodes, plan.nodes), there.dtype)
+    matrix = _repeat(plan.delta.points**2, add, nothing)
     coverage = jnp.sum(matrix, 1)
     beta = jnp.where(there > 0, 1.0 / jnp.where(there > 0, coverage, 1.0), 0.0)
     rigid = _rigid(plan, beta, position)
@@ -281,27 +317,32 @@ def _rigid(plan: Plan, beta, position: Pair) -> Callable[[Pair], Pair]:
     return rigid
 
 
-def _spread(plan: Plan, force: Ref, weights, position: Pair, forcing: Pair) -> None:
+def _spread(plan: Plan, force: Ref, tables: Ref, position: Pair, forcing: Pair) -> None:
     """Write the force in the cells of all windows.
 
     Each window has the whole sum over nodes, so that windows that share a cell agree.
     """
     bases = _bases(plan, position)[1]
-    for axis in range(2):
-        for k, along_x in enumerate(weights[0]):
-            part = along_x * forcing[axis][None, :]
-            row = _wrapped(bases[0] + k, plan.size[0]).astype(jnp.int32) * plan.size[1]
-            for m, along_y in enumerate(weights[1]):
-                cell = row + _wrapped(bases[1] + m, plan.size[1]).astype(jnp.int32)
-                triton.store(force.at[axis, cell], jnp.sum(part * along_y, 1))
+
+    def write(number, carry):
+        lines = _divided(number, plan.delta.points)
+        x, y = (
+            _wrapped(base + line.astype(base.dtype), cells).astype(jnp.int32)
+            for base, line, cells in zip(bases, lines, plan.size, strict=True)
+        )
+        weight = tables[0, lines[0], :, :] * tables[1, lines[1], :, :]
+        for axis in range(2):
+            total = jnp.sum(weight * forcing[axis][None, :], 1)
+            triton.store(force.at[axis * plan.cells + x * plan.size[1] + y], total)
+        return carry
+
+    _repeat(plan.delta.points**2, write, 0)
 
 
-def _fitted(shape: Pair, position: Pair, there) -> Pair:
-    """Return a rest shape, moved and turned to be nearest to positions."""
-    count = jnp.sum(there)
+def _fitted(shape: Pair, position: Pair, there, count) -> Pair:
+    """Return a rest shape about its middle, moved and turned to be nearest to positions."""
     centre = tuple(jnp.sum(there * one) / count for one in position)
-    arm = _difference(position, centre)
-    x, y = _difference(shape, tuple(jnp.sum(there * one) / count for one in shape))
+    arm, (x, y) = _difference(position, centre), shape
     cosine = jnp.sum(there * (x * arm[0] + y * arm[1]))
     sine = jnp.sum(there * (x * arm[1] - y * arm[0]))
     size = jnp.sqrt(cosine * cosine + sine * sine + 1e-24)
