@@ -6,11 +6,12 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from .. import coupling, device, filaments, fluid
-from . import gpu_kernel
-from .measuring import curvature
-from .model import Measures, State, World
-from .present import edges_there, grown_nodes, mean
+from ... import coupling, device, filaments, fluid
+from ..measuring import curvature
+from ..model import Measures, State, World
+from ..present import edges_there, grown_nodes, mean
+from . import kernel
+from .plan import Plan
 
 MOST_NODES = 64
 """Nodes of a world; the kernel holds matrices of that size in registers."""
@@ -50,12 +51,11 @@ def rollout(
     The kernel has no derivatives. `interpreted` runs it without a GPU.
     """
     nodes, plan = len(state.positions), plan_of(world, state, rest, interpreted)
-    populations, *found = gpu_kernel.rollout(plan, operands_of(plan, world, state, rest))
+    populations, *found = kernel.rollout(plan, operands_of(plan, world, state, rest))
     path, matched = (jnp.swapaxes(one, 1, 2)[:, :nodes] for one in found[:2])
-    numbers = dict(zip(gpu_kernel.OBSERVED, found[2].T, strict=True))
+    numbers = dict(zip(kernel.OBSERVED, found[2].T, strict=True))
     angles = _followed(state.angles, matched, world.rods)
-    last = populations[plan.steps % 2].reshape(9, *world.size)
-    end = replace(state, populations=tuple(last), positions=path[-1], angles=angles[-1])
+    end = replace(state, populations=tuple(populations), positions=path[-1], angles=angles[-1])
     force = jnp.stack([numbers.pop("force_x"), numbers.pop("force_y")], 1)[:, None]
     joints = jax.vmap(lambda p, a: curvature(world, p, a))(path, angles)
     edges = edges_there(world)
@@ -73,10 +73,10 @@ def rollout(
 
 def plan_of(
     world: World, state: State, rest: filaments.Rest, interpreted: bool
-) -> gpu_kernel.Plan:
+) -> Plan:
     """Return what of a rollout is fixed when its program is compiled."""
     form, nodes = world.form, len(state.positions)
-    return gpu_kernel.Plan(
+    return Plan(
         size=world.size,
         steps=len(rest.angle),
         nodes=max(16, 1 << (nodes - 1).bit_length()),
@@ -89,7 +89,7 @@ def plan_of(
 
 
 def operands_of(
-    plan: gpu_kernel.Plan, world: World, state: State, rest: filaments.Rest
+    plan: Plan, world: World, state: State, rest: filaments.Rest
 ) -> list[Array]:
     """Return the operands of the kernel; nodes that fill up are absent, where the first is."""
     assert world.layout is not None
@@ -103,7 +103,7 @@ def operands_of(
     bounds = [jnp.inf if one is None else one for one in (limits.displacement, limits.force)]
     values = [rates.even, rates.odd, *bounds]
     return [
-        jnp.stack(state.populations).reshape(9, plan.cells),
+        jnp.stack(state.populations).reshape(-1),
         positions,
         jnp.pad(grown_nodes(world).astype(dtype), (0, filled)),
         jnp.pad(shapes, ((0, 0), (0, 0), (0, filled))),
