@@ -13,7 +13,7 @@ from jax.experimental.pallas import triton
 
 from ... import fluid
 from .lattice import addresses
-from .plan import Pair, Plan, Ref, added, difference, divided, repeat, wrapped
+from .plan import Pair, Plan, Ref, difference, divided, repeat, wrapped
 
 ROW = 4
 """Cells along each side of a window, of which the delta may not reach the last."""
@@ -44,7 +44,9 @@ def interpolate(plan: Plan, f: Ref, window: Ref, odd, position: Pair, there) -> 
 
     def read(line, velocity: Pair) -> Pair:
         along_x = plan.delta.weight(inside[0] - (bases[0] + line.astype(f.dtype)))
-        along_y = plan.delta.weight(inside[1][:, None] - (bases[1][:, None] + lane.astype(f.dtype)))
+        along_y = plan.delta.weight(
+            inside[1][:, None] - (bases[1][:, None] + lane.astype(f.dtype))
+        )
         places = addresses(plan, odd, *_line(plan, bases, line))
         planes = tuple(triton.load(f.at[place]) for place in places)
         weight = (there * along_x)[:, None] * along_y / fluid.density(planes)
@@ -71,7 +73,9 @@ def clear(plan: Plan, force: Ref, position: Pair) -> None:
         x, y = _line(plan, bases, line)
         cells = x * plan.size[1] + y
         for axis in range(2):
-            triton.store(force.at[axis * plan.cells + cells], jnp.zeros(cells.shape, force.dtype))
+            triton.store(
+                force.at[axis * plan.cells + cells], jnp.zeros(cells.shape, force.dtype)
+            )
         return carry
 
     repeat(plan.delta.points, write, 0)

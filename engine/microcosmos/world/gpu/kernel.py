@@ -1,7 +1,8 @@
 """A whole rollout in one program per world, written in Pallas for Triton, for GPUs.
 
-A program takes the steps of `stepping` in the same order, with vectors of nodes in registers and
-the fluid in the near memory of the chip. Nothing depends on the order in which threads write.
+A program takes the steps of `stepping` in the same order, with vectors of nodes in registers
+and the fluid in the near memory of the chip. Nothing depends on the order in which threads
+write.
 """
 
 from collections.abc import Sequence
@@ -52,7 +53,9 @@ def rollout(plan: Plan, operands: Sequence[Array]) -> list[Array]:
     return [restored(plan, f), *found]
 
 
-def _rollout(plan: Plan, start, placed, present, shapes, numbers, f, force, window, tables, *out):
+def _rollout(
+    plan: Plan, start, placed, present, shapes, numbers, f, force, window, tables, *out
+):
     """Carry one world through all steps; arguments after the plan are memory."""
     rates = fluid.Rates(numbers[0], numbers[1])
     there = present[:]

@@ -1,9 +1,9 @@
 """The fluid of a world: cells in tiles, collided and streamed in place.
 
 Populations have one copy. In even steps they stand in their cells, and a collision leaves each
-where it came from, under its opposite direction; in odd steps a cell finds them there, with its
-neighbours, and leaves them in the usual order (Bailey et al., ICPP 2009, the AA pattern). A cell
-writes only where it has read, so that threads need no order.
+where it came from, under its opposite direction; in odd steps a cell finds them there, with
+its neighbours, and leaves them in the usual order (Bailey et al., ICPP 2009, the AA pattern).
+A cell writes only where it has read, so that threads need no order.
 """
 
 import jax
@@ -11,7 +11,7 @@ import jax.numpy as jnp
 from jax.experimental.pallas import triton
 
 from ... import fluid
-from .plan import Pair, Plan, Ref, divided, repeat, wait, wrapped
+from .plan import Plan, Ref, divided, repeat, wait, wrapped
 
 TILE = 256
 """Cells that a program collides at once."""
@@ -24,7 +24,9 @@ def prepare(plan: Plan, start: Ref, f: Ref, force: Ref) -> None:
     def copy(number, carry):
         at, inside = _cells(plan, number)
         for i in range(9):
-            values = triton.load(start.at[i * plan.cells + at], mask=inside, other=_other(inside))
+            values = triton.load(
+                start.at[i * plan.cells + at], mask=inside, other=_other(inside)
+            )
             triton.store(f.at[i * plan.cells + at], values, mask=inside)
         for axis in range(2):
             zero = jnp.zeros(at.shape, f.dtype)
@@ -66,7 +68,9 @@ def addresses(plan: Plan, odd, x, y) -> list:
     for i, (dx, dy) in enumerate(fluid.DIRECTIONS):
         plane = i + odd * (OPPOSITE[i] - i)
         row = wrapped(x - odd * dx, plan.size[0])
-        found.append(plane * plan.cells + row * plan.size[1] + wrapped(y - odd * dy, plan.size[1]))
+        found.append(
+            plane * plan.cells + row * plan.size[1] + wrapped(y - odd * dy, plan.size[1])
+        )
     return found
 
 

@@ -71,9 +71,7 @@ def rollout(
     return end, measures
 
 
-def plan_of(
-    world: World, state: State, rest: filaments.Rest, interpreted: bool
-) -> Plan:
+def plan_of(world: World, state: State, rest: filaments.Rest, interpreted: bool) -> Plan:
     """Return what of a rollout is fixed when its program is compiled."""
     form, nodes = world.form, len(state.positions)
     return Plan(
@@ -88,9 +86,7 @@ def plan_of(
     )
 
 
-def operands_of(
-    plan: Plan, world: World, state: State, rest: filaments.Rest
-) -> list[Array]:
+def operands_of(plan: Plan, world: World, state: State, rest: filaments.Rest) -> list[Array]:
     """Return the operands of the kernel; nodes that fill up are absent, where the first is."""
     assert world.layout is not None
     dtype, nodes = state.positions.dtype, len(state.positions)
