@@ -16,8 +16,8 @@ from jaxtyping import Array
 
 from ... import fluid
 from .bodies import ROW, clear, fitted, forced, interpolate, limited, spread, tabulate
-from .lattice import flow, prepare, restored
-from .plan import Pair, Plan, Ref, added, difference, divided, repeat, wait
+from .lattice import flow, prepare, restored, wait
+from .plan import Pair, Plan, Ref, added, difference, divided, repeat
 
 WARPS = 4
 """Groups of 32 threads in a program."""

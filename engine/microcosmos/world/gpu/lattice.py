@@ -11,7 +11,7 @@ import jax.numpy as jnp
 from jax.experimental.pallas import triton
 
 from ... import fluid
-from .plan import Plan, Ref, divided, repeat, wait, wrapped
+from .plan import Plan, Ref, divided, repeat, wrapped
 
 TILE = 256
 """Cells that a program collides at once."""
@@ -37,12 +37,20 @@ def prepare(plan: Plan, start: Ref, f: Ref, force: Ref) -> None:
     wait(plan)
 
 
+def wait(plan: Plan) -> None:
+    """Wait until all threads of the program have written."""
+    if not plan.interpreted:
+        triton.debug_barrier()
+
+
 def flow(plan: Plan, f: Ref, force: Ref, odd, rates: fluid.Rates):
     """Collide and stream all cells; return the speed of the fastest fluid before."""
 
     def collide(number, fastest):
         at, inside = _cells(plan, number)
         places = addresses(plan, odd, *divided(at, plan.size[1]))
+        if inside is not None:  # Beyond memory, so that no cell counts twice.
+            places = [jnp.where(inside, place, 9 * plan.cells) for place in places]
         planes = tuple(
             triton.load(f.at[place], mask=inside, other=_other(inside)) for place in places
         )

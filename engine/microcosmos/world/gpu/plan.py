@@ -6,7 +6,6 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
-from jax.experimental.pallas import triton
 
 from ... import coupling
 
@@ -43,12 +42,6 @@ def repeat(times: int, work: Callable, carry: Any) -> Any:
     Written out, a loop needs more registers, so that fewer worlds are simulated at once.
     """
     return jax.lax.fori_loop(0, times, work, carry)
-
-
-def wait(plan: Plan) -> None:
-    """Wait until all threads of the program have written."""
-    if not plan.interpreted:
-        triton.debug_barrier()
 
 
 def divided(number, by: int) -> Pair:

@@ -10,11 +10,10 @@ from ... import coupling, device, filaments, fluid
 from ..measuring import curvature
 from ..model import Measures, State, World
 from ..present import edges_there, grown_nodes, mean
-from . import kernel
 from .plan import Plan
 
 MOST_NODES = 64
-"""Nodes of a world; the kernel holds matrices of that size in registers."""
+"""Nodes of a world; time and memory grow with their square."""
 
 
 def chosen(world: World, state: State) -> bool:
@@ -50,6 +49,8 @@ def rollout(
 
     The kernel has no derivatives. `interpreted` runs it without a GPU.
     """
+    from . import kernel  # Pallas takes half a second to import.
+
     nodes, plan = len(state.positions), plan_of(world, state, rest, interpreted)
     populations, *found = kernel.rollout(plan, operands_of(plan, world, state, rest))
     path, matched = (jnp.swapaxes(one, 1, 2)[:, :nodes] for one in found[:2])
@@ -57,18 +58,19 @@ def rollout(
     angles = _followed(state.angles, matched, world.rods)
     end = replace(state, populations=tuple(populations), positions=path[-1], angles=angles[-1])
     force = jnp.stack([numbers.pop("force_x"), numbers.pop("force_y")], 1)[:, None]
-    joints = jax.vmap(lambda p, a: curvature(world, p, a))(path, angles)
-    edges = edges_there(world)
-    measures = Measures(
-        centre=jax.vmap(lambda one: mean(one, world.present))(path),
-        positions=path,
-        rest=rest,
-        heading=jax.vmap(lambda one: mean(one, edges))(angles),
-        curvature=joints,
-        force=force,
-        **numbers,
-    )
-    return end, measures
+
+    def measure(positions, angles, rest, force, numbers):
+        return Measures(
+            centre=mean(positions, world.present),
+            positions=positions,
+            rest=rest,
+            heading=mean(angles, edges_there(world)),
+            curvature=curvature(world, positions, angles),
+            force=force,
+            **numbers,
+        )
+
+    return end, jax.vmap(measure)(path, angles, rest, force, numbers)
 
 
 def plan_of(world: World, state: State, rest: filaments.Rest, interpreted: bool) -> Plan:
