@@ -44,7 +44,7 @@ def main() -> None:
 
 def print_rollouts(bandwidth: float) -> None:
     """Print the time of a step of `physics.scene`, whose body is matched."""
-    ways = {"XLA": world.rollout}
+    ways: dict[str, Callable] = {"XLA": world.rollout}
     if device.has_gpu_kernel():
         ways["kernel"] = world.gpu.rollout
     cases = [(name, count) for name in ways for count in WORLDS]
@@ -88,7 +88,9 @@ def rollouts(rollout: Callable, count: int) -> tuple[Callable, Any]:
 
 def print_evaluations() -> None:
     """Print the creatures that are evaluated in a second, by preset and block."""
-    presets = {one.name: one.spec for one in EXPERIMENTS["quality-diversity"].presets}
+    presets: dict[str, Any] = {
+        one.name: one.spec for one in EXPERIMENTS["quality-diversity"].presets
+    }
     cases = [(name, block) for name in PRESETS for block in BLOCKS]
     tasks = {name: build_task(presets[name].scene) for name in PRESETS}
     programs = compiled([evaluations(tasks[name], block) for name, block in cases])

@@ -11,7 +11,17 @@ from microcosmos import bodies, coupling, filaments, groups, world
 from microcosmos.build.scene import build_layout, build_rods
 
 NODES, SIZE = 5, (12, 16)
-OBSERVED = "centre positions speed node_speed held heading curvature power force".split()
+OBSERVED = (
+    "centre",
+    "positions",
+    "speed",
+    "node_speed",
+    "held",
+    "heading",
+    "curvature",
+    "power",
+    "force",
+)
 
 
 def scene(steps: int, **form):
@@ -43,7 +53,7 @@ def both(box, start, rest):
 
 @pytest.mark.usefixtures("float64")
 @pytest.mark.parametrize(
-    "steps, present, form",
+    ("steps", "present", "form"),
     [
         (7, None, {}),
         (
@@ -63,7 +73,8 @@ def test_the_kernel_takes_the_steps_of_jax(steps, present, form):
         np.testing.assert_allclose(plane, other, atol=1e-14)
     np.testing.assert_allclose(found.angles, end.angles, atol=1e-12)
     held = np.asarray(measures.held)
-    assert 0 < held.max() and held.min() < 1
+    assert held.max() > 0
+    assert held.min() < 1
 
 
 def test_worlds_of_a_batch_do_not_depend_on_each_other():
@@ -80,7 +91,8 @@ def test_positions_that_are_not_finite_stay_in_memory_and_spread():
     box, start, rest = scene(2)
     start = replace(start, positions=start.positions.at[0, 0].set(jnp.nan))
     end, _ = world.gpu.rollout(box, start, rest, interpreted=True)
-    assert bool(jnp.isnan(end.positions).all()) and bool(jnp.isnan(end.populations[0]).any())
+    assert bool(jnp.isnan(end.positions).all())
+    assert bool(jnp.isnan(end.populations[0]).any())
 
 
 def test_what_the_kernel_lacks_is_named():

@@ -59,7 +59,7 @@ def flow(plan: Plan, f: Ref, force: Ref, odd, rates: fluid.Rates):
             for axis in range(2)
         )
         rho, momentum = fluid.density(planes), fluid.momentum(planes)
-        collided = fluid.collide(planes, rho, momentum, pushed, rates)
+        collided = fluid.collide(planes, rho, momentum, (pushed[0], pushed[1]), rates)
         for place, i in zip(places, OPPOSITE, strict=True):
             triton.store(f.at[place], collided[i], mask=inside)
         square = momentum[0] * momentum[0] + momentum[1] * momentum[1]

@@ -9,7 +9,7 @@ import jax.numpy as jnp
 
 from ... import coupling
 
-Pair = tuple[Any, Any]
+Pair = tuple[Any, ...]
 """A value along x and one along y, mostly of nodes (node,)."""
 Ref = Any
 """Memory that a program reads and writes."""
@@ -46,8 +46,8 @@ def repeat(times: int, work: Callable, carry: Any) -> Any:
 
 def divided(number, by: int) -> Pair:
     """Return quotient and remainder of numbers that are not negative."""
-    by = jnp.asarray(by, number.dtype)
-    return jax.lax.div(number, by), jax.lax.rem(number, by)
+    divisor = jnp.asarray(by, number.dtype)
+    return jax.lax.div(number, divisor), jax.lax.rem(number, divisor)
 
 
 def wrapped(cell, cells: int):
