@@ -100,6 +100,7 @@ peers: install
 
 bench: peers web
 	$(BIN)/python engine/benchmarks/physics.py
+	$(BIN)/python engine/benchmarks/accelerator.py
 	$(BIN)/python engine/benchmarks/kernel.py
 	$(BIN)/python engine/benchmarks/budget.py
 	$(BIN)/python engine/benchmarks/gradients.py

@@ -110,6 +110,11 @@ def kernel_version() -> str | None:
     return _installed()
 
 
+def has_gpu_kernel() -> bool:
+    """Return whether the kernel for GPUs simulates the worlds that it covers."""
+    return kernel() == "auto" and jax.default_backend() in ("gpu", "cuda")
+
+
 def _installed() -> str | None:
     try:
         return version("microcosmos-kernels")
@@ -132,6 +137,8 @@ def device_kind(*, portable: bool = True) -> str:
     software = f"microcosmos {VERSION}, jax {jax.__version__}, jaxlib {jaxlib_version}"
     if kernels := kernel_version():
         software += f", microcosmos-kernels {kernels}"
+    if has_gpu_kernel():
+        software += ", kernel for GPUs"
     parts = [device.platform, model, software, " ".join(sorted(flags))]
     return ", ".join(part for part in parts if part)
 

@@ -43,10 +43,9 @@ def roma(r: Distances) -> Distances:
     """Weight by the three-point delta of Roma, Peskin and Berger (1999)."""
     r = jnp.abs(r)
     near, far = r < 0.5, (r >= 0.5) & (r < 1.5)
-    a, b = jnp.where(near, r, 0.25), jnp.where(far, r, 1.0)  # Keep both roots positive.
-    inner = (1 + jnp.sqrt(1 - 3 * a**2)) / 3
-    outer = (5 - 3 * b - jnp.sqrt(1 - 3 * (1 - b) ** 2)) / 6
-    return jnp.where(near, inner, jnp.where(far, outer, 0.0))
+    a = jnp.where(near, r, jnp.where(far, 1 - r, 0.0))  # Keep the root positive.
+    root = jnp.sqrt(1 - 3 * a**2)
+    return jnp.where(near, (1 + root) / 3, jnp.where(far, (5 - 3 * r - root) / 6, 0.0))
 
 
 def hat(r: Distances) -> Distances:

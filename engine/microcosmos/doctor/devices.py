@@ -82,7 +82,8 @@ def _kernel(kernel: dict[str, Any], devices: list[dict[str, Any]]) -> Finding:
     if kernel["chosen"] == "jax":
         return ok("native kernel", "MICROCOSMOS_KERNEL leaves it out: JAX simulates")
     if any(one["platform"] != "cpu" for one in devices):
-        return ok("native kernel", "JAX simulates on the GPU")
+        text = "the GPU has a kernel of its own; it needs blocks of 256 creatures to be busy"
+        return ok("native kernel", text)
     return warning(
         "native kernel",
         "it is not installed: JAX simulates, several times slower",

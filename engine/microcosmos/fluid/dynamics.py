@@ -41,7 +41,11 @@ def rates(viscosity: Scalar, magic=capped_magic) -> Rates:
 
 
 def collide(
-    f: Populations, rho: Plane, momentum: tuple[Plane, Plane], force: Vectors, rates: Rates
+    f: Populations,
+    rho: Plane,
+    momentum: tuple[Plane, Plane],
+    force: Vectors | tuple[Plane, Plane],
+    rates: Rates,
 ) -> Populations:
     """Relax towards equilibrium and add the source of a force density.
 

@@ -142,7 +142,8 @@ def lagged(start: Rest, commands: Rest, lag: float) -> Rest:
         rest = _between(rest, command, 1 / (1 + lag))
         return rest, rest
 
-    return jax.lax.scan(follow, start, commands)[1]
+    # Written out in part: on a GPU each round of a loop costs more than the arithmetic.
+    return jax.lax.scan(follow, start, commands, unroll=20)[1]
 
 
 def _between(one: Rest, other: Rest, share: Any) -> Rest:

@@ -11,7 +11,7 @@ from jaxtyping import Array, Float, Int
 from ..filaments import Rest
 from ..genomes import Drive, carried_out
 from ..portable import cosine, sine
-from ..world import Measures, State, follow, keep_memory, native, rollout
+from ..world import Measures, State, follow, gpu, keep_memory, native, rollout
 from .measures import observe
 from .school import schooled
 from .task import Actuator, Task
@@ -79,11 +79,14 @@ def simulate(
 ) -> tuple[State, Any]:
     """Return the state at the end, and the observations after each step.
 
-    The native kernel simulates what it can, unless the result has to be `differentiable`.
+    A kernel simulates what it can, unless the result has to be `differentiable`.
     """
     plain = observer is observe and segment is None and not differentiable
+    given = given_of(driven)
     if plain and is_native(driven):
-        return native.rollout(driven.world, driven.start, given_of(driven))
+        return native.rollout(driven.world, driven.start, given)
+    if plain and isinstance(given, Rest) and gpu.chosen(driven.world, driven.start):
+        return gpu.rollout(driven.world, driven.start, given)
     go_on = partial(rollout, control=driven.control, remember=driven.remember, segment=segment)
     return go_on(driven.world, driven.start, driven.inputs, observer)
 

@@ -229,7 +229,8 @@ class Generations(Part):
     batch: int = field(64, ge=1, le=65_536, unit="creatures")
     """Evaluations per generation."""
     block: int = field(16, ge=1, le=4096, unit="creatures")
-    """Creatures per call of the compiled program; the exact bits of results depend on it."""
+    """Creatures per call of the compiled program; the exact bits of results depend on it. A GPU
+    needs 256 or more to be busy."""
     feasible: bool = field(True, source=OURS)
     """Refuse creatures at a limit in more than 0.1 % of node steps, with a Mach number above
     0.17 anywhere, with a net impulse on the fluid above 1e-4, or whose filaments cross."""

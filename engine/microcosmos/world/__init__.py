@@ -1,6 +1,6 @@
 """One world: a periodic box of viscous fluid with bodies in it, in lattice units."""
 
-from . import native
+from . import gpu, native
 from .controller import Actuators, Controller, Network, Series
 from .model import Form, Limits, Measures, State, World, at_rest, flow, with_bodies
 from .nodes import repel, sense

@@ -39,19 +39,22 @@ def measure(world: World, end: State, rest: filaments.Rest, pushed: Pushed) -> M
         centre=centre(world, end),
         positions=end.positions,
         heading=mean(end.angles, edges_there(world)),
-        curvature=_curvature(world, end),
+        curvature=curvature(world, end.positions, end.angles),
         power=jnp.sum(pushed.forcing * pushed.target),
     )
 
 
-def _curvature(world: World, state: State) -> Float[Array, "joint"]:
+def curvature(
+    world: World, positions: Float[Array, "node 2"], angles: Float[Array, "edge"]
+) -> Float[Array, "joint"]:
+    """Return the angle at each joint over the mean length of its edges."""
     rods = world.rods
     if rods.joints is None:
         return jnp.zeros_like(rods.bend)
     first, second = rods.joints[:, 0], rods.joints[:, 1]
-    v = state.positions[rods.edges[:, 1]] - state.positions[rods.edges[:, 0]]
+    v = positions[rods.edges[:, 1]] - positions[rods.edges[:, 0]]
     length = jnp.sqrt(jnp.sum(v * v, 1) + 1e-24)
-    angle = filaments.wrap(state.angles[second] - state.angles[first])
+    angle = filaments.wrap(angles[second] - angles[first])
     found = 2 * angle / (length[first] + length[second])
     kept = joints_there(world)
     return found if kept is None else jnp.where(kept, found, 0.0)

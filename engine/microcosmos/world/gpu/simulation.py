@@ -1,0 +1,118 @@
+"""Rollouts in the kernel for GPUs: which worlds it covers, its operands, and its measures."""
+
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from ... import coupling, device, filaments, fluid
+from ..measuring import curvature
+from ..model import Measures, State, World
+from ..present import edges_there, grown_nodes, mean
+from .plan import Plan
+
+MOST_NODES = 64
+"""Nodes of a world; time and memory grow with their square."""
+
+
+def chosen(world: World, state: State) -> bool:
+    """Return whether the kernel simulates a world that follows rest shapes."""
+    return device.has_gpu_kernel() and uncovered(world, state) is None
+
+
+def uncovered(world: World, state: State) -> str | None:
+    """Return what of a world the kernel lacks; None if it can simulate the world."""
+    layout, around = world.layout, world.surroundings
+    lacking = {
+        "no fluid": not world.form.fluid,
+        "several bodies": world.groups.count > 1,
+        "constraints that are swept": layout is None,
+        "several pieces": layout is not None and layout.pieces.count > 1,
+        "soft joints": layout is not None and layout.bend is not None,
+        "layers": world.form.layers > 1,
+        "forcing without projection": world.form.projection is coupling.unprojected,
+        "repulsion": world.steric is not None or world.barrier is not None,
+        "energy": state.energy is not None,
+        "surroundings": any(one is not None for one in vars(around).values()),
+        "so many nodes": len(state.positions) > MOST_NODES,
+        "numbers other than float32": state.positions.dtype != jnp.float32,
+        "a body without joints listed": world.rods.joints is None,
+    }
+    return next((reason for reason, holds in lacking.items() if holds), None)
+
+
+def rollout(
+    world: World, state: State, rest: filaments.Rest, *, interpreted: bool = False
+) -> tuple[State, Measures]:
+    """Return the state after all steps of rest shapes (time first), and their measures.
+
+    The kernel has no derivatives. `interpreted` runs it without a GPU.
+    """
+    from . import kernel  # Pallas takes half a second to import.
+
+    nodes, plan = len(state.positions), plan_of(world, state, rest, interpreted)
+    populations, *found = kernel.rollout(plan, operands_of(plan, world, state, rest))
+    path, matched = (jnp.swapaxes(one, 1, 2)[:, :nodes] for one in found[:2])
+    numbers = dict(zip(kernel.OBSERVED, found[2].T, strict=True))
+    angles = _followed(state.angles, matched, world.rods)
+    end = replace(state, populations=tuple(populations), positions=path[-1], angles=angles[-1])
+    force = jnp.stack([numbers.pop("force_x"), numbers.pop("force_y")], 1)[:, None]
+
+    def measure(positions, angles, rest, force, numbers):
+        return Measures(
+            centre=mean(positions, world.present),
+            positions=positions,
+            rest=rest,
+            heading=mean(angles, edges_there(world)),
+            curvature=curvature(world, positions, angles),
+            force=force,
+            **numbers,
+        )
+
+    return end, jax.vmap(measure)(path, angles, rest, force, numbers)
+
+
+def plan_of(world: World, state: State, rest: filaments.Rest, interpreted: bool) -> Plan:
+    """Return what of a rollout is fixed when its program is compiled."""
+    form, nodes = world.form, len(state.positions)
+    return Plan(
+        size=world.size,
+        steps=len(rest.angle),
+        nodes=max(16, 1 << (nodes - 1).bit_length()),
+        delta=form.kernel,
+        lengths=tuple(map(float, coupling.step_lengths(form.forcing_iterations))),
+        turns=form.projection is coupling.torque_free,
+        force_factor=form.force_factor,
+        interpreted=interpreted,
+    )
+
+
+def operands_of(plan: Plan, world: World, state: State, rest: filaments.Rest) -> list[Array]:
+    """Return the operands of the kernel; nodes that fill up are absent, where the first is."""
+    assert world.layout is not None
+    dtype, nodes = state.positions.dtype, len(state.positions)
+    filled = plan.nodes - nodes
+    positions = jnp.pad(state.positions.T, ((0, 0), (0, filled)), mode="edge")
+    shapes = filaments.rest_positions(rest, world.layout)
+    middles = jax.vmap(lambda one: mean(one, world.present))(shapes)
+    shapes = jnp.swapaxes(shapes - middles[:, None], 1, 2)
+    rates, limits = fluid.rates(world.viscosity, world.form.magic), world.limits
+    bounds = [jnp.inf if one is None else one for one in (limits.displacement, limits.force)]
+    values = [rates.even, rates.odd, *bounds]
+    return [
+        jnp.stack(state.populations).reshape(-1),
+        positions,
+        jnp.pad(grown_nodes(world).astype(dtype), (0, filled)),
+        jnp.pad(shapes, ((0, 0), (0, 0), (0, filled))),
+        jnp.stack([jnp.asarray(one, dtype) for one in values]),
+    ]
+
+
+def _followed(
+    start: Float[Array, "edge"], positions: Float[Array, "time node 2"], rods: filaments.Rods
+) -> Float[Array, "time edge"]:
+    """Return the angles of edges over time, on the branches nearest to those before."""
+    angles = jax.vmap(lambda one: filaments.edge_angles(one, rods))(positions)
+    steps = jnp.diff(angles, axis=0, prepend=start[None])
+    return angles - 2 * jnp.pi * jnp.cumsum(jnp.round(steps / (2 * jnp.pi)), 0)
