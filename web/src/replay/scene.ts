@@ -39,7 +39,10 @@ const INK = {
   },
 };
 
-export function sceneOf(replay: Replay, view: Pick<Scene, "painter" | "follow" | "theme" | "tracers">): Scene {
+export function sceneOf(
+  replay: Replay,
+  view: Pick<Scene, "painter" | "follow" | "theme" | "tracers">,
+): Scene {
   const { frames, edges } = replay.header;
   const path = Array.from({ length: frames }, (_, frame) => meanOf(positionsAt(replay, frame)));
   return { replay, chains: chainsOf(edges), obstacles: obstaclesOf(replay), path, ...view };
