@@ -3,12 +3,15 @@
 import type { Replay } from "../decode/replay";
 import { type Particles, initialPositions, velocityAt } from "../replay/tracers";
 
+/** Cells per particle. */
+const CELLS = 1.5;
+
 export class Dye implements Particles {
   private readonly places: Float32Array;
 
   /** `replay` is the present state, as one frame. */
   constructor(public replay: Replay) {
-    this.places = initialPositions(...replay.header.size);
+    this.places = initialPositions(...replay.header.size, CELLS);
   }
 
   at(): Float32Array {

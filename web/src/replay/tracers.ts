@@ -59,8 +59,8 @@ export class Tracers implements Particles {
 }
 
 /** Quasirandom positions: the additive recurrence of the plastic number (M. Roberts, 2018). */
-export function initialPositions(width: number, height: number): Float32Array {
-  const count = Math.min(MAX_COUNT, Math.round((width * height) / CELLS_PER_PARTICLE));
+export function initialPositions(width: number, height: number, cells = CELLS_PER_PARTICLE): Float32Array {
+  const count = Math.min(MAX_COUNT, Math.round((width * height) / cells));
   const plastic = 1.324717957244746;
   return Float32Array.from({ length: 2 * count }, (_, i) => {
     const share = (0.5 + ((i >> 1) + 1) / plastic ** (1 + (i & 1))) % 1;
