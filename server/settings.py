@@ -94,6 +94,8 @@ class Settings(BaseSettings):
     """Days for which an ended run keeps checkpoints beside its last one."""
     keep_renderings: float = Field(default=90.0, ge=0.0)
     """Days for which replays, pictures and films are kept; a request makes them again."""
+    keep_poses: float = Field(default=inf, ge=0.0)
+    """Days after the end of its runs for which a replaced elite keeps its pose stream."""
     keep_logs: float = Field(default=inf, ge=0.0)
     """Days for which the log of an ended run is kept."""
     keep_device_use: float = Field(default=inf, ge=31.0)

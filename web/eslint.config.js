@@ -11,11 +11,11 @@ const LAYERS = [
   ["ui"],
   ["charts"],
   ["replay", "publish", "simulate"],
-  ["breeding"],
+  ["breeding", "offline"],
   ["archive", "creature"],
   ["run"],
   ["sweeps", "tank"],
-  ["compare", "new-run", "runs", "settings", "shares", "tree", "workers"],
+  ["compare", "new-run", "runs", "saved", "settings", "shares", "tree", "workers"],
   ["app"],
 ];
 

@@ -3,15 +3,17 @@
 import json
 from collections.abc import Callable
 
+from microcosmos.viz.card import loop, preview
 from microcosmos.viz.film import gif, mp4
 from microcosmos.viz.replay_file import Replay, read_replay
-from microcosmos.viz.strip import preview, strip
+from microcosmos.viz.strip import strip
 from server.renderings import storage as renderings
 from server.services.services import Services
 from server.tables import (
     AUDIT,
     EVALUATION,
     GIF,
+    LOOP,
     MEASUREMENT,
     MP4,
     PREVIEW,
@@ -24,6 +26,7 @@ PICTURES: dict[str, Callable[[Replay], bytes]] = {
     PREVIEW: preview,
     GIF: gif,
     MP4: mp4,
+    LOOP: loop,
 }
 
 

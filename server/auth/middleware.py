@@ -12,6 +12,7 @@ from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from ..core.errors import ProblemError, problem_response
+from ..core.security_headers import SHARED_FILE
 from ..settings import LOOPBACK
 from . import cookies
 from .authenticate import Authenticator
@@ -29,7 +30,7 @@ class PrincipalMiddleware:
     """Sets `request.state.principal`, or None with `request.state.refuse` for the reason.
 
     Without tokens, Host and Origin must be the server's own. That keeps out pages of other
-    sites, also those whose name resolves to this machine.
+    sites, also those whose name resolves to this machine. They may read files of shares.
     """
 
     def __init__(
@@ -54,8 +55,10 @@ class PrincipalMiddleware:
         """Set the principal; return a response if the application must not respond itself."""
         if not self.needs_token:
             _refuse_foreign_host(request.headers)
-            _refuse_foreign_origin(request.headers)
         path, method = request.scope["path"], request.scope["method"]
+        public = method in SAFE and SHARED_FILE.fullmatch(path)
+        if not self.needs_token and not public:
+            _refuse_foreign_origin(request.headers)
         request.state.principal = request.state.share = None
         if not path.startswith("/api/") and path != METRICS:
             return await self._page(request)

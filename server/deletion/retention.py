@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from datetime import datetime
 
-from sqlalchemy import ColumnElement, delete, select
+from sqlalchemy import ColumnElement, delete, select, update
 from sqlalchemy.orm import Session, aliased
 
 from ..auth.device_use import forget_device_time
@@ -12,7 +12,7 @@ from ..core.database import ago
 from ..renderings.responses import ON_REQUEST
 from ..services.services import Services
 from ..storage.garbage import discard
-from ..tables import CHECKPOINT, TERMINAL, Artifact, LogEntry, Run
+from ..tables import CHECKPOINT, TERMINAL, Artifact, Creature, Elite, LogEntry, Run
 
 DAY = 86_400.0
 ROWS_PER_TRANSACTION, STEPS = 500, 200
@@ -24,6 +24,7 @@ def expire(services: Services) -> None:
     for keep, step in (
         (settings.keep_checkpoints, expire_checkpoints),
         (settings.keep_renderings, expire_renderings),
+        (settings.keep_poses, expire_poses),
         (settings.keep_logs, expire_logs),
         (settings.keep_device_use, forget_device_time),
     ):
@@ -52,6 +53,24 @@ def expire_checkpoints(session: Session, before: datetime) -> int:
 def expire_renderings(session: Session, before: datetime) -> int:
     """Delete old renderings that the first request makes again."""
     return _delete(session, Artifact.kind.in_(ON_REQUEST), Artifact.created_at < before)
+
+
+def expire_poses(session: Session, before: datetime) -> int:
+    """Delete pose streams of creatures that are elites nowhere, once their runs have ended.
+
+    A request makes them again, from a replay.
+    """
+    later, run = aliased(Elite), aliased(Run)
+    of_cell = (later.run_id == Elite.run_id) & (later.cell == Elite.cell)
+    replaced = select(later.cell).where(of_cell, later.generation > Elite.generation).exists()
+    active = run.finished_at.is_(None) | (run.finished_at >= before)
+    of_creature = select(Elite.cell).join(run, run.id == Elite.run_id)
+    needed = of_creature.where(Elite.creature == Creature.sha256, ~replaced | active).exists()
+    once = select(Elite.cell).where(Elite.creature == Creature.sha256).exists()
+    due = select(Creature.sha256).where(Creature.poses.is_not(None), once, ~needed)
+    found = list(session.scalars(due.limit(ROWS_PER_TRANSACTION)))
+    session.execute(update(Creature).where(Creature.sha256.in_(found)).values(poses=None))
+    return len(found)
 
 
 def expire_logs(session: Session, before: datetime) -> int:

@@ -12,6 +12,8 @@ from microcosmos.archive.phylogeny import NONE, Birth
 
 from ..archives.elites import recorded_in
 from ..core.errors import ProblemError
+from ..creatures import lineage
+from ..creatures.storage import MAX_DEPTH
 from ..tables import Creature, Elite, InitialCreature, Parent, Run
 
 NAMES_PER_QUERY = 500
@@ -66,6 +68,14 @@ def relatives(session: Session, sha: str) -> list[Birth]:
     above = _closure(session, [sha], _parents)
     below = _closure(session, [sha], _children)
     return _read(session, dict.fromkeys((*above, *below)))
+
+
+def shared(session: Session, row: Creature) -> list[Birth]:
+    """Return a creature and the ancestors that a share shows, without their runs."""
+    above = lineage.ancestors(session, row, MAX_DEPTH).items
+    stored = [one.creature for one in above if one.stored]
+    found = _read(session, [row.sha256, *stored])
+    return [birth._replace(run=None, lost=NONE) for birth in found]
 
 
 def refuse_large(count: int) -> None:

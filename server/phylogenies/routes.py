@@ -16,7 +16,7 @@ from microcosmos.archive.phylogeny import Birth, Phylogeny, alife_csv, newick, p
 from microcosmos.version import VERSION
 
 from ..archives.shown import refuse_table
-from ..auth.authorize import MAY_READ
+from ..auth.authorize import MAY_READ, MAY_READ_SHARED, ShareAccessDep
 from ..core.answers import respond, tag_of
 from ..core.api import sends
 from ..creatures.deps import Sha, find_creature
@@ -119,11 +119,14 @@ def _run_reader(form: Form) -> Callable[..., Awaitable[Response]]:
 
 
 def _creature_reader(form: Form) -> Callable[..., Awaitable[Response]]:
-    async def read(request: Request, sha: Sha, services: ServicesDep) -> Response:
+    async def read(
+        request: Request, sha: Sha, share: ShareAccessDep, services: ServicesDep
+    ) -> Response:
         def make() -> bytes:
             with services.sessions.read() as session:
-                find_creature(session, sha)
-                return form.write(arranged(session, births.relatives(session, sha)))
+                row = find_creature(session, sha, share)
+                tree = births.shared(session, row) if share else births.relatives(session, sha)
+                return form.write(arranged(session, tree))
 
         # Any run may add a descendant, so the bytes themselves are the tag.
         content = await run_in_threadpool(make)
@@ -134,7 +137,7 @@ def _creature_reader(form: Form) -> Callable[..., Awaitable[Response]]:
     read.__name__ = f"read_creature_phylogeny{form.ending.replace('.', '_')}"
     read.__doc__ = (
         f"Return a creature with all its ancestors and descendants, of any runs, as "
-        f"{form.description}."
+        f"{form.description}. A share shows ancestors alone."
     )
     return read
 
@@ -142,6 +145,10 @@ def _creature_reader(form: Form) -> Callable[..., Awaitable[Response]]:
 OTHERS: dict[int | str, dict[str, Any]] = {304: {"description": "Unchanged"}, 404: {}}
 
 for form in FORMS:
-    answers = {**sends(form.media_type, OTHERS), "dependencies": [MAY_READ]}
-    router.get(f"/runs/{{run_id}}/phylogeny{form.ending}", **answers)(_run_reader(form))
-    router.get(f"/creatures/{{sha}}/phylogeny{form.ending}", **answers)(_creature_reader(form))
+    answers = sends(form.media_type, OTHERS)
+    for of, guard, reader in (
+        ("/runs/{run_id}", MAY_READ, _run_reader),
+        ("/creatures/{sha}", MAY_READ_SHARED, _creature_reader),
+    ):
+        path = f"{of}/phylogeny{form.ending}"
+        router.get(path, **answers, dependencies=[guard])(reader(form))

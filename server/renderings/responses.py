@@ -12,6 +12,7 @@ from ..tables import (
     AUDIT,
     EVALUATION,
     GIF,
+    LOOP,
     MEASUREMENT,
     MP4,
     PREVIEW,
@@ -29,10 +30,11 @@ MEDIA_TYPES = {
     PREVIEW: "image/png",
     GIF: "image/gif",
     MP4: "video/mp4",
+    LOOP: "video/mp4",
     MEASUREMENT: "application/json",
     EVALUATION: columns.MEDIA_TYPE,
 }
-ON_REQUEST = (REPLAY, STRIP, PREVIEW, GIF, MP4, EVALUATION)
+ON_REQUEST = (REPLAY, STRIP, PREVIEW, LOOP, GIF, MP4, EVALUATION)
 """Renderings that the first request for them enqueues. Audits and measurements are ordered."""
 
 

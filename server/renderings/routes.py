@@ -14,7 +14,7 @@ from ..core.errors import ProblemError
 from ..core.static_files import FRESH, IMMUTABLE
 from ..creatures.deps import CreatureDep
 from ..services.services import ServicesDep, SessionDep
-from ..tables import AUDIT, EVALUATION, MEASUREMENT, PREVIEW, REPLAY
+from ..tables import AUDIT, EVALUATION, LOOP, MEASUREMENT, PREVIEW, REPLAY
 from . import poses, storage
 from .responses import MEDIA_TYPES, ON_REQUEST, enqueued, existing
 from .schemas import Measurement, Rendering, Verdict
@@ -59,7 +59,7 @@ for kind in ON_REQUEST:
     router.get(
         f"/{kind}",
         **sends(MEDIA_TYPES[kind], PENDING),
-        dependencies=[MAY_READ if kind == PREVIEW else MAY_READ_SHARED],
+        dependencies=[MAY_READ if kind in (PREVIEW, LOOP) else MAY_READ_SHARED],
     )(_reader(kind))
 
 router.get(

@@ -21,6 +21,7 @@ from ..storage.garbage import discard
 from ..tables import (
     AUDIT,
     GIF,
+    LOOP,
     MP4,
     PREVIEW,
     REPLAY,
@@ -32,7 +33,8 @@ from ..tables import (
 
 ENGINE_ERROR = re.compile(r"^[\w.]*(?:CreatureError|Missing|Broken): ")
 """Prefix to remove from the engine's own errors; others keep their class name."""
-NOUNS = {AUDIT: "audit", STRIP: "picture", PREVIEW: "picture", GIF: "film", MP4: "film"}
+NOUNS = {AUDIT: "audit", STRIP: "picture", PREVIEW: "picture"}
+NOUNS |= {GIF: "film", MP4: "film", LOOP: "film"}
 VERSIONS = {REPLAY: REPLAY_VERSION}
 """Versions of formats that have changed: a rendering in an earlier one does not count."""
 ANONYMOUS_LIMIT = 8

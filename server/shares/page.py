@@ -1,5 +1,6 @@
 """The page of a share, with the tags from which other sites make a preview."""
 
+import re
 from html import escape
 
 from fastapi import APIRouter, Request
@@ -7,23 +8,53 @@ from fastapi.responses import HTMLResponse, Response
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
+from microcosmos.viz.card import FILM, PICTURE
+
 from ..archives import elites
 from ..core import static_files
 from ..core.errors import ProblemError
-from ..services.services import SessionDep
-from ..tables import Creature, Run, Share
-from .access import find_live
+from ..core.security_headers import POLICY
+from ..renderings import storage as renderings
+from ..services.services import Services, SessionDep
+from ..tables import LOOP, PREVIEW, Creature, Run, Share
+from . import previews
+from .access import SLUG, find_live
 
-WIDTH, HEIGHT = 1200, 630
-"""Size of the preview: most sites cut pictures to it."""
+ADDRESS = re.compile(
+    r"(?P<server>https?://[a-zA-Z0-9.-]+(:[0-9]{1,5})?(/[a-zA-Z0-9._~-]+)*)"
+    rf"/s/(?P<slug>{SLUG.pattern})(/creatures/[0-9a-f]{{64}})?/?"
+)
+"""The address of a share, or of a creature in one, made of characters without a meaning in a
+Content Security Policy."""
+
+EMBEDDABLE = POLICY.replace("frame-ancestors 'none'", "frame-ancestors *")
 
 router = APIRouter(include_in_schema=False)
 
 
+@router.get("/import")
+def read_import_page(share: str = "") -> Response:
+    """Return the page that imports from an address; it may request that share's file alone."""
+    index = static_files.BUILT / "index.html"
+    if not index.is_file():
+        return HTMLResponse(static_files.MISSING, 503)
+    found = ADDRESS.fullmatch(share)
+    headers = dict(static_files.FRESH)
+    if found:
+        file = f"{found['server']}/api/v1/shares/{found['slug']}/creature.json"
+        headers["Content-Security-Policy"] = f"{POLICY}; connect-src 'self' {file}"
+    return HTMLResponse(index.read_text(), headers=headers)
+
+
 @router.get("/s/{slug}")
 @router.get("/s/{slug}/{rest:path}")
-def read_share_page(request: Request, slug: str, session: SessionDep) -> Response:
-    """Return the page itself, which explains a missing, expired or revoked share."""
+def read_share_page(
+    request: Request, slug: str, session: SessionDep, rest: str = ""
+) -> Response:
+    """Return the page itself, which explains a missing, expired or revoked share.
+
+    Other sites may show `embed` in a frame: it has nothing to click but a link and a player.
+    """
     if not (static_files.BUILT / "index.html").is_file():
         return HTMLResponse(static_files.MISSING, 503)
     index = (static_files.BUILT / "index.html").read_text()
@@ -32,8 +63,12 @@ def read_share_page(request: Request, slug: str, session: SessionDep) -> Respons
     except ProblemError as error:
         return HTMLResponse(index, error.problem.status)
     request.state.listed = share.listed
-    found = tags(public_address(request), share, description(session, share))
-    return HTMLResponse(with_tags(index, found))
+    headers = {"Content-Security-Policy": EMBEDDABLE} if rest == "embed" else None
+    services: Services = request.app.state.services
+    previews.order(services, session, share.cover, anonymous=True)
+    has_film = renderings.find(session, share.cover, LOOP) is not None
+    found = tags(public_address(request), share, description(session, share), has_film)
+    return HTMLResponse(with_tags(index, found), headers=headers)
 
 
 def public_address(request: Request) -> str:
@@ -51,17 +86,30 @@ def description(session: Session, share: Share) -> str:
         count = session.scalars(select(func.count()).select_from(there)).one()
         text = f"An archive of {count:,} swimmers after {share.generation:,} generations."
     else:
-        measured = session.get_one(Creature, share.cover).measured
-        distance = (measured or {}).get("measures", {}).get("displacement")
-        text = "A creature of Microcosmos."
-        if distance is not None:
-            text = f"An evolved swimmer that travels {distance:.3g} cells."
+        text = creature_description(session.get_one(Creature, share.cover))
     return text + by + licence
 
 
-def tags(base: str, share: Share, description: str) -> dict[str, str]:
+def creature_description(creature: Creature) -> str:
+    """Return what a creature is, and its scale as far as it was measured."""
+    measures = (creature.measured or {}).get("measures", {})
+    length, distance = measures.get("total_length"), measures.get("displacement")
+    if distance is None:
+        return "A creature of Microcosmos."
+    scale = "" if length is None else f", {length:.3g} cells long,"
+    return f"An evolved swimmer{scale} that travels {distance:.3g} cells."
+
+
+def tags(base: str, share: Share, description: str, has_film: bool) -> dict[str, str]:
     """Return the names and contents of Open Graph's and Twitter's tags."""
-    picture = f"{base}/api/v1/shares/{share.slug}/preview.png"
+    files = f"{base}/api/v1/shares/{share.slug}"
+    picture = f"{files}/{PREVIEW}"
+    film = {
+        "og:video": f"{files}/{LOOP}",
+        "og:video:type": "video/mp4",
+        "og:video:width": str(FILM[0]),
+        "og:video:height": str(FILM[1]),
+    }
     return {
         "og:site_name": "Microcosmos",
         "og:type": "website",
@@ -70,9 +118,10 @@ def tags(base: str, share: Share, description: str) -> dict[str, str]:
         "og:description": description,
         "og:image": picture,
         "og:image:type": "image/png",
-        "og:image:width": str(WIDTH),
-        "og:image:height": str(HEIGHT),
+        "og:image:width": str(PICTURE[0]),
+        "og:image:height": str(PICTURE[1]),
         "og:image:alt": f"{share.title}: a swimmer over the flow that it makes",
+        **(film if has_film else {}),
         "twitter:card": "summary_large_image",
         "twitter:title": share.title,
         "twitter:description": description,

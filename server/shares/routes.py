@@ -1,33 +1,31 @@
 """Routes of shares: publish, read, list, revoke."""
 
-import logging
-from typing import Annotated
+from collections.abc import Callable
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from pydantic import StringConstraints
-from redis import RedisError
 from sqlalchemy import Select, select
 from sqlalchemy.orm import Session
 
 from ..auth.authorize import PUBLIC, Reader, Writer, authorize_owner
 from ..auth.principal import ADMIN
-from ..core.api import sends
+from ..core.api import Answers, sends
 from ..core.database import now
 from ..core.errors import ProblemError
 from ..core.json_body import json_route
 from ..core.paging import MOMENT, Order
+from ..creatures import storage as creatures
 from ..creatures.deps import find_creature
 from ..renderings import responses
-from ..renderings import storage as renderings
 from ..renderings.schemas import Rendering
-from ..services.services import Services, ServicesDep, SessionDep
+from ..services.services import ServicesDep, SessionDep
 from ..storage.garbage import discard
-from ..tables import PREVIEW, Share
-from . import access, archive_files, publishing
+from ..tables import LOOP, PREVIEW, Share
+from . import access, archive_files, previews, publishing
 from .page import public_address
-from .schemas import ShareCreate, SharePage, ShareRead
+from .schemas import Digest, ShareCreate, SharePage, ShareRead
 
-log = logging.getLogger(__name__)
 BODY_BYTES = 1 << 16
 Limit = Annotated[int, Query(ge=1, le=200)]
 Slug = Annotated[str, Path(pattern=f"^{access.SLUG.pattern}$")]
@@ -51,20 +49,11 @@ def publish(
         read = share_read(request, session, share)
     if share.run_id:
         archive_files.copy_checkpoint(services, share)
-    _enqueue_preview(services, share.cover)
+    with services.sessions.read() as session:
+        previews.order(services, session, share.cover)
     response.status_code = 201 if new else 200
     response.headers["Location"] = f"/api/v1/shares/{share.slug}"
     return read
-
-
-def _enqueue_preview(services: Services, cover: str) -> None:
-    """Enqueue the picture, so that it exists when the first visitor comes."""
-    try:
-        with services.sessions.read() as session:
-            if renderings.find(session, cover, PREVIEW) is None:
-                renderings.enqueue(services, cover, PREVIEW)
-    except (RedisError, renderings.RenderingFailed) as error:
-        log.warning("The preview of %s is left to its first visitor: %s", cover, error)
 
 
 def share(request: Request, slug: Slug, session: SessionDep) -> Share:
@@ -74,7 +63,7 @@ def share(request: Request, slug: Slug, session: SessionDep) -> Share:
 
 
 ShareDep = Annotated[Share, Depends(share)]
-PNG = sends("image/png", {202: {"model": Rendering}})
+PENDING: Answers = {202: {"model": Rendering}}
 
 
 @router.get("/shares/{slug}", dependencies=[PUBLIC])
@@ -82,14 +71,39 @@ def read_share(request: Request, share: ShareDep, session: SessionDep) -> ShareR
     return share_read(request, session, share)
 
 
-@router.get("/shares/{slug}/preview.png", **PNG, dependencies=[PUBLIC])
-def read_preview(
-    request: Request, share: ShareDep, session: SessionDep, services: ServicesDep
-) -> Response:
-    """Return a picture of the creature, or of the best of the archive; 202 while it is made."""
-    cover = find_creature(session, share.cover)
-    found = responses.existing(request, cover, session, services, PREVIEW)
-    return found or responses.enqueued(services, share.cover, PREVIEW, anonymous=True)
+@router.get("/shares/{slug}/creature.json", dependencies=[PUBLIC])
+def read_shared_creature(
+    share: ShareDep, session: SessionDep, creature: Digest | None = None
+) -> dict[str, Any]:
+    """Return the file of a creature with its ancestors, for import; of an archive the best.
+
+    Pages of other installations may read it.
+    """
+    live, name = access.LiveShare(share), creature or share.cover
+    live.refuse_unless_holds(session, name)
+    return live.licensed(creatures.with_ancestors(session, find_creature(session, name)))
+
+
+def _preview_reader(kind: str, noun: str) -> Callable[..., Response]:
+    def read(
+        request: Request, share: ShareDep, session: SessionDep, services: ServicesDep
+    ) -> Response:
+        cover = find_creature(session, share.cover)
+        found = responses.existing(request, cover, session, services, kind)
+        return found or responses.enqueued(services, share.cover, kind, anonymous=True)
+
+    read.__name__ = f"read_share_{kind.replace('.', '_')}"
+    read.__doc__ = (
+        f"Return {noun} of the creature, or of the best of the archive; 202 while it is made."
+    )
+    return read
+
+
+for kind, noun in ((PREVIEW, "a picture"), (LOOP, "a looping film")):
+    sent = sends(responses.MEDIA_TYPES[kind], PENDING)
+    router.get(f"/shares/{{slug}}/{kind}", **sent, dependencies=[PUBLIC])(
+        _preview_reader(kind, noun)
+    )
 
 
 @router.get("/shares")

@@ -5,6 +5,7 @@ from .artifacts import (
     CHECKPOINT,
     EVALUATION,
     GIF,
+    LOOP,
     MEASUREMENT,
     MP4,
     PREVIEW,

@@ -11,7 +11,8 @@ from .base import Base, Sha256
 
 CHECKPOINT = "checkpoint"
 REPLAY, AUDIT, STRIP, GIF, MP4 = "replay", "audit", "strip.png", "film.gif", "film.mp4"
-PREVIEW, MEASUREMENT, EVALUATION = "preview.png", "measurement", "evaluation"
+PREVIEW, LOOP = "preview.png", "loop.mp4"
+MEASUREMENT, EVALUATION = "measurement", "evaluation"
 """Renderings of a creature, by their names in the API."""
 PUBLISHED = "published"
 """The archive file of a share."""

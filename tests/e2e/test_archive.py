@@ -125,7 +125,7 @@ def test_colours_and_axes_offer_every_recorded_measure(page, searched):
     expect(page.get_by_role("img", name=re.compile("^Age"))).to_be_visible()
     page.get_by_text("More", exact=True).click()
     page.get_by_label("Palette").select_option("cividis")
-    page.get_by_label("Across", exact=True).select_option("path_length")
+    page.get_by_role("combobox", name="Across", exact=True).select_option("path_length")
     page.wait_for_url(re.compile("x=path_length"))
     page.get_by_label("Symmetry, from").fill("8")
     page.wait_for_url(re.compile(r"only\.symmetry=8-"))

@@ -42,13 +42,13 @@ def watch_it_end(page: Page) -> None:
 
 
 def look_along_other_axes(page: Page) -> None:
-    page.get_by_label("Across", exact=True).select_option("path_length")
-    page.get_by_label("Up", exact=True).select_option(label="Fitness")
+    page.get_by_role("combobox", name="Across", exact=True).select_option("path_length")
+    page.get_by_role("combobox", name="Up", exact=True).select_option(label="Fitness")
     assert "x=path_length&y=fitness" in page.url
     expect(page.get_by_text("Path length (cells)")).to_be_visible()
     with page.expect_response(re.compile("measures=path_length")):
         page.reload()
-    expect(page.get_by_label("Across", exact=True)).to_have_value("path_length")
+    expect(page.get_by_role("combobox", name="Across", exact=True)).to_have_value("path_length")
 
 
 def open_the_best(page: Page) -> None:

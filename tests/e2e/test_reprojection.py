@@ -23,7 +23,7 @@ def test_a_run_is_re_projected_onto_measures_and_components(shared, page: Page):
     figures = page.locator(".reprojection")
     expect(figures).to_contain_text(filled("curvature_mean,mach"))
     for name, axis in (("Across", "pc1"), ("Up", "pc2")):
-        page.get_by_label(name, exact=True).select_option(axis)
+        page.get_by_role("combobox", name=name, exact=True).select_option(axis)
     expect(figures).to_contain_text(filled("pc1,pc2"))
     expect(figures).to_contain_text("of the variance)")
     the_map(page).focus()

@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from rich.console import Console
 from typer import Argument, Option
 
+from ..client import ServerError
 from ..spec import field_path
 from ..version import VERSION
 
@@ -95,7 +96,7 @@ def failing(subject: str | Path = "") -> Iterator[None]:
         yield
     except ValidationError as error:
         fail("\n".join(f"{prefix}{message(found)}" for found in error.errors()))
-    except (ValueError, ImportError, OSError) as error:
+    except (ValueError, ImportError, OSError, ServerError) as error:
         fail(f"{prefix}{error}")
 
 

@@ -27,7 +27,7 @@ from .app import CACHE, CreaturePath, OtherDevice, Set, app, console, fail, fail
 from .cluster import Certificate
 from .initial import From, with_initial
 from .modules import Modules, load_modules
-from .specs import changed, presets, read_spec, with_generations
+from .specs import changed, file_stem, read_spec, with_generations
 
 Choices = Annotated[
     Path | None,
@@ -41,7 +41,9 @@ Choices = Annotated[
 
 @app.command()
 def evolve(
-    spec: Annotated[str, Argument(help="Spec file, or name of a preset.")],
+    spec: Annotated[
+        str, Argument(help="Spec file, name of a preset, or address of a shared archive.")
+    ],
     archive: Annotated[
         Path | None, Option("--out", help="Archive file; default: beside the spec.")
     ] = None,
@@ -70,8 +72,7 @@ def evolve(
     chosen = changed(read_spec(spec), settings or [])
     if generations is not None:
         chosen = with_generations(chosen, generations)
-    stem = Path(spec.replace("/", "-") if spec in presets() else spec)
-    path = archive or stem.with_suffix(".h5")
+    path = archive or file_stem(spec).with_suffix(".h5")
     evaluations = prepare_run(chosen, path)
     from ..device import device_kind
 

@@ -1,12 +1,13 @@
 """Commands for imports, shares and tokens."""
 
-from pathlib import Path
 from typing import Annotated, Any
+from urllib.parse import urlsplit
 
 import typer
 from typer import Argument, Option
 
 from ..client import Client
+from ..client.connection import LOOPBACK
 from .app import app
 from .remote import SHARING, Ids, Json, say, server_command, show, show_table
 
@@ -18,9 +19,13 @@ Days = Annotated[float | None, Option(help="Days until it expires; default: neve
 
 @server_command(SHARING, "import")
 def import_(
-    client: Client, files: Annotated[list[Path], Argument(exists=True, dir_okay=False)]
+    client: Client,
+    files: Annotated[
+        list[str],
+        Argument(metavar="FILE|URL...", help="Creature files, or addresses of shares."),
+    ],
 ) -> None:
-    """Import creature files into a server, which verifies their hashes."""
+    """Import creatures from files or shares into a server, which verifies their hashes."""
     for file in files:
         print(client.import_creature(file).sha)
 
@@ -48,6 +53,11 @@ def share(
         show(made.record)
         return
     print(made.url)
+    if urlsplit(made.url).hostname in LOOPBACK:
+        say(
+            "Nobody else can open this link: set MICROCOSMOS_PUBLIC_URL on the server.",
+            "yellow",
+        )
     say(f"To revoke it: microcosmos unshare {made.slug}")
 
 

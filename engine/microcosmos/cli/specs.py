@@ -1,4 +1,4 @@
-"""Specs from files or presets, and fields set by their dotted paths."""
+"""Specs from files, presets or shares, and fields set by their dotted paths."""
 
 import json
 from collections.abc import Sequence
@@ -7,11 +7,15 @@ from typing import Any
 
 import typer
 
+from ..client import shared
 from ..spec import EXPERIMENTS, Evolution, Spec, parse
 from .app import fail, failing
 
 
 def read_spec(name: str) -> Spec:
+    if address := shared.address(name):
+        with failing(name):
+            return parse(shared.spec(address))
     path = Path(name)
     if path.is_file():  # A folder may have the name of a preset.
         with failing(path):
@@ -20,6 +24,13 @@ def read_spec(name: str) -> Spec:
     if found is None:
         fail(f"SPEC needs a file, or one of the presets {', '.join(presets())}; got {name}")
     return found
+
+
+def file_stem(name: str) -> Path:
+    """Return the path, without its ending, of the archive of a spec's run."""
+    if address := shared.address(name):
+        return Path(f"share-{address.slug[:8]}")
+    return Path(name.replace("/", "-") if name in presets() else name)
 
 
 def with_generations(spec: Spec, generations: int) -> Spec:

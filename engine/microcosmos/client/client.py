@@ -12,7 +12,7 @@ import httpx
 
 from ..archive import creature_h5
 from ..archive.file import HDF5
-from . import specs
+from . import shared, specs
 from .connection import Connection
 from .creature import Creature
 from .errors import NotFound
@@ -178,8 +178,14 @@ class Client:
         return found
 
     def import_creature(self, file: Mapping[str, Any] | str | Path) -> Creature:
-        """Import a creature, or its file in JSON or HDF5; the server verifies the hash."""
-        document = dict(file) if isinstance(file, Mapping) else creature_file(Path(file))
+        """Import a creature, its file in JSON or HDF5, or the address of a share.
+
+        The server verifies the hash.
+        """
+        if isinstance(file, str) and (address := shared.address(file)):
+            document = shared.creature(address)
+        else:
+            document = dict(file) if isinstance(file, Mapping) else creature_file(Path(file))
         made = self.connection.send("POST", "creatures", document, key=str(uuid4()))
         return Creature(self.connection, made["creature"])
 

@@ -1,10 +1,11 @@
-"""Specs to submit: an object, a file, or a preset by its name."""
+"""Specs to submit: an object, a file, a preset by its name, or a shared run by its address."""
 
 import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from . import shared
 from .connection import Connection
 
 
@@ -16,6 +17,8 @@ def document(connection: Connection, spec: Any) -> dict[str, Any]:
         return spec.model_dump(mode="json")
     if not isinstance(spec, str | Path):
         raise TypeError(f"`spec` needs a spec, a file or a preset's name; got {spec!r:.80}")
+    if address := shared.address(str(spec)):
+        return shared.spec(address)
     if Path(spec).is_file():
         return read(Path(spec))
     return preset(connection, str(spec))

@@ -61,7 +61,11 @@ def mp4(replay: Replay, *, width: int = 480, rate: int = 25, **options: Any) -> 
     """
     if not 1 <= rate <= 120:
         raise ValueError(f"`rate` must be from 1 to 120 frames a second, got {rate}.")
-    pictures = (frame(replay, k, width=width, **options) for k in range(replay.frames))
+    return film((frame(replay, k, width=width, **options) for k in range(replay.frames)), rate)
+
+
+def film(pictures: Iterator[np.ndarray], rate: int) -> bytes:
+    """Return a film in H.264 of RGB pictures of one size, even in both directions."""
     if ENCODER not in require("av").codecs_available:
         raise ValueError(
             f"An MP4 needs PyAV with {ENCODER}, which this one was built without; "

@@ -72,32 +72,3 @@ def encoded(picture: np.ndarray) -> bytes:
     out = io.BytesIO()
     require("PIL.Image").fromarray(picture).save(out, "PNG", optimize=True)
     return out.getvalue()
-
-
-WIDTH, HEIGHT = 1200, 630
-"""Pixels, to which most sites cut pictures."""
-
-MOMENT = 2 / 3
-"""Share of the replay by which the wake has formed."""
-
-
-def preview(replay: Replay, theme: str = "light") -> bytes:
-    """Draw one moment as a PNG of 1200 × 630 pixels, the creature in the middle.
-
-    It is cut from the periodic box, or shows the whole box if that would cut the creature.
-    """
-    number = round(MOMENT * (replay.frames - 1))
-    wide, high = replay.size
-    fills = max(WIDTH, HEIGHT * wide / high)
-    reach = np.ptp(replay.positions[number], axis=0) * fills / wide
-    width = fills if (reach < (WIDTH, HEIGHT)).all() else min(WIDTH, HEIGHT * wide / high)
-    even = max(16, 2 * int(np.ceil(width / 2)))
-    picture = frame(replay, number, width=even, theme=theme, follow=True)
-    sheet = np.full((HEIGHT, WIDTH, 3), theme_of(theme).halo, np.uint8)
-    rows, columns = picture.shape[:2]
-    high, wide = min(rows, HEIGHT), min(columns, WIDTH)
-    top, left = (HEIGHT - high) // 2, (WIDTH - wide) // 2
-    above, beside = (rows - high) // 2, (columns - wide) // 2
-    cut = picture[above : above + high, beside : beside + wide]
-    sheet[top : top + high, left : left + wide] = cut
-    return encoded(sheet)

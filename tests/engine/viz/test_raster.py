@@ -1,4 +1,4 @@
-"""Still pictures: frames, strips and previews as PNG."""
+"""Still pictures: frames and strips as PNG."""
 
 import io
 import sys
@@ -11,17 +11,7 @@ from PIL import Image
 from microcosmos.optional import require
 from microcosmos.viz.raster import THEMES, coverage, distance, frame, view
 from microcosmos.viz.replay_file import read_replay
-from microcosmos.viz.strip import (
-    GAP,
-    HEIGHT,
-    LETTERS,
-    MOMENT,
-    WIDTH,
-    moments,
-    png,
-    preview,
-    strip,
-)
+from microcosmos.viz.strip import GAP, LETTERS, moments, png, strip
 
 pytestmark = pytest.mark.fast
 
@@ -246,26 +236,3 @@ def test_a_library_that_is_missing_is_named_with_what_installs_it(monkeypatch):
     reason = r'PIL is needed: pip install "microcosmos\[figures\]"'
     with pytest.raises(ImportError, match=reason):
         require("PIL")
-
-
-@pytest.mark.parametrize("theme", list(THEMES))
-def test_a_preview_is_the_middle_of_a_frame_that_follows_the_creature(swimming, theme):
-    picture = opened(preview(swimming, theme))
-    assert picture.shape == (HEIGHT, WIDTH, 3)
-    number = round(MOMENT * (swimming.frames - 1))
-    whole = frame(swimming, number, width=WIDTH, theme=theme, follow=True)
-    above = (len(whole) - HEIGHT) // 2
-    np.testing.assert_array_equal(picture, whole[above : above + HEIGHT])
-
-
-def test_a_creature_that_would_be_cut_is_shown_in_all_of_its_box(swimming):
-    upright = replace(swimming, positions=swimming.positions[..., ::-1] * [1, 2])
-    picture = opened(preview(upright))
-    halo = THEMES["light"].halo
-    assert picture.shape == (HEIGHT, WIDTH, 3)
-    assert (picture[:, 0] == halo).all(), "beside the box there is nothing"
-    assert (picture[:, -1] == halo).all()
-    wide = HEIGHT * 32 // 24
-    whole = frame(upright, 20, width=wide, follow=True)
-    left = (WIDTH - wide) // 2
-    np.testing.assert_array_equal(picture[:, left : left + wide], whole)

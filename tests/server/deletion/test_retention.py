@@ -9,6 +9,7 @@ from sqlalchemy import select
 
 from microcosmos.archive import creature
 from microcosmos.spec import parse
+from server.attempts.claim import claim
 from server.auth.device_use import count_device_time, device_seconds
 from server.core.database import now
 from server.deletion import retention
@@ -23,6 +24,7 @@ from server.tables import (
     REPLAY,
     USE_DAYS,
     Artifact,
+    Creature,
     DeviceUse,
     LogEntry,
     Run,
@@ -135,3 +137,36 @@ def test_old_events_go(services, run_id, expire):
     expire(keep_events=2.0)
     left = services.redis.xrange(services.events.stream)
     assert [fields[b"event"] for _, fields in left] == [b"1"]
+
+
+def test_replaced_elites_keep_their_pose_streams_while_they_are_due(
+    services, run_id, report, expire, age
+):
+    first, second = report(1, {0: 1.0, 1: 1.0}, poses=True), report(2, {0: 2.0}, poses=True)
+    names = [elite.creature for made in (first, second) for elite in made.elites]
+
+    def kept():
+        with services.sessions.read() as session:
+            rows = {
+                one.sha256: one.poses is not None for one in session.scalars(select(Creature))
+            }
+        return [rows[name] for name in names]
+
+    finish(services, run_id, first, second)
+    age(Run.finished_at, 10)
+    expire(keep_poses=11.0)
+    assert kept() == [True, True, True]
+    expire(keep_poses=9.0)
+    assert kept() == [False, True, True], "the first elite of cell 0 was replaced"
+
+
+def test_pose_streams_of_elites_in_other_runs_stay(services, run_id, report, expire, age):
+    old = [report(1, {0: 1.0}, poses=True), report(2, {0: 2.0}, poses=True)]
+    finish(services, run_id, *old)
+    age(Run.finished_at, 10)
+    other = submit(services, parse({"experiment": "quality-diversity"}))[0].id
+    claim(services, other, "worker").record(old[0], 1.0)
+    expire(keep_poses=0.0)
+    with services.sessions.read() as session:
+        poses = [one.poses for one in session.scalars(select(Creature))]
+    assert None not in poses

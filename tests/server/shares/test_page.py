@@ -6,6 +6,8 @@ import httpx
 import pytest
 
 from server.core import static_files
+from server.renderings import storage as renderings
+from server.tables import LOOP, PREVIEW
 
 INDEX = "<!doctype html><html><head><title>Microcosmos</title>\n</head><body></body></html>"
 HOSTILE = """</title><script>alert("x")</script>'&"""
@@ -39,6 +41,26 @@ def test_the_page_of_a_share_has_previews_for_other_sites(api, address, built, k
         assert name in answer.headers
 
 
+def test_a_film_is_named_once_it_exists(api, address, built, services, known):
+    slug = api.post("shares", json={"creature": known}).json()["slug"]
+    assert "og:video" not in api.get(f"{address}/s/{slug}").text
+    renderings.save(services, known, LOOP, b"MP4")
+    text = api.get(f"{address}/s/{slug}").text
+    film = f"{address}/api/v1/shares/{slug}/loop.mp4"
+    assert f'<meta property="og:video" content="{film}" />' in text
+    assert '<meta property="og:video:type" content="video/mp4" />' in text
+
+
+def test_a_lost_preview_is_ordered_again_by_its_next_visitor(
+    api, address, built, services, known
+):
+    slug = api.post("shares", json={"creature": known}).json()["slug"]
+    services.jobs.renderings.empty()
+    assert api.get(f"{address}/s/{slug}").status_code == 200
+    jobs = services.jobs.renderings.get_jobs()
+    assert [job.args for job in jobs] == [[known, PREVIEW], [known, LOOP]]
+
+
 def test_the_address_outside_is_what_the_settings_say(serve, built, known):
     asked = {"X-Forwarded-Host": "evil.example", "X-Forwarded-Proto": "https"}
     with serve(public_url="https://swim.example/lab/") as address, httpx.Client() as client:
@@ -50,6 +72,19 @@ def test_the_address_outside_is_what_the_settings_say(serve, built, known):
         assert (
             "evil.example" not in client.get(f"{address}/s/{share['slug']}", headers=asked).text
         )
+
+
+def test_other_sites_may_frame_the_embedded_page_alone(api, address, built, known):
+    slug = api.post("shares", json={"creature": known}).json()["slug"]
+    for path, ancestors in (
+        (f"s/{slug}/embed", "*"),
+        (f"s/{slug}", "'none'"),
+        (f"s/{slug}/embed/x", "'none'"),
+        ("s/none/embed", "'none'"),
+        ("embed", "'none'"),
+    ):
+        policy = api.get(f"{address}/{path}").headers["content-security-policy"]
+        assert policy.split("; ")[-1] == f"frame-ancestors {ancestors}", path
 
 
 def test_the_page_of_a_revoked_share_shows_nothing(api, address, built, known):

@@ -3,9 +3,10 @@
 import pytest
 
 from microcosmos.archive import file
+from microcosmos.client import Client, shared
 from server.attempts.claim import claim
 from server.renderings import storage as renderings
-from server.tables import PREVIEW, REPLAY
+from server.tables import LOOP, PREVIEW, REPLAY
 
 
 @pytest.fixture
@@ -90,14 +91,15 @@ def test_a_past_generation_is_shared_without_a_file(api, through, run_id, attemp
 def test_renderings_for_shares_wait_last_and_are_limited(
     through, services, archive, attempt, monkeypatch
 ):
-    monkeypatch.setattr(renderings, "ANONYMOUS_LIMIT", 2)
-    (cover,) = (job.args[0] for job in services.jobs.renderings.get_jobs())
+    monkeypatch.setattr(renderings, "ANONYMOUS_LIMIT", 3)
+    ordered = [job.args for job in services.jobs.renderings.get_jobs()]
     names = through(archive["slug"], f"runs/{archive['run']}/archive/history").json()
     for sha in names["creature"]:
         answer = through(archive["slug"], f"creatures/{sha}/poses")
         assert (answer.status_code, answer.json()) == (202, {"status": "rendering"})
     jobs = services.jobs.renderings.get_jobs()
-    assert [job.args for job in jobs] == [[cover, PREVIEW], [names["creature"][0], REPLAY]]
+    assert ordered == [[archive["cover"], PREVIEW], [archive["cover"], LOOP]]
+    assert [job.args for job in jobs] == [*ordered, [names["creature"][0], REPLAY]]
 
 
 def test_a_deleted_run_leaves_the_commons_until_restored(
@@ -118,3 +120,18 @@ def test_a_deleted_run_leaves_the_commons_until_restored(
     assert api.post(f"runs/{run_id}/restore").status_code == 200
     assert api.get("commons").json()["items"] == [share]
     assert through(share["slug"], film).status_code == 200
+
+
+def test_a_client_carries_out_a_shared_run_again(address, archive, spec):
+    at = shared.address(f"{address}/s/{archive['slug']}")
+    assert at
+    with Client(address) as client:
+        run = client.submit(f"{address}/s/{archive['slug']}")
+        assert run.spec == shared.spec(at)
+    assert run.id != archive["run"]
+
+
+def test_the_address_of_an_archive_stands_for_its_best(archive):
+    at = shared.address(archive["url"])
+    assert at
+    assert shared.creature(at)["sha256"] == archive["cover"]

@@ -12,7 +12,7 @@ from reports import audit
 from microcosmos.archive import creature
 from server.auth.authorize import SHARE_HEADER
 from server.renderings import storage as renderings
-from server.tables import AUDIT, PREVIEW, Share
+from server.tables import AUDIT, LOOP, PREVIEW, Share
 
 STRANGE = {"Host": "microcosmos.example"}
 
@@ -56,8 +56,8 @@ def test_a_share_states_the_verdict_of_its_creatures_audit(
 
 
 def test_publishing_twice_gives_the_same_live_share(api, services, shared, known):
-    (job,) = services.jobs.renderings.get_jobs()
-    assert job.args == [known, PREVIEW]
+    jobs = services.jobs.renderings.get_jobs()
+    assert [job.args for job in jobs] == [[known, PREVIEW], [known, LOOP]]
     sent = {"creature": known, "title": "A swimmer"}
     again = api.post("shares", json=sent)
     assert (again.status_code, again.json()) == (200, shared)
@@ -210,19 +210,20 @@ def test_holders_of_a_share_read_films_but_order_none(through, services, shared,
     assert through(slug, film.replace("film.gif", "measurement")).status_code == 204
     renderings.save(services, known, "film.gif", b"GIF")
     assert through(slug, film).content == b"GIF"
-    assert len(services.jobs.renderings) == 1, "the preview alone"
+    assert len(services.jobs.renderings) == 2, "the preview alone"
 
 
-def test_a_preview_is_the_covers_picture(api, services, shared, known):
-    assert api.get(f"shares/{shared['slug']}/preview.png").status_code == 202
-    renderings.save(services, known, PREVIEW, b"PNG")
-    answer = api.get(f"shares/{shared['slug']}/preview.png")
-    assert (answer.content, answer.headers["content-type"]) == (b"PNG", "image/png")
+@pytest.mark.parametrize(("kind", "media"), [(PREVIEW, "image/png"), (LOOP, "video/mp4")])
+def test_a_preview_is_the_covers(api, services, shared, known, kind, media):
+    assert api.get(f"shares/{shared['slug']}/{kind}").status_code == 202
+    renderings.save(services, known, kind, b"bytes")
+    answer = api.get(f"shares/{shared['slug']}/{kind}")
+    assert (answer.content, answer.headers["content-type"]) == (b"bytes", media)
 
 
 def test_holders_of_a_share_do_not_read_renderer_errors(api, services, shared, known):
     """They may name files, hosts and whatever else stands in an error."""
-    (job,) = services.jobs.renderings.get_jobs()
+    job, _ = services.jobs.renderings.get_jobs()
     raised = "OSError: [Errno 28] No space left on device: '/home/ada/data/artifacts/x.part'"
     services.jobs.give_up(job, f'Traceback\n  File "a.py"\n    begin()\n{raised}\n')
     owner = api.get(f"creatures/{known}/preview.png")

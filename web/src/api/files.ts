@@ -26,18 +26,24 @@ async function request(url: string, signal?: AbortSignal): Promise<Response> {
 
 /** Download a file under the server's name for it. In a share, fetch it: a link cannot send the header. */
 export async function downloadFile(url: string): Promise<void> {
+  if (!sharedSlug) return follow(url, "");
+  const response = await request(url);
+  const named = /filename="([^"]*)"/.exec(response.headers.get("Content-Disposition") ?? "");
+  saveFile(await response.blob(), named?.[1] ?? "");
+}
+
+/** Let the browser save a file that the page has made. */
+export function saveFile(file: Blob, name: string): void {
+  const url = URL.createObjectURL(file);
+  follow(url, name);
+  setTimeout(() => URL.revokeObjectURL(url), 60_000);
+}
+
+function follow(url: string, name: string): void {
   const link = document.createElement("a");
-  if (sharedSlug) {
-    const response = await request(url);
-    const named = /filename="([^"]*)"/.exec(response.headers.get("Content-Disposition") ?? "");
-    link.href = URL.createObjectURL(await response.blob());
-    link.download = named?.[1] ?? "";
-  } else {
-    link.href = url;
-    link.download = "";
-  }
+  link.href = url;
+  link.download = name;
   link.click();
-  if (sharedSlug) setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
 
 export const archiveUrl = (id: string, kind: "h5" | "csv") => `${ROOT}/runs/${id}/archive.${kind}`;

@@ -210,6 +210,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/creatures/{sha}/loop.mp4": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Loop Mp4
+         * @description Return the film, or 202 while it is computed.
+         */
+        get: operations["read_loop_mp4_api_v1_creatures__sha__loop_mp4_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/creatures/{sha}/measurement": {
         parameters: {
             query?: never;
@@ -343,7 +363,7 @@ export interface paths {
         };
         /**
          * Read Creature Phylogeny
-         * @description Return a creature with all its ancestors and descendants, of any runs, as columns in bytes.
+         * @description Return a creature with all its ancestors and descendants, of any runs, as columns in bytes. A share shows ancestors alone.
          */
         get: operations["read_creature_phylogeny_api_v1_creatures__sha__phylogeny_get"];
         put?: never;
@@ -363,7 +383,7 @@ export interface paths {
         };
         /**
          * Read Creature Phylogeny Csv
-         * @description Return a creature with all its ancestors and descendants, of any runs, as a table in the ALife phylogeny standard.
+         * @description Return a creature with all its ancestors and descendants, of any runs, as a table in the ALife phylogeny standard. A share shows ancestors alone.
          */
         get: operations["read_creature_phylogeny_csv_api_v1_creatures__sha__phylogeny_csv_get"];
         put?: never;
@@ -383,7 +403,7 @@ export interface paths {
         };
         /**
          * Read Creature Phylogeny Nwk
-         * @description Return a creature with all its ancestors and descendants, of any runs, as Newick trees by first parents, one for each first ancestor.
+         * @description Return a creature with all its ancestors and descendants, of any runs, as Newick trees by first parents, one for each first ancestor. A share shows ancestors alone.
          */
         get: operations["read_creature_phylogeny_nwk_api_v1_creatures__sha__phylogeny_nwk_get"];
         put?: never;
@@ -1280,6 +1300,48 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/shares/{slug}/creature.json": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Shared Creature
+         * @description Return the file of a creature with its ancestors, for import; of an archive the best.
+         *
+         *     Pages of other installations may read it.
+         */
+        get: operations["read_shared_creature_api_v1_shares__slug__creature_json_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/shares/{slug}/loop.mp4": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Share Loop Mp4
+         * @description Return a looping film of the creature, or of the best of the archive; 202 while it is made.
+         */
+        get: operations["read_share_loop_mp4_api_v1_shares__slug__loop_mp4_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/shares/{slug}/preview.png": {
         parameters: {
             query?: never;
@@ -1288,10 +1350,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Read Preview
+         * Read Share Preview Png
          * @description Return a picture of the creature, or of the best of the archive; 202 while it is made.
          */
-        get: operations["read_preview_api_v1_shares__slug__preview_png_get"];
+        get: operations["read_share_preview_png_api_v1_shares__slug__preview_png_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -3832,6 +3894,46 @@ export interface operations {
             };
         };
     };
+    read_loop_mp4_api_v1_creatures__sha__loop_mp4_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "video/mp4": unknown;
+                };
+            };
+            /** @description Accepted */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Rendering"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     read_measurement_api_v1_creatures__sha__measurement_get: {
         parameters: {
             query?: never;
@@ -6017,7 +6119,82 @@ export interface operations {
             };
         };
     };
-    read_preview_api_v1_shares__slug__preview_png_get: {
+    read_shared_creature_api_v1_shares__slug__creature_json_get: {
+        parameters: {
+            query?: {
+                creature?: string | null;
+            };
+            header?: never;
+            path: {
+                slug: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": {
+                        [key: string]: unknown;
+                    };
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_share_loop_mp4_api_v1_shares__slug__loop_mp4_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                slug: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "video/mp4": unknown;
+                };
+            };
+            /** @description Accepted */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Rendering"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_share_preview_png_api_v1_shares__slug__preview_png_get: {
         parameters: {
             query?: never;
             header?: never;

@@ -23,6 +23,7 @@ const PAGES: Record<string, FunctionComponent<{ id: string; query: URLSearchPara
   compare: lazy(async () => (await import("../compare/ComparePage")).ComparePage),
   workers: lazy(async () => (await import("../workers/WorkersPage")).WorkersPage),
   shares: lazy(async () => (await import("../shares/SharesPage")).SharesPage),
+  import: lazy(async () => (await import("../shares/ImportPage")).ImportPage),
   settings: lazy(async () => (await import("../settings/SettingsPage")).SettingsPage),
   run: lazy(async () => (await import("../run/RunPage")).RunPage),
   sweep: lazy(async () => (await import("../sweeps/SweepPage")).SweepPage),

@@ -5,7 +5,10 @@ import { sharedSlug } from "../api/address";
 import { CommonsPage, SharedPage } from "../shares/SharedPage";
 import { useLocation } from "../store/router";
 import { NotFound } from "../ui/Page";
+import { lazy } from "../ui/lazy";
 import { text } from "./text";
+
+const SharedTreePage = lazy(async () => (await import("../tree/SharedTreePage")).SharedTreePage);
 
 export function PublicApp() {
   const { route, query } = useLocation();
@@ -21,6 +24,9 @@ export function PublicApp() {
         <span class="spring" />
       </header>
       {route.page === "share" && <SharedPage slug={route.slug!} sha={route.sha ?? null} query={query} />}
+      {route.page === "share-tree" && (
+        <SharedTreePage slug={route.slug!} sha={route.sha ?? null} query={query} />
+      )}
       {route.page === "commons" && <CommonsPage />}
       {route.page === "unknown" && (
         <main>

@@ -8,6 +8,7 @@ export const text = {
     workers: "Workers",
     shares: "Shares",
     settings: "Settings",
+    import: "Import",
     unknown: "Not found",
   },
   commons: "Commons",

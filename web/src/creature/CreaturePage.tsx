@@ -22,12 +22,14 @@ import { LiveCard } from "./LiveCard";
 import { Downloads } from "./Downloads";
 import { PlanCard } from "./PlanCard";
 import { RemeasureCard } from "./RemeasureCard";
+import { SavePage } from "./SavePage";
 import { PublishButton } from "../publish/PublishButton";
 import { RefineButton } from "./RefineButton";
 import { SwimmingBody } from "../replay/SwimmingBody";
 import { ReplayStatus, useReplays } from "../replay/replays";
 import { SpaceTimeCard } from "./SpaceTimeCard";
 import { VerifyCard } from "./VerifyCard";
+import { isEvolved, swims } from "./kinds";
 import { text } from "./text";
 import "./creature.css";
 import "./details.css";
@@ -78,11 +80,15 @@ interface ViewProps {
   query: URLSearchParams;
   /** Missing in a share, whose visitors cannot start an audit. */
   audit?: AuditState;
+  /** Title and address of a share. */
+  title?: string;
+  address?: string | null;
 }
 
 /** All cards of a creature; they share the playhead of its replay. */
-export function CreatureView({ creature, query, audit }: ViewProps) {
+export function CreatureView({ creature, query, audit, title, address = null }: ViewProps) {
   const { sha256: sha, identity } = creature;
+  const readInputs = () => api.readEvaluation(sha);
   const playhead = useMemo(newPlayhead, []);
   const rendering = useReplays([sha]);
   const replay = rendering.replays?.[0] ?? null;
@@ -102,9 +108,11 @@ export function CreatureView({ creature, query, audit }: ViewProps) {
             </ReplayStatus>
             {replay && <ReplayPlayer {...{ panels, playhead, query }} />}
             {replay && swims(creature) && <ReplayFitness replay={replay} task={identity.task} />}
-            <Downloads sha={sha} />
+            <Downloads sha={sha}>
+              <SavePage title={title ?? text.title(shortId(sha))} {...{ creature, address }} />
+            </Downloads>
           </section>
-          {isEvolved(creature) && <LiveCard sha={sha} />}
+          {isEvolved(creature) && <LiveCard readInputs={readInputs} />}
         </div>
         <div class="stack">
           {replay && <SpaceTimeCard {...{ replay, query, playhead }} />}
@@ -112,7 +120,7 @@ export function CreatureView({ creature, query, audit }: ViewProps) {
           <GenomeCard {...{ creature, playhead }} every={replay?.header.every ?? null} />
           <FamilyCard {...{ creature, query }} />
           {creature.measured && <RemeasureCard sha={sha} />}
-          {creature.measured && <VerifyCard sha={sha} measured={creature.measured} />}
+          {creature.measured && <VerifyCard measured={creature.measured} readInputs={readInputs} />}
           {swims(creature) && audit && <AuditCard {...audit} />}
         </div>
       </div>
@@ -120,12 +128,6 @@ export function CreatureView({ creature, query, audit }: ViewProps) {
     </>
   );
 }
-
-/** True if the creature swims; a folding filament only takes a shape. */
-const swims = ({ identity }: Creature) => identity.genome.encoding !== "fold";
-
-/** True if the creature has genes that evolve. */
-const isEvolved = (creature: Creature) => swims(creature) && creature.identity.genome.encoding !== "gait";
 
 function ReplayFitness({ replay, task }: { replay: Replay; task: Spec }) {
   const { recorded, replayed, difference } = replay.header.fitness;

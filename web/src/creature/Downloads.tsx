@@ -1,5 +1,6 @@
 /** Downloads of a creature; films are rendered on request. */
 
+import type { ComponentChildren } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import {
   type PictureFormat,
@@ -23,7 +24,7 @@ const KINDS: [PictureFormat, string][] = [
   ["film.mp4", "MP4"],
 ];
 
-export function Downloads({ sha }: { sha: string }) {
+export function Downloads({ sha, children }: { sha: string; children: ComponentChildren }) {
   return (
     <p class="links pictures" role="group" aria-label={text.download}>
       <span class="quiet small">{text.download}</span>
@@ -39,6 +40,7 @@ export function Downloads({ sha }: { sha: string }) {
       ))}
       <Download url={posesUrl(sha, "csv")} title={text.motionCsv} />
       <Download url={posesUrl(sha, "npz")} title={text.motionNumpy} />
+      {children}
     </p>
   );
 }

@@ -37,7 +37,7 @@ export function FamilyCard({ creature, query }: Props) {
   const actions = (
     <>
       {more}
-      {!sharedSlug && <TreeLink sha={sha} run={run} />}
+      <TreeLink sha={sha} run={run} />
     </>
   );
   return (
@@ -63,13 +63,14 @@ export function FamilyCard({ creature, query }: Props) {
   );
 }
 
-/** The tree of the run that led here, with this creature; else that of the creature across runs. */
+/** The tree of the run that led here, with this creature; else that of the creature across runs, or in the share. */
+function treePage(sha: string, run: string | null): string {
+  if (sharedSlug) return `${location.pathname.replace(/\/$/, "")}/tree`;
+  return run ? `/runs/${run}/tree?creature=${sha}` : `/creatures/${sha}/tree`;
+}
+
 const TreeLink = ({ sha, run }: { sha: string; run: string | null }) => (
-  <a
-    class="button"
-    href={run ? `/runs/${run}/tree?creature=${sha}` : `/creatures/${sha}/tree`}
-    title={text.treeAbout}
-  >
+  <a class="button" href={treePage(sha, run)} title={text.treeAbout}>
     {text.tree}
   </a>
 );

@@ -1,13 +1,12 @@
 /** Let a creature swim on in this browser, in water that visitors change. */
 
 import { useEffect, useMemo, useState } from "preact/hooks";
-import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import { decodeEvaluation } from "../decode/evaluation";
 import type { FieldName } from "../replay/fields";
 import { text as replayText } from "../replay/text";
 import { Live, type Push } from "../simulate/live";
-import { isInstalled } from "../simulate/simulator";
+import { isInstalled } from "../simulate/source";
 import { usePolled } from "../store/polling";
 import { number } from "../ui/format";
 import { Segments } from "../ui/Select";
@@ -21,9 +20,14 @@ const RANGE = [-2, 0] as const;
 /** A push beside the creature. */
 const STIR: Push = { away: [0, 6], velocity: [0.05, -0.05] };
 
-export function LiveCard({ sha }: { sha: string }) {
+interface Props {
+  /** Read the inputs of the evaluation; null while they are prepared. */
+  readInputs: () => Promise<ArrayBuffer | null>;
+}
+
+export function LiveCard({ readInputs }: Props) {
   const [on, setOn] = useState(false);
-  const { value: inputs, note, error } = usePolled(on ? () => api.readEvaluation(sha) : null, [sha, on]);
+  const { value: inputs, note, error } = usePolled(on ? readInputs : null, [on]);
   const [live, setLive] = useState<Live | null>(null);
   const [failed, setFailed] = useState<string | null>(null);
   const fail = (reason: unknown) => {

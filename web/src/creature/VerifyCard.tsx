@@ -2,7 +2,7 @@
 
 import type { Creature } from "../api/types";
 import type { Evaluated } from "../simulate/evaluate";
-import { isInstalled } from "../simulate/simulator";
+import { isInstalled } from "../simulate/source";
 import { count, number, words } from "../ui/format";
 import { type Column, Table } from "../ui/Table";
 import { CheckCard } from "./CheckCard";
@@ -12,8 +12,14 @@ import { type Row, compared, isSame, useVerification } from "./verification";
 
 type Measured = NonNullable<Creature["measured"]>;
 
-export function VerifyCard({ sha, measured }: { sha: string; measured: Measured }) {
-  const { found, uncovered, running, share, note, error, start } = useVerification(sha);
+interface Props {
+  measured: Measured;
+  /** Read the inputs of the evaluation; null while they are prepared. */
+  readInputs: () => Promise<ArrayBuffer | null>;
+}
+
+export function VerifyCard({ measured, readInputs }: Props) {
+  const { found, uncovered, running, share, note, error, start } = useVerification(readInputs);
   const rows = found && compared(measured, found);
   const known = rows?.filter(({ here }) => here !== null);
   const again = found || uncovered || error !== null;

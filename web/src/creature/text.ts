@@ -39,6 +39,11 @@ export const text = {
   jsonAbout: "The creature file with its ancestors, for import into another installation",
   motionCsv: "Motion (CSV)",
   motionNumpy: "Motion (NumPy)",
+  savePage: "Web page",
+  savingPage: "Saving web page …",
+  savePageAbout:
+    "One HTML file with the recorded motion, live water and verification, which needs no server and no network",
+  savedPage: (size: string) => `Saved as one HTML file of ${size}.`,
   rendering: (format: string) => `Rendering ${format} …`,
   facts: "Measurements and origin",
   coupling: "Coupling",

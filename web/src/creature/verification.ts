@@ -1,7 +1,6 @@
 /** The verification of a creature: its evaluation in this browser, compared with its record. */
 
 import { useEffect, useState } from "preact/hooks";
-import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Creature } from "../api/types";
 import { decodeEvaluation } from "../decode/evaluation";
@@ -40,11 +39,11 @@ interface State {
 const NOTHING: State = { share: 0, found: null, uncovered: null, error: null };
 
 /** The state of the verification, and a function that starts it. */
-export function useVerification(sha: string) {
+export function useVerification(readInputs: () => Promise<ArrayBuffer | null>) {
   const [starts, setStarts] = useState(0);
   const [state, setState] = useState(NOTHING);
   const asked = starts > 0;
-  const polled = usePolled(asked ? () => api.readEvaluation(sha) : null, [sha, starts]);
+  const polled = usePolled(asked ? readInputs : null, [starts]);
   useEffect(() => {
     setState(NOTHING);
     if (!polled.value) return;

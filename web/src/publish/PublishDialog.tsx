@@ -7,6 +7,7 @@ import { inDays } from "../ui/format";
 import { Options } from "../ui/Select";
 import { useSubmit } from "../ui/forms";
 import { copyText } from "../ui/clipboard";
+import { Unreachable } from "./Unreachable";
 import { text } from "./text";
 import "./publish.css";
 
@@ -140,6 +141,7 @@ function Published({ share, onEnd }: { share: Share; onEnd: () => void }) {
         {text.link}
         <input ref={address} readOnly value={share.url} onFocus={(event) => event.currentTarget.select()} />
       </label>
+      <Unreachable url={share.url} />
       <p class="links">
         <button class="primary" onClick={() => void copyText(share.url, text.linkCopied)}>
           {text.copyLink}

@@ -37,4 +37,6 @@ export const text = {
   open: "Open",
   allShares: "All shares",
   done: "Done",
+  unreachable: "Nobody else can open a link to this machine. Start the server where others reach it, with",
+  unreachableHow: " set to its address, such as https://swim.example.org.",
 };

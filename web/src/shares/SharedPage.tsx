@@ -1,24 +1,26 @@
 /** The public pages: shares, and the commons with listed shares as moving tiles. */
 
-import { SHARE_HEADER } from "../api/address";
 import * as api from "../api/client";
-import { creatureFileUrl } from "../api/files";
 import type { Share } from "../api/types";
 import { useFetched, useRunDetail } from "../store/fetch";
 import { useStore } from "../store/store";
 import { count, dateTime, shortId } from "../ui/format";
-import { ArchiveRun } from "../run/ArchiveRun";
-import { CreatureView } from "../creature/CreaturePage";
 import { FilesCard } from "../run/FilesCard";
-import { Card, Loading, NotFound, Page, useTitle, Empty } from "../ui/Page";
+import { Loading, NotFound, Page, useTitle, Empty } from "../ui/Page";
+import { lazy } from "../ui/lazy";
 import { TrustBadge } from "../ui/TrustBadge";
-import { copyText } from "../ui/clipboard";
+import { isLoopback } from "../publish/Unreachable";
+import { Fact } from "./Fact";
+import { TakeAway } from "./TakeAway";
 import { text } from "./text";
 import { decodePoses } from "../decode/poses";
 import { usePages } from "../store/paging";
 import { usePolled } from "../store/polling";
 import { SwimmingBody } from "../replay/SwimmingBody";
 import "./shares.css";
+
+const CreatureView = lazy(async () => (await import("../creature/CreaturePage")).CreatureView, "section");
+const ArchiveRun = lazy(async () => (await import("../run/ArchiveRun")).ArchiveRun, "section");
 
 interface Props {
   slug: string;
@@ -92,40 +94,22 @@ function Terms({ share: { credit, licence, expires_at, created_at } }: { share: 
   );
 }
 
-function Fact({ name, children }: { name: string; children: preact.ComponentChildren }) {
-  return (
-    <div>
-      <dt>{name}</dt>
-      <dd>{children}</dd>
-    </div>
-  );
-}
-
 type PartProps = Pick<Props, "query"> & { share: Share; id: string };
 
 function SharedCreature({ share, id, query }: PartProps) {
   const { value: creature, error } = useFetched(() => api.readCreature(id), [id]);
   if (error) return <p class="banner wrong">{error}</p>;
   if (!creature) return <Loading />;
+  const address = share.creature ? share.url : `${share.url}/creatures/${id}`;
   return (
     <>
-      <CreatureView {...{ creature, query }} />
-      <ImportHint share={share} sha={id} />
+      <CreatureView
+        {...{ creature, query }}
+        title={share.title}
+        address={isLoopback(address) ? null : address}
+      />
+      <TakeAway {...{ share, address }} sha={id} />
     </>
-  );
-}
-
-function ImportHint({ share, sha }: { share: Share; sha: string }) {
-  const file = new URL(creatureFileUrl(sha), share.url).href;
-  const command = `curl -sf -H '${SHARE_HEADER}: ${share.slug}' '${file}' | curl -sf -H 'Content-Type: application/json' --data-binary @- http://127.0.0.1:8000/api/v1/creatures`;
-  const copy = <button onClick={() => void copyText(command, text.commandCopied)}>{text.copyCommand}</button>;
-  return (
-    <Card id="import" title={text.importTitle} actions={copy}>
-      <p>{text.importHint}</p>
-      <pre class="command" tabIndex={0}>
-        {command}
-      </pre>
-    </Card>
   );
 }
 
@@ -140,6 +124,7 @@ function SharedArchive({ share, id, query }: PartProps) {
     <>
       <ArchiveRun {...{ run, detail, query }} />
       <FilesCard run={run} about={text.filesAbout(count(share.generation ?? 0), run.version, run.device)} />
+      <TakeAway share={share} address={share.url} sha={null} />
     </>
   );
 }

@@ -7,18 +7,22 @@ import { usePages } from "../store/paging";
 import { orShowError, showToast } from "../store/toasts";
 import { dateTime } from "../ui/format";
 import { ConfirmButton } from "../ui/ConfirmButton";
-import { Empty, Page } from "../ui/Page";
+import { Card, Empty, Page } from "../ui/Page";
 import { type Column, Table } from "../ui/Table";
 import { TrustBadge } from "../ui/TrustBadge";
 import { copyText } from "../ui/clipboard";
+import { Unreachable, isLoopback } from "../publish/Unreachable";
+import { ImportForm } from "./ImportPage";
 import { text } from "./text";
 import "./shares.css";
 
 export function SharesPage() {
   const refusal = useRefusal();
   const { items: shares, error, more, replace: put } = usePages(api.readShares, ({ slug }) => slug);
+  const unreachable = shares?.find(({ state, url }) => state === "live" && isLoopback(url));
   return (
     <Page title={text.shares} error={error} loading={!shares}>
+      {unreachable && <Unreachable url={unreachable.url} />}
       {shares?.length === 0 && <Empty title={text.nothingShared} hint={refusal ?? text.nothingSharedHint} />}
       {shares && shares.length > 0 && (
         <section class="card">
@@ -33,6 +37,11 @@ export function SharesPage() {
         </section>
       )}
       {more && <button onClick={more}>{text.showMore}</button>}
+      {!refusal && (
+        <Card id="import" title={text.importTitle}>
+          <ImportForm address="" />
+        </Card>
+      )}
     </Page>
   );
 }

@@ -5,6 +5,8 @@ import { isPublicPage } from "../api/address";
 import type { Share } from "../api/types";
 import { requestOf } from "../publish/PublishDialog";
 import { routeOf } from "../store/router";
+import { bibtex, citation } from "./citation";
+import { embedCode } from "./embedding";
 import { headingOf } from "./SharedPage";
 
 const form = (fields: Record<string, string>) => {
@@ -49,8 +51,11 @@ describe("public pages", () => {
 
   it("show a share, or a creature of a shared archive", () => {
     expect(routeOf("/s/abc")).toEqual({ page: "share", slug: "abc" });
+    expect(routeOf("/s/abc/tree")).toEqual({ page: "share-tree", slug: "abc" });
+    expect(routeOf("/s/abc/creatures/12/tree")).toEqual({ page: "share-tree", slug: "abc", sha: "12" });
+    expect(routeOf("/s/abc/embed")).toEqual({ page: "embed", slug: "abc" });
     expect(routeOf("/s/abc/creatures/12")).toEqual({ page: "share", slug: "abc", sha: "12" });
-    for (const path of ["/s", "/s/abc/runs/1", "/s/abc/creatures/1/2"]) {
+    for (const path of ["/s", "/s/abc/runs/1", "/s/abc/embed/1", "/s/abc/creatures/1/2"]) {
       expect(routeOf(path)).toEqual({ page: "unknown" });
     }
   });
@@ -65,5 +70,48 @@ describe("the heading of a share", () => {
     [share("Archive", "run"), true, ["Creature", "0123abcd"]],
   ])("contains the id once", (shared, inside, heading) => {
     expect(headingOf(shared, "0123abcd".padEnd(64, "0"), inside)).toEqual(heading);
+  });
+});
+
+describe("the citation of a share", () => {
+  const share = {
+    title: "An eel & 50 %",
+    credit: ["Ada Byron", "Bob_2"],
+    url: "https://lab.example/s/slug",
+    created_at: "2026-03-01T00:00:00Z",
+    generation: null,
+  };
+  const sha = "0123abcd".padEnd(64, "0");
+
+  it("names people, year, title, creature and address", () => {
+    expect(citation({ ...share, sha })).toBe(
+      `Ada Byron, Bob_2 (2026). An eel & 50 %. Creature of Microcosmos, SHA-256 ${sha}. https://lab.example/s/slug`,
+    );
+    expect(citation({ ...share, credit: [], sha: null, generation: 12 })).toBe(
+      "Anonymous (2026). An eel & 50 %. Archive of Microcosmos, generation 12. https://lab.example/s/slug",
+    );
+  });
+
+  it("escapes what BibTeX would read as a command", () => {
+    const lines = bibtex({ ...share, sha }).split("\n");
+    expect(lines[0]).toBe("@misc{microcosmos-0123abcd,");
+    expect(lines[1]).toBe("  author = {{Ada Byron} and {Bob\\_2}},");
+    expect(lines[2]).toBe("  title = {{An eel \\& 50 \\%}},");
+    expect(lines.at(-1)).toBe("}");
+  });
+});
+
+describe("the embed code", () => {
+  const share = { url: "https://lab.example/s/slug", title: 'An "eel" <b>', run: null } as Share;
+
+  it("cannot be broken by a title", () => {
+    expect(embedCode(share, "0123")).toContain(
+      'src="https://lab.example/s/slug/embed" title="An &quot;eel&quot; &lt;b>"',
+    );
+  });
+
+  it("names the creature of an archive", () => {
+    expect(embedCode({ ...share, run: "run" }, "0123")).toContain("/embed?creature=0123");
+    expect(embedCode({ ...share, run: "run" }, null)).not.toContain("creature");
   });
 });

@@ -1,6 +1,7 @@
 /** A creature that swims on in a web worker. */
 
 import { kernelModule } from "./simulator";
+import { swimmer } from "./source";
 import type { Frame, Stage } from "./swim";
 
 export interface Begin {
@@ -33,7 +34,7 @@ export class Live {
   /** Evaluate the creature, which then stands at the end of its simulation. */
   static async begin(inputs: ArrayBuffer): Promise<Live> {
     const module = await kernelModule();
-    const worker = new Worker(new URL("./swimWorker.ts", import.meta.url), { type: "module" });
+    const worker = swimmer();
     try {
       const event = await answered(worker, { module, inputs });
       return new Live(worker, (event as { stage: Stage }).stage);

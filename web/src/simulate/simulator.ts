@@ -1,6 +1,7 @@
 /** The simulator of the page: the native kernel as WebAssembly, in a web worker of its own. */
 
 import type { Evaluated } from "./evaluate";
+import { evaluator, kernelBytes } from "./source";
 
 export interface Order {
   module: WebAssembly.Module;
@@ -11,18 +12,9 @@ export interface Order {
 /** The share that is done, or the end. */
 export type Answer = { share: number } | { found: Evaluated } | { error: string };
 
-/** The address of the kernel; without a compiler, the page is built without one. */
-const [KERNEL] = Object.values(
-  import.meta.glob<string>("./*.wasm", { query: "?url", import: "default", eager: true }),
-);
-
-export const isInstalled = KERNEL !== undefined;
-
 /** The compiled kernel. */
-export async function kernelModule(signal?: AbortSignal): Promise<WebAssembly.Module> {
-  const answer = await fetch(KERNEL!, { signal });
-  return WebAssembly.compile(await answer.arrayBuffer());
-}
+export const kernelModule = async (signal?: AbortSignal): Promise<WebAssembly.Module> =>
+  WebAssembly.compile(await kernelBytes(signal));
 
 /** Evaluate a creature; aborting ends the worker. */
 export async function simulate(
@@ -31,7 +23,7 @@ export async function simulate(
   signal: AbortSignal,
 ): Promise<Evaluated> {
   const module = await kernelModule(signal);
-  const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
+  const worker = evaluator();
   try {
     return await new Promise((resolve, reject) => {
       signal.addEventListener("abort", () => reject(signal.reason));

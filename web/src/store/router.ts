@@ -16,7 +16,7 @@ export interface PageLocation {
   query: URLSearchParams;
 }
 
-const PAGES = ["new", "compare", "workers", "shares", "commons", "settings"];
+const PAGES = ["new", "compare", "workers", "shares", "commons", "settings", "import"];
 const PAGES_OF_ONE: Record<string, string> = { runs: "run", sweeps: "sweep", creatures: "creature" };
 /** Trees of one: below their pages. */
 const TREES: Record<string, string> = { runs: "run-tree", creatures: "creature-tree" };
@@ -33,6 +33,11 @@ export function routeOf(path: string): Route {
 
 function sharedRoute(slug: string, [kind, sha, ...more]: string[]): Route {
   if (kind === undefined) return { page: "share", slug };
+  if (kind === "embed" && sha === undefined) return { page: "embed", slug };
+  if (kind === "tree" && sha === undefined) return { page: "share-tree", slug };
+  if (kind === "creatures" && sha !== undefined && more.join() === "tree") {
+    return { page: "share-tree", slug, sha };
+  }
   const isCreature = kind === "creatures" && sha !== undefined && more.length === 0;
   return isCreature ? { page: "share", slug, sha } : { page: "unknown" };
 }

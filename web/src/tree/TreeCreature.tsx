@@ -1,5 +1,6 @@
 /** The creature of a tree that is pointed at or selected, swimming, with its facts. */
 
+import type { ComponentChildren } from "preact";
 import { type Phylogeny, NONE, nameAt, parentsOf } from "../decode/phylogeny";
 import { SwimmingBody } from "../replay/SwimmingBody";
 import { usePoseStream } from "../store/poses";
@@ -14,7 +15,8 @@ interface Props {
   creature: number;
   /** The side of the window on which it is shown. */
   side: "left" | "right";
-  hrefOf: (creature: number) => string;
+  /** The page of a creature; null if a share lacks it. */
+  hrefOf: (creature: number) => string | null;
 }
 
 /** Delay between requests while the pointer moves. */
@@ -32,20 +34,22 @@ export function TreeCreature({ creature, side, ...props }: Props) {
 function Facts({ tree, layout, creature, hrefOf }: Omit<Props, "side">) {
   const sha = nameAt(tree, creature);
   const shown = useThrottled(sha, HOVER_MS);
-  const { stream } = usePoseStream(shown);
+  const page = hrefOf(creature);
+  const { stream } = usePoseStream(page === null || shown !== sha ? null : shown);
   const [run, generation, lost] = [tree.run[creature]!, tree.generation[creature]!, tree.lost[creature]!];
   const operator = tree.operators[tree.operator[creature]!];
   const parents = parentsOf(tree, creature);
   const status = run === NONE ? null : lost === NONE ? text.elite : text.lost(count(lost));
   return (
     <>
-      <div class="tree-body">
-        {stream && shown === sha && <SwimmingBody key={sha} stream={stream} path />}
-      </div>
+      {page !== null && (
+        <div class="tree-body">{stream && <SwimmingBody key={sha} stream={stream} path />}</div>
+      )}
       <div class="tree-facts small">
-        <a href={hrefOf(creature)}>
-          {text.open} <code>{shortId(sha)}</code>
-        </a>
+        <Linked page={page}>
+          {page !== null && `${text.open} `}
+          <code>{shortId(sha)}</code>
+        </Linked>
         <span>
           {text.fitness} <b>{number(tree.fitness[creature]!)}</b>
         </span>
@@ -81,11 +85,14 @@ function Parents({ tree, parents, hrefOf }: ParentsProps) {
       {parents.map((parent, i) => (
         <span key={parent}>
           {i > 0 && ", "}
-          <a href={hrefOf(parent)}>
+          <Linked page={hrefOf(parent)}>
             <code>{shortId(nameAt(tree, parent))}</code>
-          </a>
+          </Linked>
         </span>
       ))}
     </span>
   );
 }
+
+const Linked = ({ page, children }: { page: string | null; children: ComponentChildren }) =>
+  page === null ? <span>{children}</span> : <a href={page}>{children}</a>;

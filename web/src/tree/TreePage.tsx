@@ -45,7 +45,7 @@ export function RunTreePage({ id, query }: Props) {
   );
 }
 
-const Title = ({ id }: { id: string }) => (
+export const Title = ({ id }: { id: string }) => (
   <header class="page-head">
     <h1>
       {text.title} <code>{shortId(id)}</code>
@@ -88,7 +88,7 @@ interface LoadedProps {
   isEmpty?: boolean;
 }
 
-function LoadedTree({ of, self, value, error, query, isEmpty = false }: LoadedProps) {
+export function LoadedTree({ of, self, value, error, query, isEmpty = false }: LoadedProps) {
   if (isEmpty) return <Empty title={text.empty} hint={text.emptyAbout} />;
   return (
     <>

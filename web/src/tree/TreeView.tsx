@@ -1,6 +1,7 @@
 /** A tree of life in a window: canvases, keys and pointer, with controls around it. */
 
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { sharedSlug } from "../api/address";
 import { NONE, indexOf, isElite, nameAt } from "../decode/phylogeny";
 import { TimeSlider } from "../replay/TimeSlider";
 import { readTankBatch, usePoses } from "../store/poses";
@@ -68,6 +69,9 @@ export function TreeView({ buffer, of, self, query }: Props) {
   );
 }
 
+/** The page of the creature whose tree this page of a share shows. */
+const selfPage = () => location.pathname.replace(/\/tree\/?$/, "");
+
 type ShownView = ReturnType<typeof useShown>;
 
 /** What the address, the slider and the pointer choose, passed on to the stage. */
@@ -81,7 +85,8 @@ function useShown(loaded: LoadedTree | null, canvases: TreeCanvases, query: URLS
   const chosen = query.get("creature") ?? self;
   const selected = useMemo(() => placed(loaded, chosen), [loaded, chosen]);
   const focus = hovered === NONE ? selected : hovered;
-  const poses = usePoses(readTankBatch, useNames(loaded, canvases.landmarks));
+  // A share holds no motion of ancestors.
+  const poses = usePoses(readTankBatch, useNames(sharedSlug ? null : loaded, canvases.landmarks));
   const shown: Shown = { at: at ?? Infinity, whole, by, theme, focus, poses };
   useEffect(() => {
     setHovered(NONE); // Rows are other creatures now.
@@ -91,6 +96,7 @@ function useShown(loaded: LoadedTree | null, canvases: TreeCanvases, query: URLS
   useEffect(() => canvases.parts.current!.stage.show(shown));
   const shades = useMemo(() => tree && shadesOf(tree, by, theme), [tree, by, theme]);
   const hrefOf = (creature: number) => {
+    if (sharedSlug) return nameAt(tree!, creature) === self ? selfPage() : null;
     const run = tree!.run[creature]!;
     return `/creatures/${nameAt(tree!, creature)}${run === NONE ? "" : `?run=${tree!.runs[run]}`}`;
   };
@@ -124,6 +130,10 @@ function TreePort({ elements: { port, picture, overlay }, loaded, view, stage }:
     view.setHovered(NONE);
     setQuery({ creature: creature === NONE ? null : nameAt(loaded!.tree, creature) });
   };
+  const open = (creature: number) => {
+    const page = view.hrefOf(creature);
+    if (page) navigate(page);
+  };
   useGestures(port, {
     pan: (by) => stage().pan(by),
     zoom: (log, at) => stage().zoom(log, at),
@@ -132,12 +142,12 @@ function TreePort({ elements: { port, picture, overlay }, loaded, view, stage }:
       const creature = stage().creatureAt(at);
       // Fingers cannot hover: the first tap selects, the second opens.
       if (creature === NONE || (byTouch && creature !== view.selected)) select(creature);
-      else navigate(view.hrefOf(creature));
+      else open(creature);
     },
   });
   const onKeyDown = (event: KeyboardEvent) => {
     if (!loaded || event.ctrlKey || event.metaKey || event.altKey) return;
-    const selection = { selected: view.selected, select, open: (one: number) => navigate(view.hrefOf(one)) };
+    const selection = { selected: view.selected, select, open };
     if (press(event, loaded, stage(), selection)) event.preventDefault();
   };
   return (

@@ -3,6 +3,7 @@
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { importCreature } from "../api/client";
+import { importPage } from "../api/shareAddress";
 import { messageOf } from "../api/problem";
 import { showToast } from "../store/toasts";
 import { useListener } from "../store/polling";
@@ -81,8 +82,19 @@ export function FileButton({ kind = "", name, onFile, children }: ButtonProps) {
   );
 }
 
+/** Elements that take pasted text themselves. */
+const FIELDS = "input, textarea, select, [contenteditable]";
+
+/** Open the page that imports, if the address of a share is pasted. */
+function openPasted(event: ClipboardEvent): void {
+  if ((event.target as Element).closest?.(FIELDS)) return;
+  const page = importPage(event.clipboardData?.getData("text") ?? "");
+  if (page) location.assign(page); // A new request: the policy of that page permits the file.
+}
+
 export function DropTarget() {
   const [over, setOver] = useState(false);
+  useListener("paste", openPasted);
   useListener("dragover", (event: DragEvent) => {
     if (!event.dataTransfer?.types.includes("Files")) return;
     event.preventDefault();
