@@ -10,10 +10,12 @@ import { setQuery } from "../store/router";
 import { type Selection, type CellSet, cellsIn, toggle } from "./selection";
 import type { Projection } from "./projection";
 import type { Of } from "./reprojection";
-import { BreedButton } from "../breeding/BreedButton";
+import { lazy } from "../ui/lazy";
 import { count } from "../ui/format";
 import { ForkLink } from "../ui/links";
 import { text } from "./text";
+
+const BreedButton = lazy(async () => (await import("../breeding/BreedButton")).BreedButton, "section");
 
 const setSelection = (selected: CellSet) =>
   setQuery({ cells: selected.size > 0 ? formatCells(selected) : null });

@@ -1,12 +1,9 @@
 /** The button that chooses creatures for the next generations to descend from. */
 
 import type { Run } from "../api/types";
-import { MAX_CHOSEN, choose, goesOn, takeBack, useChoices, useKnownChoices } from "../store/choices";
+import { MAX_CHOSEN, choose, goesOn, useKnownChoices } from "../store/choices";
 import { useRefusal } from "../store/principal";
-import { useFetched } from "../store/fetch";
-import { applyResponse, useStore } from "../store/store";
 import { showToast } from "../store/toasts";
-import * as api from "../api/client";
 import { text } from "./text";
 
 interface Props {
@@ -35,15 +32,4 @@ export function BreedButton({ run, creatures, onChosen }: Props) {
       {text.breed(creatures.length)}
     </button>
   );
-}
-
-/** The same for one creature, on its own page, while its run goes on. */
-export function BreedCreature({ run: id, creature }: { run: string; creature: string }) {
-  const { error } = useFetched(() => applyResponse("response", api.readRun(id)), [id]);
-  const run = useStore((state) => state.runs.get(id));
-  const choices = useChoices(run);
-  if (error || !run || !choices || choices.refusal || !goesOn(run)) return null;
-  const waits = choices.items.some((one) => one.creature === creature && one.generation === null);
-  if (!waits) return <BreedButton run={run} creatures={[creature]} />;
-  return <button onClick={() => void takeBack(id, [creature])}>{text.takeBackChoice}</button>;
 }

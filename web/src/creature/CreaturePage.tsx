@@ -15,7 +15,7 @@ import { newPlayhead } from "../replay/playhead";
 import { AUDIT_HASH, AuditCard, type AuditState, useAudit } from "./AuditCard";
 import { FactsCard } from "./FactsCard";
 import { FamilyCard } from "./FamilyCard";
-import { BreedCreature } from "../breeding/BreedButton";
+import { BreedCreature } from "../breeding/BreedCreature";
 import { ForkLink } from "../ui/links";
 import { GenomeCard } from "./GenomeCard";
 import { LiveCard } from "./LiveCard";
