@@ -10,6 +10,7 @@ import pytest
 
 from microcosmos import bodies, fields, filaments, genomes, world
 from microcosmos.build import build_controls
+from microcosmos.device import array
 from microcosmos.spec import Control
 
 
@@ -71,7 +72,7 @@ def pair(immerse, float64):
             positions = body.positions + np.array([[11.0, 16.0]])
             box = replace(box, **options)
             if nodes == ALL:
-                present = np.arange(ALL) < GROWN
+                present = array(np.arange(ALL) < GROWN)
                 rods = jax.jit(world.grown_rods)(box.rods, present)
                 box = replace(box, rods=rods, present=present)
             boxes.append((box, jax.jit(world.at_rest)(box, positions)))
