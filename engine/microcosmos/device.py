@@ -11,6 +11,9 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import jax
+import jax.numpy as jnp
+import numpy as np
+from jax.typing import ArrayLike, DTypeLike
 from jaxlib.version import __version__ as jaxlib_version
 
 from .version import VERSION
@@ -37,6 +40,16 @@ PORTABLE_JAXLIB = ("0.10.2",)
 QUICK = {"xla_backend_optimization_level": 0, "xla_cpu_use_fusion_emitters": False}
 """Compiler options that save optimisations; results keep their bits (compared on x86-64)."""
 GPU_FLAGS = "--xla_gpu_deterministic_ops=true --xla_gpu_autotune_level=0"
+
+
+def array(values: ArrayLike, dtype: DTypeLike | None = None) -> jax.Array:
+    """Return values of the host on the device.
+
+    `jnp.asarray` compiles a program for each shape, unless the type stays as it is.
+    """
+    found = np.asarray(values, dtype)
+    kept = jax.dtypes.canonicalize_dtype(found.dtype)
+    return jnp.asarray(found.astype(kept, copy=False), kept)
 
 
 def prepare(devices: int | None = None, cache: str | os.PathLike | None = None) -> None:

@@ -3,12 +3,12 @@
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 
 from microcosmos import bodies, coupling, fields, filaments, groups, world
 from microcosmos.bodies import swimmers
 from microcosmos.build import build_matching, build_rods
+from microcosmos.device import array
 
 from .paths import JAX, Path, roll
 
@@ -28,7 +28,7 @@ def parallel_chains(nodes: int, gap: float) -> bodies.Body:
 
 
 def steric(strength: float, dtype: Any, gradient: Any = fields.gaussian) -> fields.Steric:
-    return fields.Steric(jnp.asarray(strength, dtype), jnp.asarray(0.1, dtype), gradient)
+    return fields.Steric(array(strength, dtype), array(0.1, dtype), gradient)
 
 
 def immersed(
@@ -43,21 +43,21 @@ def immersed(
     form = options.setdefault("form", world.Form())
     layout = build_matching(body, form.theta_feedback, options.get("nu_c"), dtype)
     box = world.World(
-        viscosity=jnp.asarray(viscosity, dtype),
+        viscosity=array(viscosity, dtype),
         layout=layout,
         rods=build_rods(body, dtype),
-        groups=groups.Groups(jnp.asarray(body.member), body.count),
+        groups=groups.Groups(array(body.member), body.count),
         size=size,
         **options,
     )
     positions = body.positions - body.positions.mean(0) + np.array(size) / 2
-    return box, world.at_rest(box, jnp.asarray(positions, dtype))
+    return box, jax.jit(world.at_rest)(box, array(positions, dtype))
 
 
 def limits(viscosity: float, dtype: Any) -> world.Limits:
     """Limits under which random controllers stay finite."""
     displacement, force = (0.1, 0.1) if viscosity >= 0.003 else (0.05, 0.03)
-    return world.Limits(jnp.asarray(displacement, dtype), jnp.asarray(force, dtype))
+    return world.Limits(array(displacement, dtype), array(force, dtype))
 
 
 def rest(
@@ -66,7 +66,7 @@ def rest(
     """Rest shapes over time: `turn` added to angles, lengths grown by the share `change`."""
     length = body.rest_length[None] * (1 + change * np.ones((len(turn), len(body.edges))))
     angle = body.rest_angle[None] + turn
-    return filaments.Rest(jnp.asarray(angle, dtype), jnp.asarray(length, dtype))
+    return filaments.Rest(array(angle, dtype), array(length, dtype))
 
 
 def held(body: bodies.Body, steps: int, dtype: Any) -> filaments.Rest:
@@ -88,8 +88,8 @@ def erratic(body: bodies.Body, steps: int, dtype: Any, seed: int) -> filaments.R
     draws = -(-steps // 20)
     turn = random.uniform(-1, 1, (draws, len(body.joints)))
     change = random.uniform(-0.3, 0.3, (draws, len(body.edges)))
-    shapes = rest(body, turn, dtype, change)
-    return jax.tree.map(lambda x: jnp.repeat(x, 20, 0)[:steps], shapes)
+    turn, change = (np.repeat(one, 20, 0)[:steps] for one in (turn, change))
+    return rest(body, turn, dtype, change)
 
 
 def force(measures: world.Measures):

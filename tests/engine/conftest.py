@@ -60,7 +60,7 @@ jax.config.update("jax_numpy_rank_promotion", "raise")
 import genotypes  # noqa: E402
 from typer.testing import CliRunner  # noqa: E402
 
-from microcosmos import cli, spec, world  # noqa: E402
+from microcosmos import cli, device, spec, world  # noqa: E402
 from microcosmos.archive import creature  # noqa: E402
 from microcosmos.build import build, build_world  # noqa: E402
 
@@ -86,7 +86,7 @@ def immerse():
         place = spec.World(width=size[0], height=size[1], viscosity=viscosity, fluid=fluid)
         box = build_world(place, spec.Coupling(**coupling), body, dtype)
         positions = body.positions - body.positions.mean(0) + np.array(size) / 2
-        return box, world.at_rest(box, jnp.asarray(positions, dtype))
+        return box, jax.jit(world.at_rest)(box, device.array(positions, dtype))
 
     return put
 

@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 
 from microcosmos import search
+from microcosmos.device import array
 
 AXES = (
     search.Axis(measure=0, low=1e-4, high=1e2, bins=6, logarithmic=True),
@@ -21,12 +21,12 @@ def candidates(genotypes, count, seed, generation=0, levels=4):
     first, second = 10 ** random.uniform(-5, 3, count), random.uniform(-0.2, 1.2, count)
     measures = np.stack([first, second], 1)
     return search.Elites(
-        occupied=jnp.asarray(random.random(count) < 0.9),
-        fitness=jnp.asarray(random.integers(0, levels, count), jnp.float32),
-        measures=jnp.asarray(measures, jnp.float32),
-        generation=jnp.full(count, generation, jnp.int32),
-        slot=jnp.arange(count, dtype=jnp.int32),
-        curiosity=jnp.ones(count, jnp.float32),
+        occupied=array(random.random(count) < 0.9),
+        fitness=array(random.integers(0, levels, count), np.float32),
+        measures=array(measures, np.float32),
+        generation=array(np.full(count, generation), np.int32),
+        slot=array(np.arange(count), np.int32),
+        curiosity=array(np.ones(count), np.float32),
         genotypes=genotypes(random, count),
     )
 
@@ -40,7 +40,7 @@ def awkward(genotypes, count, seed, generation=0):
     fitness[odd] = random.choice(AWKWARD, odd.sum())
     odd = random.random((count, 2)) < 0.4
     measures[odd] = random.choice(AWKWARD, odd.sum())
-    return replace(rows, fitness=jnp.asarray(fitness), measures=jnp.asarray(measures))
+    return replace(rows, fitness=array(fitness), measures=array(measures))
 
 
 def same(a, b):

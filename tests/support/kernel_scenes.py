@@ -1,15 +1,18 @@
 """Worlds in which the native kernel is compared with JAX."""
 
 from dataclasses import replace
+from functools import partial
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 
 from microcosmos import bodies, coupling, fields, filaments, fluid, groups, world
 from microcosmos.build import build_rods
 from microcosmos.build.scene import build_layout
+from microcosmos.device import array
 
+single = partial(array, dtype=np.float32)
+at_rest = jax.jit(world.at_rest)
 STIFF = {"stretch": 1.0, "shear": 1.0, "bend": 1.0}
 OBSERVED = (
     "centre",
@@ -25,46 +28,46 @@ OBSERVED = (
 
 def scene(body, size=(48, 48), *, matched=False, limits=(0.1, 0.1), nu_c=None, **form):
     """A body that bends in a travelling wave: world, start, rest shapes of 100 steps."""
-    member = groups.Groups(jnp.asarray(body.member, jnp.int32), body.count)
+    member = groups.Groups(array(body.member, np.int32), body.count)
     box = world.World(
-        viscosity=jnp.float32(0.05),
+        viscosity=single(0.05),
         rods=build_rods(body),
         groups=member,
         size=size,
         form=world.Form(**form),
-        limits=world.Limits(*(None if one is None else jnp.float32(one) for one in limits)),
+        limits=world.Limits(*(None if one is None else single(one) for one in limits)),
         layout=build_layout(body) if matched else None,
-        nu_c=None if nu_c is None else jnp.float32(nu_c),
+        nu_c=None if nu_c is None else single(nu_c),
     )
     middle = body.positions - body.positions.mean(0) + np.array(size) / 2
-    start = world.at_rest(box, jnp.asarray(middle, jnp.float32))
+    start = at_rest(box, single(middle))
     time = np.arange(100)[:, None] / 100
     joint, edge = (np.arange(n)[None] / (n + 1) for n in (len(body.joints), len(body.edges)))
     angle = body.rest_angle[None] + 0.1 * time * np.sin(2 * np.pi * (joint - time))
     length = body.rest_length[None] * (1 + 0.1 * time * np.sin(2 * np.pi * (edge - time)))
-    return box, start, filaments.Rest(jnp.float32(angle), jnp.float32(length))
+    return box, start, filaments.Rest(single(angle), single(length))
 
 
 def repelling(body, size=(48, 48), strength=4.0, gradient=fields.binomial, **options):
     """A scene whose nodes repel each other."""
     box, start, rest = scene(body, size, **options)
-    limit, strength = jnp.float32(0.1), jnp.float32(strength)
+    limit, strength = single(0.1), single(strength)
     return replace(box, steric=fields.Steric(strength, limit, gradient)), start, rest
 
 
 def moved(given, way):
     """A scene whose bodies start elsewhere."""
     box, start, rest = given
-    return box, world.at_rest(box, start.positions + jnp.asarray(way, jnp.float32)[None]), rest
+    return box, at_rest(box, np.asarray(start.positions) + np.float32(way)[None]), rest
 
 
 def fed(body, size=(48, 48), *, rate=None, diffusion=None, **options):
     """A scene with packets of energy."""
     box, start, rest = scene(body, size, **options)
-    packets = jnp.float32(fields.packets(size, fields.Packets(5, 3.0, 1.0, 0)))
-    rate, diffusion = (None if x is None else jnp.float32(x) for x in (rate, diffusion))
+    packets = single(fields.packets(size, fields.Packets(5, 3.0, 1.0, 0)))
+    rate, diffusion = (None if x is None else single(x) for x in (rate, diffusion))
     box = replace(box, energy=fields.Energy(packets, diffusion, rate))
-    return box, world.at_rest(box, start.positions), rest
+    return box, at_rest(box, start.positions), rest
 
 
 def surrounded(given, *names):
@@ -79,13 +82,13 @@ def surrounded(given, *names):
     x, y = np.array(box.size) // 2
     solid[x - 4 : x - 1, y + 1 : y + 3] = solid[x + 7, y] = True
     strength[: box.size[0] // 3] = np.linspace(0, 0.3, box.size[0] // 3)[:, None]
-    sponge = fluid.Sponge(jnp.float32(strength), jnp.asarray([0.02, -0.01], jnp.float32))
+    sponge = fluid.Sponge(single(strength), single([0.02, -0.01]))
     varied = fluid.vortices(box.size, 0.02, float(box.viscosity), 2).force
     parts = {
-        "force": jnp.asarray([2e-5, -1e-5], jnp.float32),
-        "solid": jnp.asarray(solid),
+        "force": single([2e-5, -1e-5]),
+        "solid": array(solid),
         "sponge": sponge,
-        "force_field": jnp.float32(varied),
+        "force_field": single(varied),
     }
     around = fluid.Surroundings(**{name: parts[name] for name in names})
     return replace(box, surroundings=around), start, rest
@@ -94,8 +97,8 @@ def surrounded(given, *names):
 def kept_out(given):
     """A scene with solid cells that keep bodies out, in the middle of the world."""
     box, start, rest = surrounded(given, "force", "solid")
-    away = jnp.float32(fields.away(np.asarray(box.surroundings.solid)))
-    return replace(box, barrier=fields.Barrier(away, jnp.float32(0.1))), start, rest
+    away = single(fields.away(np.asarray(box.surroundings.solid)))
+    return replace(box, barrier=fields.Barrier(away, single(0.1))), start, rest
 
 
 def chain(nodes=20, spacing=1.0, **stiffness):
@@ -117,8 +120,8 @@ def heap():
 def grown(body, nodes, **options):
     """A chain of which only the first nodes have grown."""
     box, start, rest = scene(body, **options)
-    present = jnp.arange(len(body.positions)) < nodes
-    rods = world.grown_rods(box.rods, present)
+    present = array(np.arange(len(body.positions)) < nodes)
+    rods = jax.jit(world.grown_rods)(box.rods, present)
     return replace(box, present=present, rods=rods), start, rest
 
 
@@ -253,16 +256,16 @@ def any_scene(rng):
     box, start, rest = given
     if rng.random() < 0.3:
         gradient = (fields.gaussian, fields.binomial)[rng.integers(2)]
-        box = replace(box, steric=fields.Steric(jnp.float32(4), jnp.float32(0.1), gradient))
+        box = replace(box, steric=fields.Steric(single(4), single(0.1), gradient))
     return box, start, rest
 
 
 def anywhere(given, rng):
     """A scene in random surroundings."""
     box, start, rest = given
-    solid = jnp.asarray(rng.random(box.size) < rng.choice([0.01, 0.3]))
-    strength = jnp.float32(rng.uniform(0, 0.5, box.size) * (rng.random(box.size) < 0.1))
-    force, velocity = (jnp.float32(rng.uniform(-s, s, 2)) for s in (5e-5, 0.05))
+    solid = array(rng.random(box.size) < rng.choice([0.01, 0.3]))
+    strength = single(rng.uniform(0, 0.5, box.size) * (rng.random(box.size) < 0.1))
+    force, velocity = (single(rng.uniform(-s, s, 2)) for s in (5e-5, 0.05))
     sponge = fluid.Sponge(strength, velocity)
     parts = [one if rng.random() < 0.6 else None for one in (force, solid, sponge)]
     return replace(box, surroundings=fluid.Surroundings(*parts)), start, rest
@@ -271,7 +274,7 @@ def anywhere(given, rng):
 def run(rollout, scene, steps=100):
     """Carry out the first steps of a scene; return the end and the measures."""
     box, start, rest = scene
-    return jax.jit(rollout)(box, start, jax.tree.map(lambda x: x[:steps], rest))
+    return jax.jit(rollout)(box, start, jax.tree.map(lambda x: np.asarray(x)[:steps], rest))
 
 
 def in_jax(box, start, rest):

@@ -21,6 +21,7 @@ from .. import (
 )
 from ..bodies import extent
 from ..bodies.layout import MAX_NODES
+from ..device import array
 from ..naming import FORMS
 from ..spec.search import MEASURED
 from .encodings import build_encoding
@@ -121,7 +122,7 @@ def build_placements(box: spec.World) -> jnp.ndarray | None:
     if energy is None or energy.placements == 1:
         return None
     shifts = fields.placements(size, energy.placements, energy.seed)
-    return jnp.asarray(shifts, jnp.int32)
+    return array(shifts, jnp.int32)
 
 
 def matching_of(body: spec.Body) -> Matching:
@@ -131,7 +132,7 @@ def matching_of(body: spec.Body) -> Matching:
 
 def build_places(box: spec.World, dtype: Any) -> jnp.ndarray | None:
     """Build the places of the copies of a creature; None if it is alone."""
-    return None if box.copies is None else jnp.asarray(box.copies.places, dtype)
+    return None if box.copies is None else array(box.copies.places, dtype)
 
 
 def build_world(
@@ -145,9 +146,9 @@ def build_world(
     """Build the box of fluid around bodies; `matching` is `build_matching` if left out."""
     size = (box.width, box.height)
     return world.World(
-        viscosity=jnp.asarray(box.viscosity, dtype),
+        viscosity=array(box.viscosity, dtype),
         rods=build_rods(body, dtype),
-        groups=groups.Groups(jnp.asarray(body.member, jnp.int32), body.count),
+        groups=groups.Groups(array(body.member, jnp.int32), body.count),
         size=size,
         form=world.Form(
             projection=PROJECTIONS[form.projection],
@@ -190,18 +191,18 @@ def build_soft_matching(
     """Build shape matching in which each joint bends as softly as the body has it."""
     found = build_layout(body, dtype)
     soft = bool(np.any(body.bend < 1))
-    return replace(found, bend=jnp.asarray(body.bend, dtype)) if soft else found
+    return replace(found, bend=array(body.bend, dtype)) if soft else found
 
 
 def build_layout(body: bodies.Body, dtype: Any = jnp.float32) -> filaments.Layout:
     """Build the layout of bodies as device arrays."""
     found = bodies.layout(body)
-    piece = jnp.asarray(found.piece, jnp.int32)
+    piece = array(found.piece, jnp.int32)
     return filaments.Layout(
-        angle=jnp.asarray(found.angle, dtype),
-        rest_angle=jnp.asarray(found.rest_angle, dtype),
-        turned=jnp.asarray(found.turned, dtype),
-        placed=jnp.asarray(found.placed, dtype),
+        angle=array(found.angle, dtype),
+        rest_angle=array(found.rest_angle, dtype),
+        turned=array(found.turned, dtype),
+        placed=array(found.placed, dtype),
         pieces=groups.Groups(piece, int(found.piece.max()) + 1, ascending=False),
     )
 
@@ -218,8 +219,8 @@ def build_steric(steric: spec.Steric | None, dtype: Any) -> fields.Steric | None
     if steric is None:
         return None
     return fields.Steric(
-        strength=jnp.asarray(steric.strength, dtype),
-        limit=jnp.asarray(steric.limit, dtype),
+        strength=array(steric.strength, dtype),
+        limit=array(steric.limit, dtype),
         gradient=SMOOTHING[steric.smoothing],
     )
 
@@ -232,7 +233,7 @@ def build_energy(
         return None
     packets = fields.Packets(energy.packets, energy.width, energy.amplitude, energy.seed)
     return fields.Energy(
-        start=jnp.asarray(fields.packets(size, packets), dtype),
+        start=array(fields.packets(size, packets), dtype),
         diffusion=_scalar(energy.diffusion or None, dtype),
         rate=_scalar(energy.rate if energy.consume else None, dtype),
     )
@@ -247,21 +248,21 @@ def build_rods(body: bodies.Body, dtype: Any = jnp.float32) -> filaments.Rods:
     ) -> tuple[filaments.Pairing, ...]:
         return tuple(
             filaments.Pairing(
-                jnp.asarray(c.partner[:members]),
-                jnp.asarray(c.constraint[:members]),
-                jnp.asarray(c.sign[:members], dtype),
+                array(c.partner[:members]),
+                array(c.constraint[:members]),
+                array(c.sign[:members], dtype),
             )
             for c in colours
         )
 
     return filaments.Rods(
-        edges=jnp.asarray(body.edges),
+        edges=array(body.edges),
         edge_colours=pairings(body.edge_colours, nodes),
         joint_colours=pairings(body.joint_colours, edges),
-        stretch=jnp.asarray(body.stretch, dtype),
-        shear=jnp.asarray(body.shear, dtype),
-        bend=jnp.asarray(body.bend, dtype),
-        joints=jnp.asarray(body.joints, jnp.int32),
+        stretch=array(body.stretch, dtype),
+        shear=array(body.shear, dtype),
+        bend=array(body.bend, dtype),
+        joints=array(body.joints, jnp.int32),
     )
 
 
@@ -273,10 +274,10 @@ def build_stroke(gait: spec.Gait, steps: int, dtype: Any = jnp.float32) -> filam
     ramp = np.minimum(1, rise)[:, None]
     body = swimmer.body
     return filaments.Rest(
-        angle=jnp.asarray(body.rest_angle[None] + ramp * angle, dtype),
-        length=jnp.asarray(body.rest_length[None] * (1 + ramp * length), dtype),
+        angle=array(body.rest_angle[None] + ramp * angle, dtype),
+        length=array(body.rest_length[None] * (1 + ramp * length), dtype),
     )
 
 
 def _scalar(value: float | None, dtype: Any) -> Any:
-    return None if value is None else jnp.asarray(value, dtype)
+    return None if value is None else array(value, dtype)

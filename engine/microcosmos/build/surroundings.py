@@ -8,16 +8,17 @@ import jax.numpy as jnp
 import numpy as np
 
 from .. import fields, fluid, spec, world
+from ..device import array
 from ..fields import barrier
 
 
 def build_surroundings(box: spec.World, dtype: Any = jnp.float32) -> fluid.Surroundings:
     """Build the walls of the fluid, and the force that keeps a flow up."""
     solid, flow = box.solid, build_flow(box)
-    around = fluid.Surroundings(solid=None if solid is None else jnp.asarray(solid))
+    around = fluid.Surroundings(solid=None if solid is None else array(solid))
     if flow is None:
         return around
-    force = jnp.asarray(flow.force, dtype)
+    force = array(flow.force, dtype)
     return replace(around, **{"force" if force.ndim == 1 else "force_field": force})
 
 
@@ -39,7 +40,7 @@ def build_start(box: spec.World, place: world.World, positions: np.ndarray) -> w
     """
     dtype = place.viscosity.dtype
     at_rest = jax.jit(world.at_rest)  # One program instead of forty.
-    start = at_rest(place, jnp.asarray(positions, dtype))
+    start = at_rest(place, array(positions, dtype))
     flow = build_flow(box)
     if flow is None:
         return start
@@ -56,5 +57,5 @@ def build_barrier(box: spec.World, dtype: Any) -> fields.Barrier | None:
     solid = box.solid
     if solid is None:
         return None
-    away = jnp.asarray(fields.away(solid), dtype)
-    return fields.Barrier(away, jnp.asarray(barrier.LIMIT, dtype))
+    away = array(fields.away(solid), dtype)
+    return fields.Barrier(away, array(barrier.LIMIT, dtype))

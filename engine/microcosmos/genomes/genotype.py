@@ -16,6 +16,7 @@ from .encoding import Encoding
 from .plan import BodyGraph
 
 T = TypeVar("T")
+NEGATIVE_ZERO = np.uint32(1 << 31)
 
 
 class Vector(eqx.Module):
@@ -78,7 +79,8 @@ def words(genotypes: Genotype) -> UInt32[Array, "row word"]:
 
 
 def _bits(values: Float[Array, "row gene"]) -> UInt32[Array, "row gene"]:
-    return jax.lax.bitcast_convert_type(values.astype(jnp.float32) + 0.0, jnp.uint32)
+    bits = jax.lax.bitcast_convert_type(values.astype(jnp.float32), jnp.uint32)
+    return jnp.where(bits == NEGATIVE_ZERO, np.uint32(0), bits)  # XLA leaves out a sum with 0.
 
 
 def take(genotypes: T, index: int) -> T:

@@ -7,6 +7,7 @@ import numpy as np
 from jax.typing import DTypeLike
 from jaxtyping import Array, Bool, Float, Int, UInt32
 
+from ..device import array
 from ..genomes import Genotype, words
 from .cells import Axis, Cells
 
@@ -43,7 +44,7 @@ def no_elites(cells: int, measures: int, genotype: Genotype) -> Elites:
 
 def zeros(dtype: DTypeLike, *shape: int) -> Array:
     """Return zeros from the host: `jnp.zeros` compiles a program for each shape."""
-    return jnp.asarray(np.zeros(shape, dtype))
+    return array(np.zeros(shape, dtype))
 
 
 def candidates(

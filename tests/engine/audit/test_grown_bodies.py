@@ -3,7 +3,6 @@
 from functools import cache
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 from grown_bodies import ROOM, genotype_of, grown_file, grown_scene
@@ -12,7 +11,9 @@ from microcosmos import bodies, search
 from microcosmos.audit.physics import audit
 from microcosmos.audit.variants import at_full_strength, body_of, refine, with_limits
 from microcosmos.build import build_task
+from microcosmos.device import array
 from microcosmos.filaments import Rest
+from microcosmos.genomes import Drive
 
 SOFT = 0.05
 
@@ -22,10 +23,18 @@ def rebuilt(softest):
     """Simulate the creature: its scene, drive and path, the body built again, its rest."""
     scene = grown_scene(softest=softest)
     task = build_task(scene, room=ROOM)
-    driven = search.drive(task, jax.tree.map(jnp.asarray, genotype_of(scene)))
-    _, seen = search.simulate(driven)
+
+    @jax.jit
+    def swim(genotype):
+        driven = search.drive(task, genotype)
+        given = driven.world, driven.start, driven.inputs
+        return given, driven.layout, search.simulate(driven)[1]
+
+    given, layout, seen = swim(genotype_of(scene))
+    driven = Drive(*given, layout=layout)
     body, joints, edges = body_of(scene, driven)
-    rest = Rest(seen.rest.angle[:, joints], seen.rest.length[:, edges])
+    angle, length = np.asarray(seen.rest.angle), np.asarray(seen.rest.length)
+    rest = Rest(array(angle[:, joints]), array(length[:, edges]))
     return scene, driven, np.asarray(seen.centre), body, rest
 
 

@@ -20,6 +20,7 @@ def random_populations(dtype="float64"):
     return tuple(jnp.asarray(random.uniform(-0.01, 0.01, SIZE), dtype) for _ in range(9))
 
 
+@jax.jit
 def step(f, force, rates):
     return fluid.stream(fluid.collide(f, fluid.density(f), fluid.momentum(f), force, rates))
 

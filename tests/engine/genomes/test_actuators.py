@@ -9,6 +9,7 @@ import pytest
 
 from microcosmos import bodies, filaments, genomes, search, spec, world
 from microcosmos.build import build_layout, build_task
+from microcosmos.device import array
 from microcosmos.genomes import Actuators, Drive, actuators
 from microcosmos.spec.evolution import UNLIMITED
 
@@ -24,19 +25,36 @@ def scene(float64):
     layout = build_layout(body, float64)
 
     def bending(rate, waves=0.0):
-        time = jnp.arange(1, STEPS + 1)[:, None]
-        turn = 0.3 * jnp.sin(rate / 0.3 * time - waves * jnp.arange(7)[None])
-        start = jnp.sin(-waves * jnp.arange(7))[None] * 0.3
-        length = jnp.ones((STEPS, 8))
-        return Drive(task.world, task.start, filaments.Rest(turn - start, length))
+        time = np.arange(1, STEPS + 1)[:, None]
+        turn = 0.3 * np.sin(rate / 0.3 * time - waves * np.arange(7)[None])
+        start = np.sin(-waves * np.arange(7))[None] * 0.3
+        rest = filaments.Rest(array(turn - start), array(np.ones((STEPS, 8))))
+        return Drive(task.world, task.start, rest)
 
     return layout, bending
+
+
+def carried_out(driven, limits):
+    """Rest shapes and clock in open loop, from one program."""
+
+    @jax.jit
+    def bounded(rest):
+        found = genomes.carried_out(replace(driven, inputs=rest), limits)
+        return found.inputs, found.clock
+
+    inputs, clock = bounded(driven.inputs)
+    return replace(driven, inputs=inputs, clock=clock)
+
+
+def fastest(rest, layout):
+    """The greatest speed of a node."""
+    return np.max(jax.jit(lambda rest: actuators.speeds(rest, layout, None))(rest))
 
 
 def test_a_slow_gait_is_carried_out_as_commanded(scene):
     layout, bending = scene
     driven = bending(1e-3, waves=0.5)
-    found = genomes.carried_out(driven, Actuators(layout, max_speed=0.1))
+    found = carried_out(driven, Actuators(layout, max_speed=0.1))
     np.testing.assert_allclose(found.inputs.angle, driven.inputs.angle, atol=1e-12)
     np.testing.assert_allclose(found.clock, np.arange(1, STEPS + 1), atol=1e-9)
 
@@ -44,28 +62,28 @@ def test_a_slow_gait_is_carried_out_as_commanded(scene):
 def test_the_clock_of_a_fast_gait_slows_and_no_node_is_faster_than_the_bound(scene):
     layout, bending = scene
     driven = bending(0.05, waves=0.5)
-    found = genomes.carried_out(driven, Actuators(layout, max_speed=0.02))
-    speeds = actuators.speeds(found.inputs, layout, None)
+    found = carried_out(driven, Actuators(layout, max_speed=0.02))
     # Shapes between two commands are bent linearly, which is exact to second order.
-    assert 0.0195 < np.max(speeds) < 0.0205
-    assert np.max(actuators.speeds(driven.inputs, layout, None)) > 0.1
+    assert 0.0195 < fastest(found.inputs, layout) < 0.0205
+    assert fastest(driven.inputs, layout) > 0.1
     clock = np.asarray(found.clock)
     assert np.all(np.diff(clock) > 0)
     # The same shapes, later.
     at = np.searchsorted(clock, 20.0)
     expected = np.asarray(driven.inputs.angle)[19]
     assert at > 100
-    np.testing.assert_allclose(found.inputs.angle[at], expected, atol=0.03)
+    np.testing.assert_allclose(np.asarray(found.inputs.angle)[at], expected, atol=0.03)
 
 
 def test_a_lag_is_a_first_order_response(scene):
     layout, bending = scene
     driven = bending(0.0)
-    step = replace(
-        driven, inputs=filaments.Rest(jnp.full((STEPS, 7), 0.2), jnp.ones((STEPS, 8)))
+    rest = filaments.Rest(array(np.full((STEPS, 7), 0.2)), array(np.ones((STEPS, 8))))
+    step = replace(driven, inputs=rest)
+    found = carried_out(step, Actuators(layout, lag=9.0)).inputs.angle
+    np.testing.assert_allclose(
+        np.asarray(found)[:, 0], 0.2 * (1 - 0.9 ** np.arange(1, STEPS + 1)), rtol=1e-12
     )
-    found = genomes.carried_out(step, Actuators(layout, lag=9.0)).inputs.angle[:, 0]
-    np.testing.assert_allclose(found, 0.2 * (1 - 0.9 ** np.arange(1, STEPS + 1)), rtol=1e-12)
 
 
 def test_the_bend_of_the_whole_body_is_bounded(scene):
@@ -89,17 +107,19 @@ def test_a_closed_loop_has_the_same_bounds(scene, bounds):
     closed = Drive(
         driven.world, driven.start, (jnp.arange(STEPS),), lambda b, s, g: control(b, s, *g)
     )
-    rests = [
-        world.rollout(
+
+    def rests_of(driven):
+        one = genomes.carried_out(driven, limits)
+        return world.rollout(
             one.world, one.start, one.inputs, lambda s, m: m.rest, one.control, one.remember
         )[1]
-        for one in (genomes.carried_out(closed, limits), genomes.carried_out(driven, limits))
-    ]
+
+    rests = jax.jit(lambda: [rests_of(one) for one in (closed, driven)])()
     # It cuts corners that the open loop takes slowly.
     atol = 0.1 if "max_speed" in bounds else 1e-9
     np.testing.assert_allclose(rests[0].angle, rests[1].angle, atol=atol)
     if "max_speed" in bounds:
-        assert np.max(actuators.speeds(rests[0], layout, None)) < 0.0205
+        assert fastest(rests[0], layout) < 0.0205
 
 
 def test_they_can_be_differentiated(scene, require_slope):
@@ -125,7 +145,9 @@ def test_bounded_actuators_keep_random_controllers_from_the_limits():
             lambda genotype, task=task: search.evaluate(task, genotype)
         )
         keys = jax.random.split(jax.random.key(3), 24)
-        newcomers = jax.vmap(lambda key, task=task: task.encoding.newcomer(key=key))(keys)
+        newcomers = jax.jit(jax.vmap(lambda key, task=task: task.encoding.newcomer(key=key)))(
+            keys
+        )
         found = block(newcomers).measures[:, search.MEASURES.index("limited")]
         shares[name] = np.asarray(found)
     assert np.mean(shares["bounded"] > 1e-3) < 0.1

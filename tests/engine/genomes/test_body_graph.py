@@ -11,6 +11,7 @@ from genotypes import any_network, padded
 
 from microcosmos import filaments, fluid, genomes, spec, units, world
 from microcosmos.build import build_task
+from microcosmos.device import array
 from microcosmos.neat import plans
 from microcosmos.search.simulation import drive
 
@@ -138,16 +139,14 @@ def test_soft_joints_relax_exponentially(root, native):
     )
     network = padded(any_network(control, np.random.default_rng(0)), ROOM)
     genotype = genomes.BodyGraph(body_plans.to_jax(plan), network)
-    driven = drive(task, genotype, differentiable=True)
-    box, start = driven.world, driven.start
+    box, start, first = developed(task, genotype)
     layout, joints = box.layout, np.asarray(box.rods.joints)
-    rest = jax.tree.map(lambda one: jnp.repeat(one[:1], 40, 0), driven.inputs)
-    tip = np.asarray(box.rods.bend > 0)
+    tip = np.asarray(box.rods.bend) > 0
     # A joint that is bent alone: the second to last of the root.
     bent = int(np.flatnonzero(tip)[1])
-    rest = type(rest)(
-        jnp.broadcast_to(layout.rest_angle, rest.angle.shape).at[:, bent].add(turn), rest.length
-    )
+    angle = np.tile(np.asarray(layout.rest_angle), (40, 1))
+    angle[:, bent] += np.float32(turn)
+    rest = filaments.Rest(array(angle), array(np.repeat(np.asarray(first.length), 40, 0)))
     way = world.native.rollout if native else _observed
     measures = jax.jit(way)(box, start, rest)[1]
     ends = np.asarray(measures.positions)[:, np.asarray(box.rods.edges)]
@@ -165,8 +164,19 @@ def test_stiff_joints_have_no_error_to_keep(population):
     assert task.encoding.softest == 1
     plan = body_plans.member(population, 0)
     network = task.encoding.newcomer(key=jax.random.key(0)).network
-    driven = drive(task, genomes.BodyGraph(plan, network), differentiable=True)
-    assert driven.layout.bend is None
+    box, *_ = developed(task, genomes.BodyGraph(plan, network))
+    assert box.layout.bend is None
+
+
+def developed(task, genotype):
+    """The world and the start of a creature, and its rest shape at first, from one program."""
+
+    @jax.jit
+    def develop(genotype):
+        driven = drive(task, genotype, differentiable=True)
+        return driven.world, driven.start, jax.tree.map(lambda x: x[:1], driven.inputs)
+
+    return develop(genotype)
 
 
 def _observed(box, start, rest):

@@ -85,8 +85,20 @@ def creature(task, seed):
     )
 
 
+def controlled(task, genotype):
+    """World, start and controller of a creature, from one program."""
+
+    @jax.jit
+    def develop(genotype):
+        driven = drive(task, genotype, differentiable=True)
+        return driven.world, driven.start, driven.controller
+
+    return develop(genotype)
+
+
 def with_hidden(network, task, rng):
     """Add a chain of nine hidden nodes, from an input through all activations to an output."""
+    network = jax.tree.map(np.array, network)
     rows, links = len(network.bias), int(network.connection_used.sum())
     used = int(network.node_used.sum())
     inputs = task.encoding.controls.inputs
@@ -99,38 +111,47 @@ def with_hidden(network, task, rng):
     cyclic = getattr(task.encoding, "recurrent", False)
     if cyclic:  # The last link leads back.
         target[-1] = hidden[3]
-    return CPPN(
-        node_used=network.node_used.at[hidden].set(True),
-        node_id=network.node_id.at[hidden].set(hidden),
-        activation=network.activation.at[hidden].set(np.arange(9)),
-        bias=network.bias.at[hidden].set(rng.normal(0, 1, 9)),
-        connection_used=network.connection_used.at[fresh].set(True),
-        innovation=network.innovation.at[fresh].set(fresh),
-        source=network.source.at[fresh].set(source),
-        target=network.target.at[fresh].set(target),
-        enabled=network.enabled.at[fresh].set(True).at[1].set(False),
-        weight=network.weight.at[fresh].set(weight),
-    )
+    network.node_used[hidden] = True
+    network.node_id[hidden] = hidden
+    network.activation[hidden] = np.arange(9)
+    network.bias[hidden] = rng.normal(0, 1, 9)
+    network.connection_used[fresh] = True
+    network.innovation[fresh] = fresh
+    network.source[fresh], network.target[fresh] = source, target
+    network.enabled[fresh], network.enabled[1] = True, False
+    network.weight[fresh] = weight
+    return jax.tree.map(jnp.asarray, network)
 
 
 @pytest.mark.parametrize("name", OPEN)
 def test_the_kernel_develops_the_rest_shapes_of_jax(name):
     task = task_of(OPEN[name])
+
+    @jax.jit
+    def in_both(genotype):
+        driven = drive(task, genotype, differentiable=True)
+        found = native.develop(driven.world, driven.start, driven.controller)
+        return driven.inputs, driven.clock, found
+
     for seed in (0, 1):
-        driven = drive(task, creature(task, seed), differentiable=True)
-        rest, clock = jax.jit(native.develop)(driven.world, driven.start, driven.controller)
-        np.testing.assert_allclose(rest.angle, driven.inputs.angle, rtol=0, atol=2e-5)
-        np.testing.assert_allclose(rest.length, driven.inputs.length, rtol=0, atol=2e-5)
-        expected = np.arange(1.0, 201) if driven.clock is None else driven.clock
+        inputs, timed, (rest, clock) = in_both(creature(task, seed))
+        np.testing.assert_allclose(rest.angle, inputs.angle, rtol=0, atol=2e-5)
+        np.testing.assert_allclose(rest.length, inputs.length, rtol=0, atol=2e-5)
+        expected = np.arange(1.0, 201) if timed is None else timed
         np.testing.assert_allclose(clock, expected, rtol=0, atol=1e-3)
 
 
 def test_a_phase_leads_the_timer():
     task = task_of({})
-    genotype, phase = creature(task, 3), jnp.float32(1.0)
-    driven = task.encoding.drive(task.world, task.start, genotype, phase)
-    rest, _ = native.develop(driven.world, driven.start, driven.controller)
-    np.testing.assert_allclose(rest.angle, driven.inputs.angle, rtol=0, atol=1e-5)
+
+    @jax.jit
+    def in_both(genotype, phase):
+        driven = task.encoding.drive(task.world, task.start, genotype, phase)
+        rest, _ = native.develop(driven.world, driven.start, driven.controller)
+        return driven.inputs, rest
+
+    inputs, rest = in_both(creature(task, 3), jnp.float32(1.0))
+    np.testing.assert_allclose(rest.angle, inputs.angle, rtol=0, atol=1e-5)
 
 
 def differing(controls):
@@ -171,7 +192,8 @@ def test_controls_may_differ_between_creatures_of_a_batch(name):
     expected, found = in_both(jax.tree.map(jnp.asarray, rows))
     jax.tree.map(lambda a, b: np.testing.assert_allclose(a, b, atol=2e-5), found, expected)
     for number in range(3):  # The arrays of NumPy are constants of a program.
-        alone = driven({name: values[number] for name, values in rows.items()}).inputs
+        row = {name: values[number] for name, values in rows.items()}
+        alone = jax.jit(lambda row=row: driven(row).inputs)()
         for one, all_ in zip(jax.tree.leaves(alone), jax.tree.leaves(expected), strict=True):
             np.testing.assert_allclose(all_[number], one, rtol=0, atol=2e-5)
 
@@ -180,16 +202,16 @@ def test_controls_may_differ_between_creatures_of_a_batch(name):
 def test_the_kernel_closes_the_loop_as_jax_does(name):
     consumed = {**ENERGY, "consume": True, "diffusion": 0.05}
     task = task_of(CLOSED[name], ENERGY if "without" in name else consumed)
-    driven = drive(task, creature(task, 1), differentiable=True)
 
     @jax.jit
-    def in_jax():
-        return world.rollout(
+    def in_both(genotype):
+        driven = drive(task, genotype, differentiable=True)
+        in_jax = world.rollout(
             driven.world, driven.start, driven.inputs, observe, driven.control, driven.remember
         )
+        return in_jax, native.rollout(driven.world, driven.start, driven.controller)
 
-    end, seen = in_jax()
-    found, observed = jax.jit(native.rollout)(driven.world, driven.start, driven.controller)
+    (end, seen), (found, observed) = jax.device_get(in_both(creature(task, 1)))
     for steps in (1, 10, 200):
         np.testing.assert_allclose(
             observed.rest.angle[:steps], seen.rest.angle[:steps], rtol=0, atol=1e-4
@@ -203,18 +225,15 @@ def test_the_kernel_closes_the_loop_as_jax_does(name):
 @pytest.mark.parametrize("name", ["cppn", "layers", "series"])
 def test_every_instruction_set_develops_the_same_bits(name):
     task = task_of(OPEN[name])
-    driven = drive(task, creature(task, 0), differentiable=True)
-    sets = kernels.instruction_sets()
-    given = driven.world, driven.start, driven.controller
-    found = [native.develop(*given, one) for one in sets]
+    given = controlled(task, creature(task, 0))
+    found = [native.develop(*given, one) for one in kernels.instruction_sets()]
     for other in found[1:]:
         jax.tree.map(np.testing.assert_array_equal, other, found[0])
 
 
 def test_every_instruction_set_closes_the_loop_with_the_same_bits():
     task = task_of(CLOSED["senses with memory"], ENERGY)
-    driven = drive(task, creature(task, 0), differentiable=True)
-    given = driven.world, driven.start, driven.controller
+    given = controlled(task, creature(task, 0))
     found = [native.rollout(*given, one) for one in kernels.instruction_sets()]
     for other in found[1:]:
         jax.tree.map(np.testing.assert_array_equal, other, found[0])
@@ -222,9 +241,9 @@ def test_every_instruction_set_closes_the_loop_with_the_same_bits():
 
 def test_a_network_that_refers_to_rows_it_lacks_is_refused():
     task = task_of({})
-    driven = drive(task, creature(task, 0), differentiable=True)
-    commands = driven.controller.commands
+    box, start, controller = controlled(task, creature(task, 0))
+    commands = controller.commands
     wrong = jnp.full_like(commands.source, len(commands.bias))
-    broken = replace(driven.controller, commands=replace(commands, source=wrong))
+    broken = replace(controller, commands=replace(commands, source=wrong))
     with pytest.raises(Exception, match="refers to what it lacks"):
-        jax.block_until_ready(native.develop(driven.world, driven.start, broken))
+        jax.block_until_ready(native.develop(box, start, broken))

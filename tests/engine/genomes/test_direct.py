@@ -8,7 +8,7 @@ import pytest
 from microcosmos import bodies, genomes, spec
 from microcosmos.build import build_task
 from microcosmos.filaments import edge_angles, wrap
-from microcosmos.genomes import Vector
+from microcosmos.genomes import Drive, Vector
 
 STEPS = 40
 
@@ -24,10 +24,20 @@ def grow(float64):
         task = build_task(scene, float64)
         parts = task.encoding.parts
         values = np.concatenate([np.zeros(n) + genes.get(name, 0) for name, n in parts.items()])
-        driven = task.encoding.drive(task.world, task.start, Vector(jnp.asarray(values)), None)
-        return task, driven
+        return task, driven_by(task, values)
 
     return make
+
+
+def driven_by(task, values, phase=None):
+    """World, start and rest shapes of genes, from one program."""
+
+    @jax.jit
+    def drive(values, phase):
+        driven = task.encoding.drive(task.world, task.start, Vector(values), phase)
+        return driven.world, driven.start, driven.inputs
+
+    return Drive(*drive(values, phase))
 
 
 FREE = {
@@ -45,8 +55,9 @@ STAR = {"builder": "star", "arms": 4, "arm_nodes": 3}
 def test_genes_of_zero_are_the_middle_of_all_bounds(grow, body):
     task, driven = grow(body, {}, **FREE)
     np.testing.assert_allclose(driven.start.positions, task.start.positions, atol=1e-12)
-    np.testing.assert_allclose(driven.inputs.angle[7], task.encoding.controls.rest_angle)
-    np.testing.assert_allclose(driven.inputs.length[7], task.encoding.controls.rest_length)
+    angle, length = np.asarray(driven.inputs.angle), np.asarray(driven.inputs.length)
+    np.testing.assert_allclose(angle[7], task.encoding.controls.rest_angle)
+    np.testing.assert_allclose(length[7], task.encoding.controls.rest_length)
     rods = driven.world.rods
     for found, expected in ((rods.stretch, 0.6), (rods.bend, 0.25), (rods.shear, 1.0)):
         np.testing.assert_allclose(found, expected)
@@ -67,30 +78,36 @@ def test_equal_turns_and_lengths_make_an_arc_of_a_circle(grow):
 @pytest.mark.parametrize("body", [STAR, {"builder": "tree", "segment_nodes": 2}])
 def test_a_body_that_branches_starts_in_its_rest_shape(grow, body):
     _, driven = grow(body, {"rest_angle": 0.7, "rest_length": 0.4}, **FREE)
-    rods, positions = driven.world.rods, driven.start.positions
-    v = positions[rods.edges[:, 1]] - positions[rods.edges[:, 0]]
-    np.testing.assert_allclose(jnp.hypot(v[:, 0], v[:, 1]), driven.inputs.length[0])
-    angles = edge_angles(positions, rods)
-    found = angles[rods.joints[:, 1]] - angles[rods.joints[:, 0]]
-    np.testing.assert_allclose(wrap(found - driven.inputs.angle[0]), 0, atol=1e-12)
+
+    @jax.jit
+    def measured(positions, rods, rest):
+        v = positions[rods.edges[:, 1]] - positions[rods.edges[:, 0]]
+        angles = edge_angles(positions, rods)
+        found = angles[rods.joints[:, 1]] - angles[rods.joints[:, 0]]
+        return jnp.hypot(v[:, 0], v[:, 1]), wrap(found - rest.angle[0])
+
+    lengths, away = measured(driven.start.positions, driven.world.rods, driven.inputs)
+    np.testing.assert_allclose(lengths, driven.inputs.length[0])
+    np.testing.assert_allclose(away, 0, atol=1e-12)
 
 
 def test_waves_are_scaled_as_a_network_s_outputs_are(grow):
     t = 2 * np.pi * np.arange(STEPS) / 20
     genes = {"angles": np.tile([0.5, 0.0], 7), "lengths": np.tile([0.0, -0.25], 8)}
     _, driven = grow({"nodes": 9}, genes, terms=1, angle_scale=0.4, length_scale=0.2)
-    for joint in driven.inputs.angle.T:
+    for joint in np.asarray(driven.inputs.angle).T:
         np.testing.assert_allclose(joint, 0.4 * 0.5 * np.sin(t), atol=1e-12)
-    for edge in driven.inputs.length.T:
+    for edge in np.asarray(driven.inputs.length).T:
         np.testing.assert_allclose(edge, 1 - 0.2 * 0.25 * np.cos(t), atol=1e-12)
 
 
 def test_a_phase_moves_the_wave_ahead(grow):
     angles = np.tile([0.5, 0.1, 0.2, -0.3], 7)
     task, driven = grow({"nodes": 9}, {"angles": angles})
-    values = Vector(jnp.asarray(np.concatenate([angles, np.zeros(4 * 8)])))
-    ahead = task.encoding.drive(task.world, task.start, values, jnp.asarray(np.pi / 2))
-    np.testing.assert_allclose(ahead.inputs.angle[:20], driven.inputs.angle[5:25], atol=1e-12)
+    values = np.concatenate([angles, np.zeros(4 * 8)])
+    ahead = driven_by(task, values, np.float64(np.pi / 2))
+    late, early = (np.asarray(one.inputs.angle) for one in (driven, ahead))
+    np.testing.assert_allclose(early[:20], late[5:25], atol=1e-12)
 
 
 def test_contradicting_turns_around_a_branch_are_averaged():
@@ -108,8 +125,8 @@ def test_contradicting_turns_around_a_branch_are_averaged():
 def test_newcomers_differ_and_stay_within_their_spread(grow):
     task, _ = grow({"nodes": 9}, {}, spread=0.5, faintest=0.01, **FREE)
     keys = jax.random.split(jax.random.key(0), 200)
-    values = jax.vmap(lambda key: task.encoding.newcomer(key=key).values)(keys)
-    parts = jax.vmap(task.encoding.divided)(values)
+    values = jax.jit(jax.vmap(lambda key: task.encoding.newcomer(key=key).values))(keys)
+    parts = jax.device_get(jax.jit(jax.vmap(task.encoding.divided))(values))
     assert len(np.unique(np.asarray(values), axis=0)) == 200
     assert 0.49 < np.abs(parts["rest_angle"]).max() <= 0.5
     for name in ("angles", "lengths"):
@@ -144,9 +161,15 @@ def phase(float64):
     return genomes.phases(genomes.sine_cosine(STEPS, PERIOD), float64)
 
 
+def waved(basis, phase, terms, weights):
+    """Waves of a row of weights each, from one program."""
+    wave = jax.jit(lambda phase, flat: genomes.wave(basis(phase, terms), flat, len(weights)))
+    return np.asarray(wave(phase, weights.reshape(-1)))
+
+
 @pytest.mark.fast
 def test_a_series_is_the_sum_of_its_harmonics(weights, phase):
-    found = genomes.wave(genomes.fourier(phase, 3), jnp.asarray(weights.reshape(-1)), 3)
+    found = waved(genomes.fourier, phase, 3, weights)
     t = 2 * np.pi * np.arange(STEPS) / PERIOD
     for item, (*sines, a, b, c) in enumerate(weights):
         expected = sum(s * np.sin((k + 1) * t) for k, s in enumerate(sines))
@@ -158,7 +181,7 @@ def test_a_series_is_the_sum_of_its_harmonics(weights, phase):
 @pytest.mark.parametrize("terms", [2, 5, 6])
 def test_a_table_is_interpolated_and_closes_upon_itself(weights, phase, terms):
     rows = weights[:, :terms]
-    found = genomes.wave(genomes.table(phase, terms), jnp.asarray(rows.reshape(-1)), 3)
+    found = waved(genomes.table, phase, terms, rows)
     places = np.arange(STEPS) / PERIOD * terms
     for item, row in enumerate(rows):
         expected = np.interp(places, np.arange(terms), row, period=terms)
@@ -168,7 +191,7 @@ def test_a_table_is_interpolated_and_closes_upon_itself(weights, phase, terms):
 @pytest.mark.fast
 def test_a_linear_timer_runs_through_the_table_once(weights, float64):
     phase = genomes.phases(genomes.linear(STEPS, PERIOD), float64)
-    found = genomes.wave(genomes.table(phase, 6), jnp.asarray(weights.reshape(-1)), 3)
+    found = waved(genomes.table, phase, 6, weights)
     places = 6 * np.arange(STEPS) / STEPS
     expected = np.interp(places, np.arange(6), weights[1], period=6)
     np.testing.assert_allclose(found[:, 1], expected, atol=1e-12)
@@ -176,7 +199,7 @@ def test_a_linear_timer_runs_through_the_table_once(weights, float64):
 
 @pytest.mark.fast
 def test_waves_stay_within_one(phase):
-    found = genomes.wave(genomes.fourier(phase, 2), jnp.ones(8), 2)
+    found = waved(genomes.fourier, phase, 2, np.ones((2, 4)))
     assert (np.max(found), np.min(found)) == (1, -1)
 
 
@@ -193,7 +216,7 @@ def test_layers_compute_what_matrices_do(float64):
         rows = SCALE * rows.reshape(after, before + 1)
         values = rows[:, 1:] @ values + rows[:, :1]
         values = np.sin(values) if after != 2 else values
-    found = genomes.forward(layers, jnp.asarray(genes), jnp.asarray(inputs))
+    found = jax.jit(lambda *given: genomes.forward(layers, *given))(genes, inputs)
     np.testing.assert_allclose(found, values, rtol=1e-12)
     assert not len(rest)
 

@@ -70,9 +70,15 @@ def task(float64):
     return make
 
 
+def rest_of(task, network):
+    """Rest shapes of a network in open loop, from one program."""
+    encoding, given = task.encoding, (task.world, task.start)
+    return jax.jit(lambda network: encoding.drive(*given, network, None).inputs)(network)
+
+
 def test_values_follow_the_plain_recursion(task, cyclic):
     whole, network = task(), cyclic(3)
-    rest = whole.encoding.drive(whole.world, whole.start, network, None).inputs
+    rest = jax.device_get(rest_of(whole, network))
     controls = whole.encoding.controls
     for joint, node in enumerate(controls.joint_nodes):
         outputs = recursion(network, controls.timer, controls.sites[0, node])
@@ -89,18 +95,21 @@ def test_without_hidden_nodes_a_recurrent_network_is_a_feed_forward_one(task, fl
     genes = {name: getattr(network, name).astype(float64) for name in ("bias", "weight")}
     network = replace(network, **genes)
     plain = replace(whole.encoding, recurrent=False)
-    one = whole.encoding.drive(whole.world, whole.start, network, None).inputs
-    other = plain.drive(whole.world, whole.start, network, None).inputs
+    one, other = (rest_of(replace(whole, encoding=e), network) for e in (whole.encoding, plain))
     np.testing.assert_allclose(one.angle, other.angle, rtol=1e-12)
 
 
 def test_a_closed_loop_that_senses_nothing_is_the_open_one(task, cyclic):
     opened, closed = task(), task(sense_energy=True)
     start = replace(closed.start, energy=jnp.zeros_like(closed.start.energy))
-    driven = closed.encoding.drive(closed.world, start, cyclic(4), None)
-    end, applied = jax.jit(lambda: simulate(driven, lambda _, measures: measures.rest))()
-    network = cyclic(3)
-    expected = opened.encoding.drive(opened.world, opened.start, network, None).inputs
+
+    @jax.jit
+    def sensing(network):
+        driven = closed.encoding.drive(closed.world, start, network, None)
+        return simulate(driven, lambda _, measures: measures.rest)
+
+    end, applied = sensing(cyclic(4))
+    expected = rest_of(opened, cyclic(3))
     np.testing.assert_allclose(applied.angle, expected.angle, rtol=1e-12, atol=1e-14)
     np.testing.assert_allclose(applied.length, expected.length, rtol=1e-12)
     assert end.memory.shape == (12, 5)
@@ -190,7 +199,7 @@ def test_energy_changes_the_motion_only_if_the_network_uses_it(foragers, network
 def test_a_response_is_what_a_batch_develops(network, float64):
     body = bodies.chain(9, 1.0)
     controls = build_controls(Control(period=30, ramp=0.2), body, STEPS)
-    developed = genomes.develop(network(5), controls)
+    developed = jax.device_get(jax.jit(lambda one: genomes.develop(one, controls))(network(5)))
     sensing, cppn = replace(controls, senses=True), network(6, 0.0)
     read = genomes.function_of(cppn)
     respond = jax.jit(lambda *given: genomes.rest_shape(read, sensing, *given))

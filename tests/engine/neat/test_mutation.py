@@ -1,6 +1,7 @@
 """Networks grow by NEAT's mutations and stay sound."""
 
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 
 import jax
@@ -98,6 +99,14 @@ def test_recurrent_networks_may_hold_cycles_and_loops(lineages, each):
         assert len(set(zip(network.source[:c], network.target[:c], strict=True))) == c
 
 
+@partial(jax.jit, static_argnames="nodes")
+def reach(source, target, used, nodes):
+    """Flags of what each node reaches, and their numbers."""
+    closed = acyclicity.closure(acyclicity.neighbours(source, target, used, nodes))
+    rows = jax.vmap(acyclicity.flags, (None, 0))(closed, jnp.arange(nodes))
+    return rows, acyclicity.sizes(closed)
+
+
 def test_reach_is_what_powers_of_the_adjacency_matrix_say():
     random = np.random.default_rng(0)
     for nodes in (5, 32, 33, 70):
@@ -106,10 +115,8 @@ def test_reach_is_what_powers_of_the_adjacency_matrix_say():
         joined[source, target] = True
         source, target = np.nonzero(joined)
         links = (source, target, np.ones(len(source), bool))
-        near = acyclicity.neighbours(*map(jnp.asarray, links), nodes)
-        closed = jax.jit(acyclicity.closure)(near)
+        rows, sizes = reach(*links, nodes)
         steps = (joined | np.eye(nodes, dtype=bool)).astype(float)
         ways = np.linalg.matrix_power(steps, nodes) > 0
-        rows = jax.vmap(acyclicity.flags, (None, 0))(closed, jnp.arange(nodes))
         np.testing.assert_array_equal(rows, ways)
-        np.testing.assert_array_equal(acyclicity.sizes(closed), ways.sum(1))
+        np.testing.assert_array_equal(sizes, ways.sum(1))

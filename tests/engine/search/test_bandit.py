@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from microcosmos import neat, search
+from microcosmos.device import array
 from microcosmos.genomes import Vector, minimal
 from microcosmos.search import emitters
 
@@ -110,14 +111,12 @@ def several(request):
     """Three emitters, and an archive of four elites and an empty cell."""
     chosen = of_networks() if request.param == "networks" else of_vectors()
     keys = jax.random.split(jax.random.key(2), 5)
-    genotypes = jax.vmap(lambda key: chosen[0].newcomer(key=key))(keys)
-    empty = search.no_elites(5, 1, jax.tree.map(lambda x: x[0], genotypes))
-    occupied = jnp.arange(5) != 2
-    fitness = jnp.where(occupied, jnp.arange(5.0, dtype=jnp.float32), -jnp.inf)
-    equal = occupied.astype(jnp.float32)
-    return chosen, replace(
-        empty, genotypes=genotypes, occupied=occupied, fitness=fitness, curiosity=equal
-    )
+    genotypes = jax.jit(jax.vmap(lambda key: chosen[0].newcomer(key=key)))(keys)
+    empty = search.no_elites(5, 1, jax.tree.map(lambda x: np.asarray(x)[0], genotypes))
+    occupied = np.arange(5) != 2
+    fitness = array(np.where(occupied, np.arange(5), -np.inf), np.float32)
+    there = {"occupied": array(occupied), "curiosity": array(occupied, np.float32)}
+    return chosen, replace(empty, genotypes=genotypes, fitness=fitness, **there)
 
 
 def same(one, other):
@@ -129,9 +128,12 @@ def test_children_are_those_of_fixed_slots_and_one_program_serves_every_choice(s
     chosen, archive = several
     counters, generation, key = neat.first_counters(3, 2), jnp.asarray(4), jax.random.key(1)
     states, compiled = (None, None, None), []
-    fixed, _, after = search.emitters.emit(
-        chosen, states, archive, counters, generation, key=key
-    )
+
+    @jax.jit
+    def emit_fixed():
+        return search.emitters.emit(chosen, states, archive, counters, generation, key=key)
+
+    fixed, _, after = emit_fixed()
 
     @jax.jit
     def emit(emitter):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from microcosmos import neat, search
+from microcosmos.device import array
 from microcosmos.genomes import Vector, minimal
 from microcosmos.search import emitters
 from microcosmos.search.emitters import matrix_adaptation as es
@@ -28,15 +29,20 @@ def archive():
     """A function that makes an archive of five cells from some elites, the rest empty."""
 
     def make(genotypes, cells):
-        prototype = jax.tree.map(lambda x: x[0], genotypes)
+        prototype = jax.tree.map(lambda x: np.asarray(x)[0], genotypes)
         empty = search.no_elites(5, 1, prototype)
-        place = jnp.asarray(cells)
-        whole = jax.tree.map(
-            lambda old, new: old.at[place].set(new), empty.genotypes, genotypes
+
+        def placed(old, new):
+            whole = np.array(old)
+            whole[cells] = new
+            return array(whole)
+
+        return replace(
+            empty,
+            genotypes=jax.tree.map(placed, empty.genotypes, genotypes),
+            occupied=placed(empty.occupied, True),
+            fitness=placed(empty.fitness, np.arange(len(cells))),
         )
-        occupied = empty.occupied.at[place].set(True)
-        fitness = empty.fitness.at[place].set(jnp.arange(len(cells), dtype=jnp.float32))
-        return replace(empty, genotypes=whole, occupied=occupied, fitness=fitness)
 
     return make
 
@@ -80,7 +86,7 @@ def test_children_of_a_line_lie_along_it(archive):
 
 @pytest.mark.parametrize("crossover", [0.0, 0.5])
 def test_the_requested_share_of_children_has_two_parents(archive, crossover):
-    networks = jax.vmap(network)(jax.random.split(jax.random.key(2), 4))
+    networks = jax.jit(jax.vmap(network))(jax.random.split(jax.random.key(2), 4))
     rates = neat.Rates(0.6, 1.0, 0.05, 0.1, 0.02, 0.15, 0.25)
     emitter = emitters.Neat(SLOTS, lambda *, key: network(key), rates, 3, crossover)
     children, counters = emitted(emitter, archive(networks, [0, 1, 2, 4]))
@@ -131,8 +137,12 @@ def minimise(function, start, children, generations, sigma=0.3, seed=0):
         order = jnp.argsort(found)
         return es.update(distribution, z, order, strategy), jnp.min(found)
 
-    keys = jax.random.split(jax.random.key(seed), generations)
-    return jax.lax.scan(generation, es.start(jnp.asarray(start), sigma), keys)
+    @jax.jit
+    def descend(start, key):
+        keys = jax.random.split(key, generations)
+        return jax.lax.scan(generation, es.start(start, sigma), keys)
+
+    return descend(start, jax.random.key(seed))
 
 
 def test_a_sphere_is_descended_at_the_rate_of_the_method(float64):
@@ -146,7 +156,8 @@ def test_an_ellipsoid_of_condition_a_million_is_learnt(float64):
     end, best = minimise(lambda x: jnp.sum(scales * x * x), np.full(8, 0.5), 10, 800)
     assert best.min() < 1e-8
     # M Mᵀ has become the inverse Hessian, up to a factor.
-    covariance = np.asarray(end.m @ end.m.T)
+    m = np.asarray(end.m)
+    covariance = m @ m.T
     levels = np.diag(covariance) * scales
     assert levels.max() / levels.min() < 30
 
@@ -155,15 +166,17 @@ def test_turning_the_problem_turns_the_search(float64):
     scales, start = 10.0 ** np.arange(4), np.array([0.5, -0.3, 0.2, 0.1])
     turn = np.linalg.qr(np.random.default_rng(0).normal(size=(4, 4)))[0]
     strategy = es.strategy(4, 8)
-    straight, turned = (es.start(jnp.asarray(x), 0.3) for x in (start, turn @ start))
-    for z in jnp.asarray(np.random.default_rng(3).normal(size=(30, 8, 4))):
-        values = straight.mean[None] + straight.sigma * z @ straight.m.T
-        order = jnp.argsort(jnp.sum(scales[None] * values**2, 1))
-        straight = es.update(straight, z, order, strategy)
-        z = z @ turn.T
-        values = turned.mean[None] + turned.sigma * z @ turned.m.T
+    straight, turned = (es.start(array(x), 0.3) for x in (start, turn @ start))
+
+    @jax.jit
+    def step(distribution, z, turn):
+        values = distribution.mean[None] + distribution.sigma * z @ distribution.m.T
         order = jnp.argsort(jnp.sum(scales[None] * (values @ turn) ** 2, 1))
-        turned = es.update(turned, z, order, strategy)
+        return es.update(distribution, z, order, strategy)
+
+    for z in np.random.default_rng(3).normal(size=(30, 8, 4)):
+        straight = step(straight, z, np.eye(4))
+        turned = step(turned, z @ turn.T, turn)
     np.testing.assert_allclose(turned.mean, turn @ straight.mean, rtol=1e-9, atol=1e-12)
     np.testing.assert_allclose(turned.sigma, straight.sigma, rtol=1e-9)
 
@@ -195,11 +208,10 @@ def state_after(outcome_of):
     def tell(emitter, fitness, cell, feasible=(True,) * 6, **changes):
         state = emitter.init(key=jax.random.key(0))
         z = jax.random.normal(jax.random.key(1), state.z.shape)
-        feasible = jnp.asarray(feasible)
-        flags = {"feasible": feasible, "entered": feasible, "fresh": feasible}
-        place = jnp.where(feasible, jnp.asarray(cell), 4)
-        outcome = outcome_of(Vector(jnp.zeros((6, 2))), fitness, cell=place, **flags)
-        return emitter.tell(replace(state, **{"z": z} | changes), outcome)
+        flags = dict.fromkeys(("feasible", "entered", "fresh"), array(feasible))
+        place = array(np.where(feasible, cell, 4))
+        outcome = outcome_of(Vector(array(np.zeros((6, 2)))), fitness, cell=place, **flags)
+        return jax.jit(emitter.tell)(replace(state, **{"z": z} | changes), outcome)
 
     return tell
 
@@ -232,14 +244,14 @@ def test_a_spent_distribution_begins_anew_at_an_elite(emitter, state_after):
     chosen = emitter()
     state = chosen.init(key=jax.random.key(0))
     spent = replace(state.distribution, sigma=jnp.full(1, 1e-30), mean=jnp.full((1, 2), 0.5))
-    assert jax.vmap(es.must_restart)(spent).all()
+    assert jax.jit(jax.vmap(es.must_restart))(spent).all()
     after = state_after(chosen, np.arange(6.0), [0] * 6, z=state.z, distribution=spent)
     assert after.restart
     archive = search.no_elites(4, 1, Vector(jnp.zeros(2)))
     elite = Vector(archive.genotypes.values.at[2].set(jnp.asarray([0.7, -0.1])))
     archive = replace(archive, occupied=archive.occupied.at[2].set(True), genotypes=elite)
     keys = jax.random.split(jax.random.key(0), 6)
-    children, again, _ = chosen.emit(after, archive, keys=keys)
+    children, again, _ = jax.jit(chosen.emit)(after, archive, keys=keys)
     np.testing.assert_allclose(again.distribution.mean, [[0.7, -0.1]], rtol=1e-6)
     assert not again.restart
     assert np.abs(children.genotypes.values).max() <= 1
@@ -255,7 +267,8 @@ def test_strategies_share_thresholds_and_learn_from_their_own_children_alone(
     z = jax.random.normal(jax.random.key(1), (2, 3, 2))
     for i, order in enumerate(([1, 2, 0], [2, 0, 1])):
         start = es.start(jnp.zeros(2), 0.2)
-        alone = es.update(start, z[i], jnp.asarray(order), es.strategy(2, 3))
+        update = jax.jit(lambda *given: es.update(*given, es.strategy(2, 3)))
+        alone = update(start, z[i], np.array(order))
         for mine, other in zip(
             jax.tree.leaves(found.distribution), jax.tree.leaves(alone), strict=True
         ):
@@ -269,7 +282,8 @@ def test_strategies_draw_from_their_own_distributions(emitter):
     far = replace(state.distribution, mean=mean, sigma=jnp.full(3, 1e-6))
     state = replace(state, distribution=far, restart=jnp.zeros(3, bool))
     archive = search.no_elites(4, 1, Vector(jnp.zeros(2)))
-    children, _, _ = chosen.emit(state, archive, keys=jax.random.split(jax.random.key(0), 6))
+    keys = jax.random.split(jax.random.key(0), 6)
+    children, _, _ = jax.jit(chosen.emit)(state, archive, keys=keys)
     np.testing.assert_allclose(children.genotypes.values, np.repeat(mean, 2, 0), atol=1e-4)
 
 

@@ -3,12 +3,12 @@
 from dataclasses import replace
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 from elite_rows import AWKWARD, AXES, awkward, candidates
 
 from microcosmos import genomes, search
+from microcosmos.device import array
 from microcosmos.search import insertion
 from microcosmos.search.cvt import centroids
 
@@ -18,10 +18,11 @@ AROUND = search.voronoi(AXES, centroids(9, 2, seed=0))
 
 insert = jax.jit(search.insert)
 survivors = jax.jit(lambda fronts, rows, position: fronts.survivors(rows, position))
+crowding_distance = jax.jit(search.crowding_distance)
 
 
 def vectors(random, count):
-    return genomes.Vector(jnp.asarray(random.normal(size=(count, 3)), jnp.float32))
+    return genomes.Vector(array(random.normal(size=(count, 3)), np.float32))
 
 
 def pool(seed, count=120, kind=candidates, levels=5):
@@ -30,16 +31,16 @@ def pool(seed, count=120, kind=candidates, levels=5):
     cost = 10.0 ** random.integers(0, 6, count)
     odd = random.random(count) < 0.2
     cost[odd] = random.choice(AWKWARD, odd.sum())
-    column = jnp.asarray(cost, jnp.float32)[:, None]
-    return replace(rows, measures=jnp.concatenate([rows.measures, column], 1))
+    measures = np.concatenate([rows.measures, cost.astype(np.float32)[:, None]], 1)
+    return replace(rows, measures=array(measures))
 
 
 def all_of(fitness, measures):
     """Rows of distinct genomes that are all feasible."""
     count = len(fitness)
-    given = (jnp.asarray(x, jnp.float32) for x in (fitness, measures))
+    given = (array(x, np.float32) for x in (fitness, measures))
     genotypes = vectors(np.random.default_rng(0), count)
-    return search.candidates(1, genotypes, *given, jnp.ones(count, bool))
+    return search.candidates(1, genotypes, *given, array(np.ones(count, bool)))
 
 
 def odd_pool(seed, count=120):
@@ -51,10 +52,14 @@ def objectives(rows, fronts):
     return first, -second if fronts.least else second
 
 
+def cells_of(fronts, measures):
+    return fronts.cells.of(measures)
+
+
 def on_fronts(rows, position, fronts):
     """The rows that no other of their cell beats, one after another."""
     first, second = objectives(rows, fronts)
-    cell = np.asarray(fronts.cells.of(rows.measures))
+    cell = np.asarray(jax.jit(cells_of)(fronts, rows.measures))
     able = np.flatnonzero(np.asarray(rows.occupied) & np.isfinite(second))
 
     def beats(j, i):
@@ -76,6 +81,7 @@ def crowding(first, place):
     return distance
 
 
+@jax.jit
 def ranked(rows, fronts):
     """Occupied rows that are sound, and each one's position in the total order."""
     rows = replace(rows, occupied=insertion.sound(rows, fronts.axes))
@@ -106,7 +112,7 @@ def test_of_a_long_front_the_ends_and_the_least_crowded_survive(size):
         rows, position = ranked(all_of(fitness, measures), fronts)
         front, cell = on_fronts(rows, np.asarray(position), fronts)
         found = np.asarray(survivors(fronts, rows, position))
-        place = np.asarray(COST.place(rows.measures[:, 2]))
+        place = np.asarray(jax.jit(COST.place)(np.asarray(rows.measures)[:, 2]))
         for one in range(2):
             own = np.flatnonzero(front & (cell == one))
             own = own[np.argsort(-fitness[own])]
@@ -123,9 +129,8 @@ def test_equally_crowded_rows_are_kept_by_the_total_order():
     steps = np.arange(7.0)
     measures = np.stack([steps * 0, steps, 10 ** (steps / 2)], 1)
     rows = all_of(7 - steps, measures)
-    distance = search.crowding_distance(
-        jnp.zeros(7, jnp.int32), rows.fitness, jnp.asarray(steps), jnp.arange(7)
-    )
+    order = np.arange(7, dtype=np.int32)
+    distance = crowding_distance(0 * order, rows.fitness, steps, order)
     np.testing.assert_allclose(distance, [np.inf, *[2 / 3] * 5, np.inf], rtol=1e-6)
     found = survivors(fronts, *ranked(rows, fronts))
     assert np.asarray(found).sum() == 4
@@ -133,9 +138,9 @@ def test_equally_crowded_rows_are_kept_by_the_total_order():
 
 
 def test_a_flat_or_very_long_front_has_finite_distances():
-    cell, position = jnp.zeros(3, jnp.int32), jnp.arange(3)
+    cell, position = np.zeros(3, np.int32), np.arange(3, dtype=np.int32)
     for first in ([3e38, 0.0, -3e38], [3e-45, 2e-45, 1e-45]):
-        distance = search.crowding_distance(cell, jnp.asarray(first), jnp.ones(3), position)
+        distance = crowding_distance(cell, np.float32(first), np.ones(3, np.float32), position)
         assert np.isfinite(distance[1])
 
 
@@ -143,11 +148,11 @@ def test_a_flat_or_very_long_front_has_finite_distances():
 def test_a_front_does_not_depend_on_when_its_elites_came(least):
     fronts = search.Fronts(GRID, COST, 60, least)
     rows = pool(5, 240)
-    one = search.no_elites(fronts.count, 3, genomes.Vector(jnp.zeros(3)))
+    one = search.no_elites(fronts.count, 3, genomes.Vector(array(np.zeros(3))))
     whole, _ = insert(one, rows, fronts)
     parts = one
     for start in range(0, 240, 40):
-        batch = jax.tree.map(lambda x, start=start: x[start : start + 40], rows)
+        batch = jax.tree.map(lambda x, start=start: np.asarray(x)[start : start + 40], rows)
         parts, _ = insert(parts, batch, fronts)
     slots = (np.sort(np.asarray(x.slot)[np.asarray(x.occupied)]) for x in (whole, parts))
     np.testing.assert_array_equal(*slots)
@@ -179,11 +184,12 @@ def test_figures_of_an_archive():
     fronts = search.Fronts(GRID, COST, 3)
     measures = [[1e-3, 0.1, 10.0], [1e-3, 0.1, 100.0], [10.0, 0.9, 1.0], [10.0, 0.9, 1e6]]
     rows = all_of([0.25, 0.5, 0.25, 1.0], measures)
-    empty = search.no_elites(fronts.count, 3, genomes.Vector(jnp.zeros(3)))
+    empty = search.no_elites(fronts.count, 3, genomes.Vector(array(np.zeros(3))))
     assert search.front_figures(np.zeros(0), np.zeros((0, 3)), fronts) == (0, 0, 0, 0)
     archive, _ = insert(empty, rows, fronts)
     there = np.asarray(archive.occupied)
-    found = search.front_figures(archive.fitness[there], archive.measures[there], fronts)
+    fitness, measures = np.asarray(archive.fitness), np.asarray(archive.measures)
+    found = search.front_figures(fitness[there], measures[there], fronts)
     # On the axis from 1,000 to 1 costs of 10 and 100 are at 2/3 and 1/3.
     first_cell = 0.25 * 2 / 3 + 0.25 / 3
     np.testing.assert_allclose(found.moqd_score, first_cell + 0.25)

@@ -1,23 +1,28 @@
 """Waves, beats, axis and excursion against closed forms, and the window of recorded poses."""
 
-import jax.numpy as jnp
+import jax
 import numpy as np
 import pytest
 
 from microcosmos.archive.poses import FRAMES
-from microcosmos.search.kinematics import axis, excursion, waves
-from microcosmos.search.window import poses, window
+from microcosmos.device import array
+from microcosmos.search import kinematics
+from microcosmos.search.window import poses
+from microcosmos.search.window import window as window_of
 
+axis, excursion, waves, window = map(
+    jax.jit, (kinematics.axis, kinematics.excursion, kinematics.waves, window_of)
+)
 pytestmark = pytest.mark.fast
 
 TIMES = 2 * np.pi * np.arange(FRAMES)[:, None] / (FRAMES // 2)
 """The phase of every frame, in rad; the frames span two strokes."""
 PLACES = np.arange(21)[None]
-CHAIN = jnp.ones(20, bool)
+CHAIN = np.ones(20, bool)
 
 
 def measured(bends, along=CHAIN):
-    return [float(x) for x in waves(jnp.asarray(bends), along)]
+    return [float(x) for x in waves(bends, along)]
 
 
 @pytest.mark.parametrize("beats", [0.5, 1, 3])
@@ -44,12 +49,12 @@ def test_a_body_that_does_not_move_has_no_waves(float64):
 def test_joints_of_different_filaments_are_not_neighbours(float64):
     """Two filaments whose waves are in opposite phase where they meet."""
     wave = np.sin(TIMES - 2 * np.pi * 0.1 * np.arange(10)[None])
-    along = jnp.arange(19) != 9
+    along = np.arange(19) != 9
     assert measured(np.concatenate([wave, -wave], 1), along) == pytest.approx([1, 0.1, 1])
 
 
 def frames(shape):
-    return jnp.asarray(np.broadcast_to(shape, (FRAMES, *np.shape(shape))))
+    return np.broadcast_to(shape, (FRAMES, *np.shape(shape)))
 
 
 @pytest.mark.parametrize("turn", [0.0, 0.7, 2.0, -1.2])
@@ -59,7 +64,7 @@ def test_the_axis_of_a_cross(float64, turn, course):
     points = np.array([[4, 0], [-4, 0], [0, 1], [0, -1]]) + np.array([7.0, 3.0])
     c, s = np.cos(turn), np.sin(turn)
     points = points @ np.array([[c, s], [-s, c]])
-    moved = jnp.asarray(5 * np.array([np.cos(turn + course), np.sin(turn + course)]))
+    moved = 5 * np.array([np.cos(turn + course), np.sin(turn + course)])
     angle, aspect = axis(frames(points), moved, None)
     assert float(angle) == pytest.approx(course, abs=1e-6)
     assert float(aspect) == pytest.approx(0.25)
@@ -67,8 +72,8 @@ def test_the_axis_of_a_cross(float64, turn, course):
 
 def test_absent_nodes_count_nowhere(float64):
     points = np.array([[4.0, 0], [-4, 0], [0, 1], [0, -1], [90, 90]])
-    kept = jnp.arange(5) < 4
-    moved = jnp.asarray([1.0, 0.0])
+    kept = np.arange(5) < 4
+    moved = np.array([1.0, 0.0])
     assert [float(x) for x in axis(frames(points), moved, kept)] == pytest.approx([0, 0.25])
     assert float(excursion(frames(points), moved, kept)) == 0
 
@@ -77,9 +82,9 @@ def test_the_excursion_is_across_the_path(float64):
     """One node of two swings 3 cells up and down, and their mean half as much."""
     swing = np.zeros((FRAMES, 2, 2))
     swing[:, 1, 1] = 3 * np.sin(TIMES[:, 0])
-    found = excursion(jnp.asarray(swing), jnp.asarray([2.0, 0.0]), None)
+    found = excursion(swing, np.array([2.0, 0.0]), None)
     assert float(found) == pytest.approx(3)
-    assert float(excursion(jnp.asarray(swing), jnp.asarray([0.0, 2.0]), None)) == 0
+    assert float(excursion(swing, np.array([0.0, 2.0]), None)) == 0
 
 
 @pytest.mark.parametrize(
@@ -95,7 +100,7 @@ def test_the_excursion_is_across_the_path(float64):
     ],
 )
 def test_the_window_is_the_last_two_whole_strokes(float64, strokes, expected):
-    found = window(jnp.asarray(strokes))
+    found = window(strokes)
     assert (int(found.start), int(found.stop), int(found.strokes)) == expected
     steps = np.asarray(found.places()) + 1
     assert steps[-1] == found.stop
@@ -105,10 +110,11 @@ def test_the_window_is_the_last_two_whole_strokes(float64, strokes, expected):
 
 def test_poses_are_the_positions_at_those_steps(float64):
     random = np.random.default_rng(0)
-    positions = jnp.asarray(20 + random.normal(size=(300, 5, 2)))
-    centre, kept = positions.mean(1), jnp.arange(5) != 3
-    last = window(jnp.arange(1.0, 301) / 100)
-    found = poses(jnp.zeros(2), centre, positions, kept, jnp.zeros((0, 2), int), last, 4.0)
+    positions = 20 + random.normal(size=(300, 5, 2))
+    centre, kept = positions.mean(1), np.arange(5) != 3
+    last = window(np.arange(1.0, 301) / 100)
+    none = np.zeros((0, 2), int)
+    found = jax.jit(poses)(np.zeros(2), centre, positions, kept, none, last, array(4.0))
     cells = np.asarray(found.origin) + np.asarray(found.scale) * np.asarray(found.positions)
     shown = np.asarray(positions)[np.asarray(last.places())]
     np.testing.assert_allclose(cells[:, kept], shown[:, kept], atol=float(found.scale))

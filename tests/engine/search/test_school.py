@@ -10,6 +10,7 @@ from genotypes import any_genotype
 
 from microcosmos import search, spec
 from microcosmos.build import build_stroke, build_task
+from microcosmos.genomes import Drive
 from microcosmos.world import native
 
 STEPS, PERIOD = 400, 200
@@ -27,10 +28,21 @@ def gait(copies=None, size=(96, 96), steps=STEPS, body=BODY, **world):
 def swum(scene, dtype=jnp.float32, change=None):
     """Simulate a gait in JAX; return the task, the simulation, its end and its measures."""
     task = build_task(scene, dtype)
-    driven = search.drive(task, build_stroke(scene.control, scene.task.steps, dtype))
-    driven = driven if change is None else change(driven)
-    end, seen = search.simulate(driven, differentiable=True)
-    return task, driven, end, seen
+
+    @jax.jit
+    def swim(stroke):
+        driven = search.drive(task, stroke)
+        driven = driven if change is None else change(driven)
+        given = driven.world, driven.start, driven.inputs
+        return given, search.simulate(driven, differentiable=True)
+
+    given, (end, seen) = swim(build_stroke(scene.control, scene.task.steps, dtype))
+    return task, Drive(*given), end, seen
+
+
+def motion_of(task, driven, end, seen):
+    """What a simulation measures, from one program."""
+    return jax.jit(lambda *given: search.motion_of(task, driven, *given))(end, seen)
 
 
 def column(spacing, count=2):
@@ -67,10 +79,10 @@ def test_far_copies_swim_like_one():
     with jax.enable_x64(True):
         dtype = jnp.dtype("float64")
         task, driven, end, seen = swum(gait(size=(48, 48)), dtype)
-        alone = search.motion_of(task, driven, end, seen)
+        alone = motion_of(task, driven, end, seen)
         many = {"count": 4, "arrangement": "grid", "spacing": 48}
         task, driven, last, seen = swum(gait(many), dtype)
-        school = search.motion_of(task, driven, last, seen)
+        school = motion_of(task, driven, last, seen)
         for place, one in zip(
             np.asarray(task.places), np.split(np.asarray(last.positions), 4), strict=True
         ):
@@ -130,11 +142,15 @@ def test_every_encoding_has_schools(name):
     found = jax.jit(lambda one: search.evaluate(task, one))(genotype)
     assert found.status == 0
     assert found.poses.positions.shape[1] == 20
-    driven = search.drive(task, genotype, differentiable=True)
-    start = np.asarray(driven.start.positions)
+
+    @jax.jit
+    def in_jax(genotype):
+        driven = search.drive(task, genotype, differentiable=True)
+        given = search.simulate(driven, differentiable=True)
+        return driven.start.positions, search.motion_of(task, driven, *given)
+
+    start, values = jax.device_get(in_jax(genotype))
     np.testing.assert_allclose(start[10:] - start[:10], [[0, 12]] * 10, atol=1e-5)
-    end, seen = search.simulate(driven, differentiable=True)
-    values = search.motion_of(task, driven, end, seen)
     for measure in ("displacement", "symmetry", "nodes", "advance", "wave_number", "power"):
         at = search.MEASURES.index(measure)
         np.testing.assert_allclose(

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from microcosmos import search
+from microcosmos.device import array
 from microcosmos.genomes import Vector
 from microcosmos.search import emitters
 
@@ -237,13 +238,14 @@ def test_the_order_of_arrival_of_slots_does_not_matter():
     fitness = np.round(fitness / 50) * 50  # Many are equal.
     rows = search.candidates(
         1,
-        Vector(jnp.asarray(vectors)),
-        *map(jnp.asarray, (fitness, measures)),
-        jnp.ones(20, bool),
+        Vector(array(vectors)),
+        *map(array, (fitness, measures)),
+        array(np.ones(20, bool)),
     )
     order = np.random.default_rng(1).permutation(20)
-    nobody = search.no_elites(GRID.count, 2, Vector(jnp.zeros(4)))
-    shuffled = jax.tree.map(lambda x: x[order], rows)
-    one, other = (search.insert(nobody, given, GRID)[0] for given in (rows, shuffled))
+    nobody = search.no_elites(GRID.count, 2, Vector(array(np.zeros(4))))
+    shuffled = jax.tree.map(lambda x: np.asarray(x)[order], rows)
+    insert = jax.jit(search.insert)
+    one, other = (insert(nobody, given, GRID)[0] for given in (rows, shuffled))
     for a, b in zip(jax.tree.leaves(one), jax.tree.leaves(other), strict=True):
         assert np.asarray(a).tobytes() == np.asarray(b).tobytes()

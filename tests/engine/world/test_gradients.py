@@ -10,6 +10,7 @@ import pytest
 
 from microcosmos import bodies, fields, filaments, genomes, world
 from microcosmos.build import build_controls
+from microcosmos.device import array
 from microcosmos.spec import Control
 
 
@@ -68,12 +69,13 @@ def pair(immerse, float64):
         for nodes in (GROWN, ALL):
             body = bodies.chain(nodes, 1.0, bend=0.7)
             box, _ = immerse(body, float64, viscosity=0.05, size=(32, 32), **form)
-            positions = jnp.asarray(body.positions) + jnp.array([[11.0, 16.0]])
+            positions = body.positions + np.array([[11.0, 16.0]])
             box = replace(box, **options)
             if nodes == ALL:
-                present = jnp.arange(ALL) < GROWN
-                box = replace(box, rods=world.grown_rods(box.rods, present), present=present)
-            boxes.append((box, world.at_rest(box, positions)))
+                present = array(np.arange(ALL) < GROWN)
+                rods = jax.jit(world.grown_rods)(box.rods, present)
+                box = replace(box, rods=rods, present=present)
+            boxes.append((box, jax.jit(world.at_rest)(box, positions)))
         return boxes
 
     return make

@@ -1,11 +1,13 @@
 """A scene of chains whose shape is written by hand, and its strokes."""
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
 from microcosmos import search, spec
 from microcosmos.build.scene import build_layout, build_task
+from microcosmos.device import array
 
 FREE = {"max_speed": None, "lag": 0, "max_bend": None}
 
@@ -33,10 +35,10 @@ def chain_stroke():
         from microcosmos.filaments import Rest
         from microcosmos.search.screening.stroke import Stroke, _changes
 
-        shapes = jnp.asarray(positions - positions.mean(1, keepdims=True), jnp.float32)
-        changes, turns = _changes(shapes, jnp.ones(shapes.shape[1]))
-        nothing = jnp.zeros((len(shapes), 0))
-        steps = jnp.full(len(shapes), took, jnp.float32)
+        shapes = array(positions - positions.mean(1, keepdims=True), jnp.float32)
+        changes, turns = jax.jit(_changes)(shapes, array(np.ones(shapes.shape[1])))
+        nothing = array(np.zeros((len(shapes), 0)))
+        steps = array(np.full(len(shapes), took), jnp.float32)
         return Stroke(Rest(nothing, nothing), shapes, changes, turns, steps)
 
     return build
@@ -45,4 +47,4 @@ def chain_stroke():
 @pytest.fixture(scope="session")
 def edges():
     """From a number of nodes to the edges of a chain."""
-    return lambda nodes: jnp.asarray(np.stack([np.arange(nodes - 1), np.arange(1, nodes)], 1))
+    return lambda nodes: array(np.stack([np.arange(nodes - 1), np.arange(1, nodes)], 1))

@@ -1,11 +1,13 @@
 """Resistive force theory beside its closed forms."""
 
-import jax.numpy as jnp
+import jax
 import numpy as np
 import pytest
 
-from microcosmos.search.screening import PHASES, swim
+from microcosmos.search import screening
+from microcosmos.search.screening import PHASES
 
+swim = jax.jit(screening.swim)
 NODES = 121
 
 
@@ -22,7 +24,7 @@ def test_a_small_wave_swims_at_the_speed_of_gray_and_hancock(chain_stroke, edges
     drag across ζ = 2 times that along (Lauga and Powers 2009, section 5.2)."""
     amplitude, waves, took = 2e-3, 6, 10.0
     stroke = chain_stroke(travelling_wave(amplitude, waves), took)
-    moved = swim(stroke, edges(NODES), jnp.ones(NODES - 1))
+    moved = swim(stroke, edges(NODES), np.ones(NODES - 1))
     k = 2 * np.pi * waves
     speed = (2 * np.pi / (PHASES * took)) / k * amplitude**2 * k**2 / 2
     expected = speed * PHASES * took
@@ -35,7 +37,7 @@ def test_a_reciprocal_stroke_goes_nowhere(chain_stroke, edges):
     bend = 0.3 * np.sin(2 * np.pi * np.arange(PHASES) / PHASES)
     x = np.linspace(-1, 1, NODES)
     positions = np.stack(np.broadcast_arrays(x[None], bend[:, None] * x[None] ** 2), 2)
-    moved = swim(chain_stroke(positions, 5.0), edges(NODES), jnp.ones(NODES - 1))
+    moved = swim(chain_stroke(positions, 5.0), edges(NODES), np.ones(NODES - 1))
     size = np.abs(np.asarray(moved.velocity)).max() * 5.0
     assert np.hypot(*np.asarray(moved.displacement)) < 1e-3 * size
     assert abs(float(moved.turn)) < 1e-5
@@ -47,7 +49,7 @@ def test_no_force_and_no_torque_act_on_the_body(chain_stroke, edges):
     steps = np.stack([np.cos(angles), np.sin(angles)], 2)
     positions = np.concatenate([np.zeros((PHASES, 1, 2)), np.cumsum(steps, 1)], 1)
     stroke = chain_stroke(positions, 3.0)
-    moved = swim(stroke, edges(21), jnp.ones(20))
+    moved = swim(stroke, edges(21), np.ones(20))
     shapes, velocity = np.asarray(stroke.shapes, float), np.asarray(moved.velocity, float)
     begin, end = shapes[:, :-1], shapes[:, 1:]
     length = np.linalg.norm(end - begin, axis=2, keepdims=True)
@@ -68,7 +70,7 @@ def test_speed_follows_the_turn_and_the_scale_of_the_body(chain_stroke, edges):
     c, s = np.cos(0.7), np.sin(0.7)
     turned = 3.0 * wave @ np.array([[c, s], [-s, c]])
     one, other = (
-        swim(chain_stroke(positions, took), edges(NODES), jnp.ones(NODES - 1))
+        swim(chain_stroke(positions, took), edges(NODES), np.ones(NODES - 1))
         for positions, took in ((wave, 10.0), (turned, 20.0))
     )
     distance = np.hypot(*np.asarray(one.displacement))
