@@ -31,7 +31,7 @@ const PAGES: Record<string, FunctionComponent<{ id: string; query: URLSearchPara
   "run-tree": lazy(async () => (await import("../tree/TreePage")).RunTreePage),
   "creature-tree": lazy(async () => (await import("../tree/TreePage")).CreatureTreePage),
 };
-const Shortcuts = lazy(async () => (await import("./shortcuts/Shortcuts")).Shortcuts);
+const Shortcuts = lazy(async () => (await import("./shortcuts/Shortcuts")).Shortcuts, null);
 const SignInPage = lazy(async () => (await import("../settings/SettingsPage")).SignInPage);
 
 export function App() {

@@ -3,7 +3,7 @@
 import { useCallback, useEffect, useRef, useState } from "preact/hooks";
 import { pageUrl, sharedSlug } from "../api/address";
 import type { Archive, Run } from "../api/types";
-import { type Elite, type Elites, fittest } from "../store/elites";
+import type { Elite, Elites } from "../store/elites";
 import { navigate, setQuery } from "../store/router";
 import { containerOf, measureOf, objectiveOf } from "./axes";
 import { ArchiveMap } from "./ArchiveMap";
@@ -12,11 +12,11 @@ import { MapOptions, kindOf, ReprojectionFigures, Slices } from "./MapOptions";
 import { TimeSlider } from "../replay/TimeSlider";
 import { count } from "../ui/format";
 import { Segments } from "../ui/Select";
-import { Tour } from "../ui/Tour";
 import { TrustBadge } from "../ui/TrustBadge";
 import { ForkLink } from "../ui/links";
 import { SelectToggle, SelectionBar, useSelection } from "./SelectionBar";
-import { stepsOf, useTour } from "./tour";
+import { lazy } from "../ui/lazy";
+import { useTour } from "./tour";
 import { ElitePreview } from "./ElitePreview";
 import { type ArchiveView, useArchiveView } from "./archiveView";
 import type { ArchiveViewProps } from "./binFocus";
@@ -26,6 +26,8 @@ import { Gallery } from "./Gallery";
 import { text } from "./text";
 import "./map.css";
 import "./archive.css";
+
+const ArchiveTour = lazy(async () => (await import("./tour/ArchiveTour")).ArchiveTour, null);
 
 interface Props {
   run: Run;
@@ -73,40 +75,14 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
       {view.error && <p class="banner wrong">{view.error}</p>}
       <TimeSlider last={run.generation} at={at} ready={view.ready} onMove={setAt} />
       <SelectionBar {...{ run, at }} of={view.of} elites={view.elites} {...selection} />
-      <ArchiveTour
-        {...{ run, view, tour }}
-        onPart={setTourPart}
-        onMark={props.marked === null ? props.onMark : null}
-      />
+      {tour.open && (
+        <ArchiveTour
+          {...{ run, view, tour }}
+          onPart={setTourPart}
+          onMark={props.marked === null ? props.onMark : null}
+        />
+      )}
     </div>
-  );
-}
-
-interface TourProps {
-  run: Run;
-  view: ArchiveView;
-  tour: ReturnType<typeof useTour>;
-  onPart: (part: string | null) => void;
-  /** Marks a cell; null if one is marked already. */
-  onMark: ((cell: number) => void) | null;
-}
-
-function ArchiveTour({ run, view, tour, onPart, onMark }: TourProps) {
-  if (!tour.open) return null;
-  return (
-    <Tour
-      steps={stepsOf(run, view)}
-      requested={tour.requested}
-      onStep={({ part }) => {
-        onPart(part);
-        const best = fittest(view.elites);
-        if (part === "legend" && best) onMark?.(best[0]);
-      }}
-      onEnd={() => {
-        onPart(null);
-        tour.end();
-      }}
-    />
   );
 }
 

@@ -4,10 +4,10 @@ import type { ComponentType, FunctionComponent } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { text } from "./text";
 
-/** Show a `section` (or `main`) until the component is loaded. */
+/** Show a `section` (or `main`, or nothing) until the component is loaded. */
 export function lazy<P extends object>(
   load: () => Promise<ComponentType<P>>,
-  Placeholder: "main" | "section" = "main",
+  Placeholder: "main" | "section" | null = "main",
 ): FunctionComponent<P> {
   let Loaded: ComponentType<P> | null = null;
   return function LazyComponent(props: P) {
@@ -24,6 +24,7 @@ export function lazy<P extends object>(
       );
     }, []);
     if (Loaded) return <Loaded {...props} />;
+    if (!Placeholder) return failed ? <LoadFailed /> : null;
     return (
       <Placeholder class="lazy">
         {failed ? <LoadFailed /> : <p class="quiet loading">{text.loading}</p>}
