@@ -10,11 +10,11 @@ from typing import Any, TypeVar
 
 import equinox as eqx
 import jax
-import jax.numpy as jnp
 import numpy as np
 
 from .. import neat, search
 from ..archive import file, poses
+from ..device import array
 from ..genomes import columns, from_columns
 from ..search.leaves import filled, leaves
 from ..version import VERSION
@@ -121,7 +121,7 @@ def restore(plan: Plan, data: bytes, *, other_device: bool) -> State:
         evaluations=int(loop["evaluations"]),
         infeasible=int(loop["infeasible"]),
         elites=_placed(state.elites, cells, archive),
-        counters=neat.Counters(**{n: jnp.asarray(c) for n, c in loop["counters"].items()}),
+        counters=neat.Counters(**{n: array(c) for n, c in loop["counters"].items()}),
         emitters=filled(state.emitters, loop["emitters"]),
         nearest_ancestors=loop["nearest_ancestors"],
         repeats=repeats,
@@ -215,6 +215,6 @@ def _placed(module: Module, cells: np.ndarray, columns: dict[str, Any]) -> Modul
             return _placed(before, cells, rows)
         after = np.array(before)
         after[cells] = rows
-        return jnp.asarray(after)
+        return array(after)
 
     return replace(module, **{n: placed(x, columns[n]) for n, x in vars(module).items()})

@@ -14,6 +14,7 @@ from pydantic import ValidationError
 
 from microcosmos import search
 from microcosmos.build.experiments import build_plan
+from microcosmos.device import array
 from microcosmos.experiments import deciding
 from microcosmos.experiments.state import start
 from microcosmos.genomes import Vector
@@ -37,18 +38,17 @@ def measured(plan, fitness, place):
     """Return evaluations at places from 0 to 1 on the first axis."""
     first, second = plan.axes
     measures = np.zeros((len(fitness), len(plan.measures)), np.float32)
-    measures[:, first.measure] = first.value(jnp.asarray(place, jnp.float32))
+    measures[:, first.measure] = first.value(array(place, np.float32))
     measures[:, second.measure] = second.value(jnp.zeros(1))
-    status = jnp.zeros(len(fitness), jnp.int32)
-    fitness = jnp.asarray(fitness, jnp.float32)
-    return search.Evaluation(fitness, jnp.asarray(measures), status)
+    status = array(np.zeros(len(fitness)), np.int32)
+    return search.Evaluation(array(fitness, np.float32), array(measures), status)
 
 
 def creatures(plan, rows):
     """Return genotypes of (fitness, place, amplitude)."""
     values = np.zeros((len(rows), *plan.genotype.values.shape), np.float32)
     values[:, :3] = rows
-    return Vector(jnp.asarray(values))
+    return Vector(array(values))
 
 
 @pytest.fixture(scope="module")
@@ -61,13 +61,25 @@ def programs(plan):
         wave = np.cos(changed.phase)
         found = measured(plan, fitness + amplitude * wave, place + 0.1 * amplitude * wave)
         failed = (amplitude == INFEASIBLE) & (changed.phase > np.pi)
-        return replace(found, status=jnp.asarray(failed, jnp.int32))
+        return replace(found, status=array(failed, np.int32))
 
     return deciding.Programs(
-        disturb=lambda given, sample: deciding.disturb(again, plan.key, given, sample),
+        disturb=jax.jit(lambda *given: deciding.disturb(again, plan.key, *given)),
         evaluate_block=evaluate_block,
-        cells_of=lambda cells, measures: cells.of(measures),
+        cells_of=cells_of,
     )
+
+
+@jax.jit
+def cells_of(cells, measures):
+    return cells.of(measures)
+
+
+@jax.jit
+def inserted(elites, container, number, genotypes, mean):
+    """The elites after a generation whose means decide."""
+    given = genotypes, mean.fitness, mean.measures, mean.status == 0
+    return search.insert(elites, search.candidates(number, *given), container)[0]
 
 
 @pytest.fixture
@@ -81,16 +93,10 @@ def generation(plan, programs):
         if decides:
             arguments = (plan, programs, HERE, state, genotypes, first, search.never)
             decided = deciding.decide(*arguments)
-        mean = decided.mean
-        candidates = search.candidates(
-            state.generation + 1,
-            jax.tree.map(jnp.asarray, genotypes),
-            jnp.asarray(mean.fitness),
-            jnp.asarray(mean.measures),
-            jnp.asarray(mean.status == 0),
-        )
-        elites, _ = search.insert(state.elites, candidates, state.container)
-        return replace(state, generation=state.generation + 1, elites=elites), decided
+        number = state.generation + 1
+        given = number, genotypes, jax.tree.map(np.asarray, decided.mean)
+        elites = inserted(state.elites, state.container, *given)
+        return replace(state, generation=number, elites=elites), decided
 
     return next_state
 
@@ -145,7 +151,7 @@ def test_creatures_compete_in_the_cells_of_their_means(plan, generation):
     rows = [(fitness, 0.5, 2.0) for fitness in (1.0, 1.5, 2.0, 2.5)]
     state, decided = generation(start(plan), rows, np.zeros(4))
     first, mean = (
-        set(np.asarray(state.container.of(jnp.asarray(one.measures))).tolist())
+        set(np.asarray(cells_of(state.container, np.asarray(one.measures))).tolist())
         for one in (decided.first, decided.mean)
     )
     assert set(np.flatnonzero(state.elites.occupied).tolist()) == mean
@@ -186,9 +192,8 @@ def test_the_archive_holds_the_best_whatever_the_order_and_the_batches(seed, pla
             state, _ = generation(state, rows[part], luck[part])
         archives.append(state.elites)
     place = np.asarray(archives[0].measures)[:, plan.axes[0].measure]
-    cells = np.asarray(
-        plan.container.of(jnp.asarray(measured(plan, rows[:, 0], rows[:, 1]).measures))
-    )
+    measures = measured(plan, rows[:, 0], rows[:, 1]).measures
+    cells = np.asarray(cells_of(plan.container, measures))
     best = {cell: rows[cells == cell, 0].max() for cell in cells.tolist()}
     for elites in archives:
         found = np.asarray(elites.fitness)[list(best)]
