@@ -36,13 +36,14 @@ def cases() -> list[dict[str, Any]]:
 
 def _grown(count: int) -> list[genomes.CPPN]:
     def grow(key):
-        network = neat.minimal(key, len(WITH_WAVE), len(OUTPUTS), 16, 40)
-        for step in range(10):
+        def mutated(network, step):
             key_now = jax.random.fold_in(key, step)
-            network, _ = neat.mutate(network, RATES, len(WITH_WAVE), key=key_now)
-        return network
+            return neat.mutate(network, RATES, len(WITH_WAVE), key=key_now)[0], None
 
-    whole = jax.vmap(grow)(jax.random.split(jax.random.key(1), count))
+        first = neat.minimal(key, len(WITH_WAVE), len(OUTPUTS), 16, 40)
+        return jax.lax.scan(mutated, first, jnp.arange(10))[0]
+
+    whole = jax.jit(jax.vmap(grow))(jax.random.split(jax.random.key(1), count))
     return [genomes.take(whole, i) for i in range(count)]
 
 
@@ -55,6 +56,11 @@ def _grid() -> jnp.ndarray:
     return jnp.asarray(np.stack(rows), jnp.float32)
 
 
+@jax.jit
+def _evaluate(network: genomes.CPPN, inputs: jax.Array) -> jax.Array:
+    return genomes.evaluate(network, inputs, len(OUTPUTS))
+
+
 def _forward(network: genomes.CPPN) -> dict[str, Any]:
     # A generation numbers new genes. Short fractions do not show how a machine rounds.
     network = replace(
@@ -64,7 +70,7 @@ def _forward(network: genomes.CPPN) -> dict[str, Any]:
         weight=_shortened(network.weight),
         bias=_shortened(network.bias),
     )
-    outputs = genomes.evaluate(network, _grid(), len(OUTPUTS))
+    outputs = _evaluate(network, _grid())
     control = {"wave_number": WAVES}
     return _case("cppn", genomes.to_genes(network), control, np.asarray(outputs), WITH_WAVE)
 
@@ -93,10 +99,11 @@ def _recurrent() -> dict[str, Any]:
     }
     network = jax.tree.map(jnp.asarray, genomes.from_genes(genes, 8, 12))
     values, outputs = jnp.zeros((8, ROWS), jnp.float32), []
+    advance = jax.jit(genomes.advance)
     for sine, cosine in genomes.sine_cosine(STEPS, float(PERIOD)).T:
         clock = np.repeat([[sine], [cosine]], ROWS, 1)
         inputs = jnp.asarray(np.concatenate([PLACES[None], clock]), jnp.float32)
-        values = genomes.advance(network, values, inputs)
+        values = advance(network, values, inputs)
         outputs.append(np.asarray(values[3:5]))
     steps = STEPS - PERIOD + np.arange(COLUMNS) * PERIOD // COLUMNS
     found = np.stack(outputs)[steps].swapaxes(0, 1).reshape(2, -1)
