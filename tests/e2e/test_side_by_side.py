@@ -66,6 +66,10 @@ def test_the_comparison_is_saved_as_a_picture_and_as_a_film(page, three, shared,
     size = race.evaluate("({ width, height }) => [width, height]")
     assert list(picture.size) == size
     with page.expect_download() as download:
+        page.get_by_role("button", name="GIF", exact=True).click()
+    gif = Image.open(BytesIO(download.value.path().read_bytes()))
+    assert gif.format == "GIF" and gif.n_frames > 5
+    with page.expect_download() as download:
         page.get_by_role("button", name="Film", exact=True).click()
     film = download.value.path().read_bytes()
     assert download.value.suggested_filename in ("creatures.mp4", "creatures.webm")

@@ -4,9 +4,10 @@ import type { RefObject } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { STEPS_PER_SECOND, useClock, useKeys } from "../replay/clock";
 import { showFailure } from "../store/toasts";
-import { prefersReducedMotion, px, useSize } from "../ui/canvas";
+import { type Size, prefersReducedMotion, px, useSize } from "../ui/canvas";
 import { type Lane, drawRace, isOver } from "./race";
-import { canFilm, film, savePicture } from "./recording";
+import { gifOf } from "./gif";
+import { canFilm, film, save, savePicture } from "./recording";
 import { text } from "./text";
 
 const PACES = [1, 2, 4];
@@ -55,7 +56,7 @@ export function Race({ lanes }: { lanes: Lane[] }) {
           </select>
         </label>
         <span class="spring" />
-        <Exports canvas={canvas} onStart={restart} isOver={over} />
+        <Exports {...{ canvas, lanes, size, pace }} onStart={restart} isOver={over} />
       </div>
       <p class="quiet small race-about">{text.raceAbout}</p>
     </>
@@ -64,13 +65,16 @@ export function Race({ lanes }: { lanes: Lane[] }) {
 
 interface ExportsProps {
   canvas: RefObject<HTMLCanvasElement | null>;
+  lanes: Lane[];
+  size: Size;
+  pace: number;
   /** Starts from the beginning. */
   onStart: () => void;
   isOver: () => boolean;
 }
 
 /** A picture of this moment, and a film from the start until the first one has arrived. */
-function Exports({ canvas, onStart, isOver }: ExportsProps) {
+function Exports({ canvas, lanes, size, pace, onStart, isOver }: ExportsProps) {
   const [filming, setFilming] = useState(false);
   const make = async () => {
     setFilming(true);
@@ -78,8 +82,19 @@ function Exports({ canvas, onStart, isOver }: ExportsProps) {
     await film(canvas.current!, text.fileName, isOver).catch(showFailure);
     setFilming(false);
   };
+  const [drawn, setDrawn] = useState<number | null>(null);
+  const makeGif = async () => {
+    setDrawn(0);
+    await gifOf(lanes, size, pace * STEPS_PER_SECOND, setDrawn)
+      .then((blob) => save(blob, `${text.fileName}.gif`))
+      .catch(showFailure);
+    setDrawn(null);
+  };
   return (
     <>
+      <button disabled={drawn !== null} onClick={() => void makeGif()}>
+        {drawn === null ? text.gif : text.drawing(drawn)}
+      </button>
       <button onClick={() => savePicture(canvas.current!, text.fileName)}>{text.picture}</button>
       {canFilm() && (
         <button disabled={filming} onClick={() => void make()}>

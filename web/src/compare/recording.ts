@@ -40,7 +40,7 @@ export async function film(canvas: HTMLCanvasElement, name: string, isOver: () =
   save(new Blob(parts, { type }), `${name}.${ending}`);
 }
 
-function save(blob: Blob, name: string): void {
+export function save(blob: Blob, name: string): void {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);
   link.download = name;

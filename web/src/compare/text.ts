@@ -47,6 +47,8 @@ export const text = {
   restart: "From the start",
   pace: "Pace",
   picture: "Picture (PNG)",
+  gif: "GIF",
+  drawing: (frames: number) => `Frame ${frames} …`,
   film: "Film",
   filming: "Recording …",
   fileName: "creatures",
