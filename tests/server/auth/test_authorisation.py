@@ -37,13 +37,21 @@ OWNED = ("run_id", "sweep_id", "slug")
 """Path parameters that name something with an owner."""
 OPEN = {
     "GET /healthz",
+    "GET /import",
     "GET /readyz",
     "GET /s/{slug}",
     "GET /s/{slug}/{rest:path}",
     "GET /{path:path}",
 }
 """Public paths outside of the API."""
-OPEN_API = {"GET /shares/{slug}", "GET /commons", "POST /session", "DELETE /session"}
+OPEN_API = {
+    "GET /shares/{slug}",
+    "GET /shares/{slug}/creature.json",
+    "GET /shares/{slug}/loop.mp4",
+    "GET /commons",
+    "POST /session",
+    "DELETE /session",
+}
 """Public paths of the API."""
 SHARED = ("/runs/{run_id}", "/creatures/{sha}")
 """Beginnings of the paths that the holder of a share may read."""
