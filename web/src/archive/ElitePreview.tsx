@@ -2,7 +2,7 @@
 
 import { useLayoutEffect, useState } from "preact/hooks";
 import { SwimmingBody } from "../replay/SwimmingBody";
-import { usePoseStream } from "../store/poses";
+import { loadedStream, usePoseStream } from "../store/poses";
 import { text } from "./text";
 
 /** Delay of a request, so that a moving pointer requests nothing. */
@@ -15,7 +15,8 @@ export function ElitePreview({ sha }: { sha: string }) {
     const timer = setTimeout(() => setRequested(sha), HOVER_MS);
     return () => clearTimeout(timer);
   }, [sha]);
-  const { stream, rendering, error } = usePoseStream(requested === sha ? sha : null);
+  const wanted = requested === sha || loadedStream(sha) ? sha : null;
+  const { stream, rendering, error } = usePoseStream(wanted);
   return (
     <div class="inset" data-inset>
       {stream ? (

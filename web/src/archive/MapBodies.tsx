@@ -55,8 +55,13 @@ function Bodies({
     () => new Map([...tiles].map(([bin, tile]) => [bin, inkOn(tile, colouring)])),
     [tiles, colouring],
   );
+  const last = useRef({ steps: 0, frame: 0 });
   useSteps(useOnScreen(canvas), (steps) => {
-    if (!canvas.current) return;
+    const { current } = last;
+    // Every other frame is enough for small bodies that move; other changes are drawn at once.
+    const moves = steps !== current.steps;
+    current.steps = steps;
+    if (!canvas.current || (moves && ++current.frame % 2 > 0)) return;
     const context = prepare(canvas.current, size);
     context.lineJoin = context.lineCap = "round";
     context.lineWidth = Math.max(1.2, side / 22);

@@ -144,9 +144,12 @@ function stop(): void {
   requests.clear();
 }
 
+/** The stream of a creature if it is loaded, else null. */
+export const loadedStream = (sha: string): PoseStream | null => cache.get(sha) ?? null;
+
 /** The stream of one creature; null while it is loaded, or made from a replay that is rendered. */
 export function usePoseStream(sha: string | null) {
-  const known = (sha && cache.get(sha)) || null;
+  const known = sha === null ? null : loadedStream(sha);
   const ask = async () => {
     const stream = await readStream(sha!);
     if (stream) add(stream);

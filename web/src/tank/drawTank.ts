@@ -22,9 +22,8 @@ interface Style {
 }
 const STYLE: Style = {
   strokes: [
-    [6, 0.045],
-    [3.6, 0.07],
-    [2, 0.14],
+    [5, 0.06],
+    [2.4, 0.16],
     [1, 1],
   ],
   glowing: 0.25,
@@ -37,8 +36,8 @@ const [PLAIN, PHONE]: [Style, number] = [
       [3.4, 0.13],
       [1, 1],
     ],
-    glowing: 0.6,
-    pieces: 2,
+    glowing: 0.8,
+    pieces: 1,
   },
   640,
 ];
