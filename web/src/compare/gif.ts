@@ -24,12 +24,13 @@ export async function gifOf(
 ): Promise<Blob> {
   const { GIFEncoder, applyPalette, quantize } = await import("gifenc");
   const canvas = document.createElement("canvas");
+  const context = canvas.getContext("2d", { willReadFrequently: true })!;
   const size = { width: Math.min(WIDEST, width), height };
   const film = GIFEncoder();
   const each = stepsOfFrame(lanes, size, (stepsPerSecond * DELAY_MS) / 1000);
   for (let frame = 0, steps = 0; frame < MOST && !isOver(lanes, steps, size); frame++) {
     drawRace(canvas, size, lanes, steps);
-    const { data } = canvas.getContext("2d")!.getImageData(0, 0, canvas.width, canvas.height);
+    const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
     const palette = quantize(data, COLOURS);
     film.writeFrame(applyPalette(data, palette), canvas.width, canvas.height, { palette, delay: DELAY_MS });
     steps += each;
