@@ -68,7 +68,8 @@ def test_the_comparison_is_saved_as_a_picture_and_as_a_film(page, three, shared,
     with page.expect_download() as download:
         page.get_by_role("button", name="GIF", exact=True).click()
     gif = Image.open(BytesIO(download.value.path().read_bytes()))
-    assert gif.format == "GIF" and gif.n_frames > 5
+    assert gif.format == "GIF"
+    assert gif.n_frames > 5
     with page.expect_download() as download:
         page.get_by_role("button", name="Film", exact=True).click()
     film = download.value.path().read_bytes()
