@@ -110,8 +110,8 @@ def evaluations(task: search.Task, block: int) -> tuple[Callable, Any]:
     return search.block_program(lambda one: search.evaluate(task, one)), given
 
 
-def compiled(programs: list[tuple[Callable, Any]]) -> list[tuple[Callable, Any]]:
-    lowered = [program.lower(given) for program, given in programs]  # type: ignore[attr-defined]
+def compiled(programs: list[tuple[Any, Any]]) -> list[tuple[Callable, Any]]:
+    lowered = [program.lower(given) for program, given in programs]
     with ThreadPoolExecutor() as pool:
         found = list(pool.map(lambda one: one.compile(), lowered))
     return [(program, given) for program, (_, given) in zip(found, programs, strict=True)]

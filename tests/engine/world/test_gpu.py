@@ -11,17 +11,6 @@ from microcosmos import bodies, coupling, filaments, groups, world
 from microcosmos.build.scene import build_layout, build_rods
 
 NODES, SIZE = 5, (12, 16)
-OBSERVED = (
-    "centre",
-    "positions",
-    "speed",
-    "node_speed",
-    "held",
-    "heading",
-    "curvature",
-    "power",
-    "force",
-)
 
 
 def scene(steps: int, **form):
@@ -67,7 +56,7 @@ def test_the_kernel_takes_the_steps_of_jax(steps, present, form):
     box, start, rest = scene(steps, **form)
     box = replace(box, present=None if present is None else jnp.asarray(present))
     (end, measures), (found, observed) = both(box, start, rest)
-    for name in OBSERVED:
+    for name in world.native.OBSERVED:
         np.testing.assert_allclose(getattr(observed, name), getattr(measures, name), atol=1e-12)
     for plane, other in zip(found.populations, end.populations, strict=True):
         np.testing.assert_allclose(plane, other, atol=1e-14)

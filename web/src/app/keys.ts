@@ -2,9 +2,7 @@
 
 import { useListener } from "../store/polling";
 import { navigate } from "../store/router";
-
-/** Elements that take text. */
-const FIELDS = "input:not([type=checkbox], [type=range]), textarea, select, [contenteditable]";
+import { TEXT_FIELDS } from "../ui/forms";
 
 export function usePageKeys(toggleShortcuts: () => void): void {
   const actions: Record<string, () => void> = {
@@ -15,7 +13,7 @@ export function usePageKeys(toggleShortcuts: () => void): void {
   useListener("keydown", (event: KeyboardEvent) => {
     const target = event.target as Element;
     if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
-    if (target.closest?.(FIELDS) || (target.closest?.("dialog") && event.key !== "?")) return;
+    if (target.closest?.(TEXT_FIELDS) || (target.closest?.("dialog") && event.key !== "?")) return;
     const action = actions[event.key];
     if (!action) return;
     event.preventDefault();

@@ -45,8 +45,8 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
   const gallery = query.get("view") === "gallery";
   const selection = useSelection(query, view.elites);
   const props = useViewProps(run, view, gallery ? view.grid : view.map, selection, query);
-  // Other creatures or axes are another map, in which no cell has changed.
   const owner = view.of === "elites" ? run.id : null;
+  // Other creatures or axes are another map, in which no cell has changed.
   const key = [view.axes[0].name, view.axes[1].name, view.of, view.reprojection !== null].join(" ");
   return (
     <div data-tour={tourPart}>

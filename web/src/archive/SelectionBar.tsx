@@ -12,10 +12,10 @@ import type { Projection } from "./projection";
 import type { Of } from "./reprojection";
 import { lazy } from "../ui/lazy";
 import { count } from "../ui/format";
-import { ForkLink } from "../ui/links";
+import { ForkLink, SideBySide } from "../ui/links";
 import { text } from "./text";
 
-const BreedButton = lazy(async () => (await import("../breeding/BreedButton")).BreedButton, "section");
+const BreedButton = lazy(async () => (await import("../breeding/BreedButton")).BreedButton, null);
 
 const setSelection = (selected: CellSet) =>
   setQuery({ cells: selected.size > 0 ? formatCells(selected) : null });
@@ -60,9 +60,6 @@ function ForkByName({ run, names }: { run: string; names: string[] }) {
   return <ForkLink run={run} creatures={names} title={text.fork(names.length)} />;
 }
 
-/** So many creatures swim side by side. */
-const MAX_SIDE_BY_SIDE = 6;
-
 interface Props extends Selection {
   run: Run;
   of: Of;
@@ -94,11 +91,7 @@ export function SelectionBar({ run, of, elites, at, selected, onSelect }: Props)
         />
       )}
       {creatures > 0 && of === "history" && <ForkByName run={run.id} names={[...names]} />}
-      {selected.size > 1 && creatures > 1 && creatures <= MAX_SIDE_BY_SIDE && (
-        <a class="button" href={`/compare?creatures=${[...names].join()}`}>
-          {text.sideBySide}
-        </a>
-      )}
+      {selected.size > 1 && <SideBySide creatures={[...names]} title={text.sideBySide} />}
       {selected.size > 0 && <button onClick={() => setSelection(new Set())}>{text.clearSelection}</button>}
     </div>
   );

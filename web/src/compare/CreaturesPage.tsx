@@ -13,19 +13,19 @@ import { Card, Page } from "../ui/Page";
 import { Table } from "../ui/Table";
 import { Term } from "../ui/Term";
 import { DASH, number, shortId } from "../ui/format";
+import { MAX_SIDE_BY_SIDE } from "../ui/links";
 import { Race } from "./Race";
 import { commonGenes } from "./commonGenes";
 import { text } from "./text";
 import "./creatures.css";
 
-export const MAX_CREATURES = 6;
 const SUGGESTED = 12;
 
 const setCreatures = (names: string[]) => setQuery({ creatures: names.join() });
 
 export function CreaturesPage({ query }: { query: URLSearchParams }) {
   const requested = [...new Set((query.get("creatures") ?? "").split(",").filter(Boolean))];
-  const names = requested.slice(0, MAX_CREATURES);
+  const names = requested.slice(0, MAX_SIDE_BY_SIDE);
   const { value: creatures, error } = useFetched(
     () => Promise.all(names.map((name) => api.readCreature(name))),
     [names.join()],
@@ -40,13 +40,13 @@ export function CreaturesPage({ query }: { query: URLSearchParams }) {
   });
   return (
     <Page title={text.sideBySide} crumbs={[["/", text.runs]]} error={error}>
-      {requested.length > MAX_CREATURES && (
-        <p class="banner warning">{text.tooManyCreatures(MAX_CREATURES, requested.length)}</p>
+      {requested.length > MAX_SIDE_BY_SIDE && (
+        <p class="banner warning">{text.tooManyCreatures(MAX_SIDE_BY_SIDE, requested.length)}</p>
       )}
       <Chosen names={names} />
       {lanes.length > 0 && <Race key={names.join()} lanes={lanes} />}
       {lanes.length < names.length && <p class="quiet">{text.recording(names.length - lanes.length)}</p>}
-      {names.length < MAX_CREATURES && <Others names={names} />}
+      {names.length < MAX_SIDE_BY_SIDE && <Others names={names} />}
       {creatures && creatures.length > 0 && <Facts creatures={creatures} />}
     </Page>
   );
@@ -79,7 +79,7 @@ function Chosen({ names }: { names: string[] }) {
           </li>
         ))}
       </ul>
-      {names.length < MAX_CREATURES && (
+      {names.length < MAX_SIDE_BY_SIDE && (
         <form class="row" onSubmit={add}>
           <input
             aria-label={text.addCreature}
@@ -96,7 +96,7 @@ function Chosen({ names }: { names: string[] }) {
 
 /** Creatures of the latest runs to add with a click. */
 function Others({ names }: { names: string[] }) {
-  const tank = useTank(SUGGESTED + MAX_CREATURES).value;
+  const tank = useTank(SUGGESTED + MAX_SIDE_BY_SIDE).value;
   const others = (tank?.swimmers ?? []).filter(({ creature }) => !names.includes(creature));
   const poses = usePoses(readTankBatch, others);
   if (others.length === 0) return null;

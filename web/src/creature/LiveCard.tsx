@@ -95,32 +95,41 @@ function LiveView({ live, onFail }: { live: Live; onFail: (reason: unknown) => v
       <LiveStage {...{ live, viscosity, speed, field, pushes, onFail }} />
       <div class="row">
         <Segments label={replayText.field} choices={FIELDS} value={field} onSelect={setField} />
-        <label class="row">
-          {text.viscosity(number(viscosity, 2))}
-          <input
-            type="range"
-            min={RANGE[0]}
-            max={RANGE[1]}
-            step={0.05}
-            value={Math.log10(viscosity)}
-            aria-valuetext={number(viscosity, 2)}
-            onInput={({ currentTarget }) => setViscosity(10 ** currentTarget.valueAsNumber)}
-          />
-        </label>
-        <label class="row">
-          {text.strokeSpeed(number(speed, 2))}
-          <input
-            type="range"
-            min={SPEEDS[0]}
-            max={SPEEDS[1]}
-            step={0.25}
-            value={speed}
-            aria-valuetext={number(speed, 2)}
-            onInput={({ currentTarget }) => setSpeed(currentTarget.valueAsNumber)}
-          />
-        </label>
+        <Slider
+          title={text.viscosity(number(viscosity, 2))}
+          {...{ range: RANGE, step: 0.05, value: Math.log10(viscosity), shown: viscosity }}
+          onChange={(power) => setViscosity(10 ** power)}
+        />
+        <Slider
+          title={text.strokeSpeed(number(speed, 2))}
+          {...{ range: SPEEDS, step: 0.25, value: speed, shown: speed }}
+          onChange={setSpeed}
+        />
         <button onClick={() => pushes.push(STIR)}>{text.stir}</button>
       </div>
     </>
+  );
+}
+
+interface SliderProps {
+  title: string;
+  range: readonly [low: number, high: number];
+  step: number;
+  value: number;
+  /** The value that screen readers say. */
+  shown: number;
+  onChange: (value: number) => void;
+}
+
+function Slider({ title, range: [min, max], step, value, shown, onChange }: SliderProps) {
+  return (
+    <label class="row">
+      {title}
+      <input
+        {...{ type: "range", min, max, step, value }}
+        aria-valuetext={number(shown, 2)}
+        onInput={({ currentTarget }) => onChange(currentTarget.valueAsNumber)}
+      />
+    </label>
   );
 }

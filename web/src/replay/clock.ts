@@ -3,6 +3,7 @@
 import type { RefObject } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { prefersReducedMotion } from "../ui/canvas";
+import { TEXT_FIELDS } from "../ui/forms";
 
 /** While running, call `tick` in every frame with the seconds since the last one. */
 export function useClock(running: boolean, tick: (seconds: number) => void): void {
@@ -35,13 +36,12 @@ export function useSteps(running: boolean, draw: (steps: number) => void): void 
   useEffect(() => draw(steps.current));
 }
 
-/** Elements that use these keys, or text, themselves. */
-const FIELDS = "select, textarea, [contenteditable], input:not([type=range], [type=checkbox])";
+/** Elements that the space bar presses. */
 const BUTTONS = "button, a, summary, input:not([type=range])";
 
 /** True if a player handles a key: the space bar from anywhere on the page, others within it. */
 export function handlesKey(key: string, target: Element, player: Element | null): boolean {
-  if (target.closest(FIELDS)) return false;
+  if (target.closest(TEXT_FIELDS)) return false;
   return key === " " ? !target.closest(BUTTONS) : player?.contains(target) === true;
 }
 

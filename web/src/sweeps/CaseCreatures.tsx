@@ -5,12 +5,10 @@ import { SwimmingBody } from "../replay/SwimmingBody";
 import { readTankBatch, usePoses } from "../store/poses";
 import { number } from "../ui/format";
 import { Card } from "../ui/Page";
+import { SideBySide } from "../ui/links";
 import { CaseName } from "./CaseTables";
 import { type ShownCase, memberName } from "./summaryPlots";
 import { text } from "./text";
-
-/** So many creatures swim side by side. */
-const MAX_SIDE_BY_SIDE = 6;
 
 type Found = Member & { face: string; best: number };
 
@@ -28,14 +26,7 @@ export function CaseCreatures({ shown }: { shown: ShownCase[] }) {
       id="creatures"
       title={text.creatures}
       note={text.creaturesAbout}
-      actions={
-        best.length > 1 &&
-        best.length <= MAX_SIDE_BY_SIDE && (
-          <a class="button" href={`/compare?creatures=${best.join()}`}>
-            {text.sideBySide}
-          </a>
-        )
-      }
+      actions={<SideBySide creatures={best} title={text.sideBySide} />}
     >
       <ul class="case-creatures">
         {rows.map(({ one, found }) => (

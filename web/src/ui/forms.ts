@@ -36,3 +36,6 @@ export function newIdempotencyKey(): string {
   const parts = crypto.getRandomValues(new Uint32Array(4));
   return [...parts].map((part) => part.toString(16).padStart(8, "0")).join("");
 }
+
+/** Elements that take text or use most keys themselves. */
+export const TEXT_FIELDS = "select, textarea, [contenteditable], input:not([type=range], [type=checkbox])";

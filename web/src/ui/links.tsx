@@ -50,3 +50,16 @@ export function ForkLink({ run, creatures, cells, at = null, title, inline = fal
     </a>
   );
 }
+
+/** So many creatures swim side by side. */
+export const MAX_SIDE_BY_SIDE = 6;
+
+/** A link to two or more creatures side by side; nothing if they are too many. */
+export function SideBySide({ creatures, title }: { creatures: readonly string[]; title: string }) {
+  if (creatures.length < 2 || creatures.length > MAX_SIDE_BY_SIDE) return null;
+  return (
+    <a class="button" href={`/compare?creatures=${creatures.join()}`}>
+      {title}
+    </a>
+  );
+}
