@@ -24,6 +24,7 @@ def test_no_update_is_lost_while_the_server_is_started_again(
 ):
     run = product.submit(SPEC)
     page.add_init_script(TOUR_TAKEN)
+    page.emulate_media(reduced_motion="reduce")  # So the bodies in the cells compare.
     page.goto(f"{product.url}/runs/{run}?colour=turning")  # Which is asked for as it grows.
     page.evaluate("window.neverReloaded = true")
     product.reach(run, 3)
@@ -40,6 +41,7 @@ def test_no_update_is_lost_while_the_server_is_started_again(
     wait_until(lambda: figures_on(page) == expected, 10, f"the page shows {expected}")
     anew = new_page()
     anew.add_init_script(TOUR_TAKEN)
+    anew.emulate_media(reduced_motion="reduce")
     anew.goto(page.url)
     wait_until(lambda: appearance(page) == appearance(anew), 20, "it looks as if opened anew")
     assert page.evaluate("window.neverReloaded")

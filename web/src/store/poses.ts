@@ -35,8 +35,8 @@ export function readArchiveBatch(run: string, at: number | null): ReadBatch<Visi
 }
 
 const cache = new Map<string, PoseStream>();
-/** Creatures whose batch is on its way. */
-const batched = new Set<string>();
+/** Functions that stop the requests of batches, by creature. */
+const batched = new Map<string, () => void>();
 /** Creatures without a stored stream. */
 const lacking = new Set<string>();
 /** Functions that stop the requests of single creatures. */
@@ -85,26 +85,28 @@ function request<T extends Visible>(
   pending = missing.map(({ creature }) => creature).filter(alone);
   const unknown = missing.filter(({ creature }) => !lacking.has(creature) && !batched.has(creature));
   for (let first = 0; readBatch && first < unknown.length; first += BATCH) {
-    void requestBatch(readBatch, unknown.slice(first, first + BATCH), render);
+    requestBatch(readBatch, unknown.slice(first, first + BATCH), render);
   }
   startRequests();
 }
 
-async function requestBatch<T extends Visible>(
-  readBatch: ReadBatch<T>,
-  elites: T[],
-  render: boolean,
-): Promise<void> {
-  for (const { creature } of elites) batched.add(creature);
-  // After a failure the creatures are requested one at a time, which is repeated.
-  for (const stream of await readBatch(elites).then(decodePoseBatch, () => [])) add(stream);
-  for (const { creature } of elites) {
-    batched.delete(creature);
-    if (cache.has(creature)) continue;
-    lacking.add(creature);
-    if (render && listeners.size > 0) pending.push(creature);
-  }
-  startRequests();
+function requestBatch<T extends Visible>(readBatch: ReadBatch<T>, elites: T[], render: boolean): void {
+  const done = (streams: PoseStream[]) => {
+    for (const stream of streams) add(stream);
+    for (const { creature } of elites) {
+      batched.delete(creature);
+      if (cache.has(creature)) continue;
+      lacking.add(creature);
+      if (render) pending.push(creature);
+    }
+    startRequests();
+  };
+  const end = poll(() => readBatch(elites).then(decodePoseBatch), {
+    value: done,
+    note: () => {},
+    error: () => done([]),
+  });
+  for (const { creature } of elites) batched.set(creature, end);
 }
 
 function add(stream: PoseStream): void {
@@ -140,8 +142,10 @@ async function readStream(sha: string): Promise<PoseStream | null> {
 
 function stop(): void {
   pending = [];
-  for (const end of requests.values()) end();
-  requests.clear();
+  for (const started of [batched, requests]) {
+    for (const end of started.values()) end();
+    started.clear();
+  }
 }
 
 /** The stream of a creature if it is loaded, else null. */
