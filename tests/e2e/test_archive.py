@@ -4,7 +4,7 @@ import re
 
 import pytest
 from pages import TOUR_TAKEN, best_of, elites, the_map
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 from small_runs import CENTROIDS
 from written_run import WrittenRun
 
@@ -53,6 +53,15 @@ TILES = """side => {
 ALL_BODIES = f"side => {{ const [a, b] = ({TILES})(side); return a > 0 && a === b; }}"
 GALLERY_MS = 2000
 
+DRAWN = """selector => {
+  const canvas = document.querySelector(selector);
+  if (!canvas?.width) return 0;
+  const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
+  copy.drawImage(canvas, 0, 0);
+  return copy.getImageData(0, 0, canvas.width, canvas.height).data.filter(byte => byte > 0).length;
+}"""
+"""The number of bytes of a canvas that something is drawn on."""
+
 CHANGED = "before => before !== document.querySelector('[data-gallery] canvas').toDataURL()"
 
 
@@ -93,6 +102,25 @@ def test_a_creature_swims_beside_the_pointer(page, searched):
     before = canvas.evaluate("canvas => canvas.toDataURL()")
     page.wait_for_timeout(500)
     assert canvas.evaluate("canvas => canvas.toDataURL()") != before
+
+
+def test_bodies_are_fetched_again_whose_request_failed(shared, page, complaints):
+    asked = []
+
+    def fail_once(route: Route) -> None:
+        asked.append(route.request.url)
+        if len(asked) == 1:
+            route.abort()
+        else:
+            route.continue_()
+
+    page.route("**/archive/poses?*", fail_once)
+    page.add_init_script(TOUR_TAKEN)
+    run = shared.finished("search")
+    with page.expect_response(lambda response: response.url in asked[:1]):
+        page.goto(f"{shared.product.url}/runs/{run}")
+    page.wait_for_function(f"() => ({DRAWN})('[data-bodies]') > 0")
+    complaints[:] = [text for text in complaints if "net::ERR_FAILED" not in text]
 
 
 def test_the_slider_shows_the_archive_of_every_generation(page, size):

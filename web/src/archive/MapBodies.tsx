@@ -75,7 +75,7 @@ function Bodies({
       context.stroke();
     }
   });
-  return <canvas ref={canvas} style={px({ ...size })} />;
+  return <canvas data-bodies ref={canvas} style={px({ ...size })} />;
 }
 
 /** The colour of a body that is legible on its cell; null if the cell has no colour. */
