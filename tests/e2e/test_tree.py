@@ -163,7 +163,9 @@ def test_a_click_opens_the_creature_that_the_pointer_names(shared, page):
 def test_a_tree_leads_across_a_fork_and_finds_each_creature(shared, page):
     product, run = shared.product, shared.finished("voronoi")
     parent = best_of(product, run)
-    before = {row["run"] for row in table(product, f"creatures/{parent}")}  # Of other tests too.
+    before = {
+        row["run"] for row in table(product, f"creatures/{parent}")
+    }  # Of other tests too.
     assert run in before
     asked = {"from": {"creatures": [parent]}, "spec": {"world": {"viscosity": 0.3}}}
     fork = product.http.post(f"/api/v1/runs/{run}/fork", json=asked).raise_for_status().json()
