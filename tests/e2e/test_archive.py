@@ -58,7 +58,8 @@ DRAWN = """selector => {
   if (!canvas?.width) return 0;
   const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
   copy.drawImage(canvas, 0, 0);
-  return copy.getImageData(0, 0, canvas.width, canvas.height).data.filter(byte => byte > 0).length;
+  const {data} = copy.getImageData(0, 0, canvas.width, canvas.height);
+  return data.filter(byte => byte > 0).length;
 }"""
 """The number of bytes of a canvas that something is drawn on."""
 
