@@ -93,6 +93,12 @@ def test_a_creature_swims_on_in_live_water(shared, page):
     card.get_by_role("button", name="Speed").press("Enter")
     card.get_by_role("button", name="Dye").press("Enter")
     card.get_by_role("button", name="Push the water").press("Enter")
+    card.get_by_role("button", name="Pull the body").press("Enter")
+    card.get_by_text("Let others join").click()
+    card.get_by_role("button", name=re.compile("^Add [0-9a-f]{8}, fitness")).first.click()
+    expect(card.get_by_role("status")).to_have_text(
+        re.compile("^[0-9a-f]{8} swims too.$"), timeout=SLOW
+    )
     page.wait_for_timeout(500)
     expect(card.get_by_role("button", name="Stop")).to_be_visible()
     card.get_by_role("button", name="Stop").press("Enter")

@@ -4,22 +4,19 @@ import { useState } from "preact/hooks";
 import * as api from "../api/client";
 import type { Creature } from "../api/types";
 import { groupsOf, originOf } from "../creature/facts";
-import { SwimmingBody } from "../replay/SwimmingBody";
+import { LatestCreatures, NamedCreature } from "../replay/OtherCreatures";
 import { useFetched } from "../store/fetch";
 import { readTankBatch, usePoses } from "../store/poses";
 import { setQuery } from "../store/router";
-import { useTank } from "../store/tank";
 import { Card, Page } from "../ui/Page";
 import { Table } from "../ui/Table";
 import { Term } from "../ui/Term";
-import { DASH, number, shortId } from "../ui/format";
+import { DASH, shortId } from "../ui/format";
 import { MAX_SIDE_BY_SIDE } from "../ui/links";
 import { Race } from "./Race";
 import { commonGenes } from "./commonGenes";
 import { text } from "./text";
 import "./creatures.css";
-
-const SUGGESTED = 12;
 
 const setCreatures = (names: string[]) => setQuery({ creatures: names.join() });
 
@@ -46,21 +43,15 @@ export function CreaturesPage({ query }: { query: URLSearchParams }) {
       <Chosen names={names} />
       {lanes.length > 0 && <Race key={names.join()} lanes={lanes} />}
       {lanes.length < names.length && <p class="quiet">{text.recording(names.length - lanes.length)}</p>}
-      {names.length < MAX_SIDE_BY_SIDE && <Others names={names} />}
+      {names.length < MAX_SIDE_BY_SIDE && (
+        <LatestCreatures except={names} onPick={(name) => setCreatures([...names, name])} />
+      )}
       {creatures && creatures.length > 0 && <Facts creatures={creatures} />}
     </Page>
   );
 }
 
 function Chosen({ names }: { names: string[] }) {
-  const [typed, setTyped] = useState("");
-  const add = (event: Event) => {
-    event.preventDefault();
-    const found = /[0-9a-f]{64}/.exec(typed)?.[0];
-    if (!found) return;
-    setCreatures([...names, found]);
-    setTyped("");
-  };
   return (
     <div class="row chosen">
       <ul class="compare-legend" aria-label={text.creatures}>
@@ -79,42 +70,8 @@ function Chosen({ names }: { names: string[] }) {
           </li>
         ))}
       </ul>
-      {names.length < MAX_SIDE_BY_SIDE && (
-        <form class="row" onSubmit={add}>
-          <input
-            aria-label={text.addCreature}
-            placeholder={text.addCreatureHint}
-            value={typed}
-            onInput={(event) => setTyped(event.currentTarget.value)}
-          />
-          <button disabled={!/[0-9a-f]{64}/.test(typed)}>{text.add}</button>
-        </form>
-      )}
+      {names.length < MAX_SIDE_BY_SIDE && <NamedCreature onPick={(name) => setCreatures([...names, name])} />}
     </div>
-  );
-}
-
-/** Creatures of the latest runs to add with a click. */
-function Others({ names }: { names: string[] }) {
-  const tank = useTank(SUGGESTED + MAX_SIDE_BY_SIDE).value;
-  const others = (tank?.swimmers ?? []).filter(({ creature }) => !names.includes(creature));
-  const poses = usePoses(readTankBatch, others);
-  if (others.length === 0) return null;
-  return (
-    <section class="suggested" aria-label={text.suggested}>
-      <p class="quiet small">{text.suggested}</p>
-      {others.slice(0, SUGGESTED).map(({ creature, fitness }) => (
-        <button
-          key={creature}
-          class="suggestion"
-          aria-label={text.addNamed(shortId(creature), number(fitness))}
-          title={text.addNamed(shortId(creature), number(fitness))}
-          onClick={() => setCreatures([...names, creature])}
-        >
-          <SwimmingBody stream={poses.get(creature) ?? null} onWater />
-        </button>
-      ))}
-    </section>
   );
 }
 

@@ -30,11 +30,6 @@ export const text = {
     count === 1
       ? "The motion of one of them is being recorded …"
       : `The motion of ${count} is being recorded …`,
-  addCreature: "Name or address of a creature",
-  addCreatureHint: "Paste a creature's name or address",
-  add: "Add",
-  addNamed: (name: string, fitness: string) => `Add ${name}, fitness ${fitness}`,
-  suggested: "Add one of the latest runs",
   lane: (name: string, lengths: string) => `${name}   ${lengths} body lengths`,
   race: (count: number) =>
     count === 1

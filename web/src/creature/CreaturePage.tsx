@@ -19,6 +19,8 @@ import { BreedCreature } from "../breeding/BreedCreature";
 import { ForkLink } from "../ui/links";
 import { GenomeCard } from "./GenomeCard";
 import { LiveCard } from "./LiveCard";
+import type { Others } from "./live/LiveView";
+import { LatestCreatures, NamedCreature } from "../replay/OtherCreatures";
 import { Downloads } from "./Downloads";
 import { PlanCard } from "./PlanCard";
 import { RemeasureCard } from "./RemeasureCard";
@@ -112,7 +114,7 @@ export function CreatureView({ creature, query, audit, title, address = null }: 
               <SavePage title={title ?? text.title(shortId(sha))} {...{ creature, address }} />
             </Downloads>
           </section>
-          {isEvolved(creature) && <LiveCard readInputs={readInputs} />}
+          {isEvolved(creature) && <LiveCard readInputs={readInputs} others={audit && othersOf(sha)} />}
         </div>
         <div class="stack">
           {replay && <SpaceTimeCard {...{ replay, query, playhead }} />}
@@ -128,6 +130,17 @@ export function CreatureView({ creature, query, audit, title, address = null }: 
     </>
   );
 }
+
+/** Creatures that may join another in live water: visitors of a share can read none. */
+const othersOf = (sha: string): Others => ({
+  readInputs: api.readEvaluation,
+  pick: (onPick) => (
+    <>
+      <NamedCreature onPick={onPick} />
+      <LatestCreatures except={[sha]} onPick={onPick} />
+    </>
+  ),
+});
 
 function ReplayFitness({ replay, task }: { replay: Replay; task: Spec }) {
   const { recorded, replayed, difference } = replay.header.fitness;

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { type Point, chainsOf, meanOf, positionsAt, splineOf } from "./motion";
+import { type Point, bodiesOf, chainsOf, meanOf, positionsAt, splineOf } from "./motion";
 
 describe("motion", () => {
   const replay = {
@@ -23,6 +23,15 @@ describe("motion", () => {
   ])("draws %s", (_, edges, chains) => {
     const pairs = edges.split(" ").map((edge) => [Number(edge[0]), Number(edge[1])] as const);
     expect(chainsOf(pairs).map((chain) => chain.join(""))).toEqual(chains.split(" "));
+  });
+
+  it("tells bodies apart, whatever joins their chains", () => {
+    const star = [0, 1, 2].map((arm) => [9, arm] as const);
+    const bodies = bodiesOf([...star, [3, 4], [4, 5]]);
+    expect(bodies.map((body) => [...new Set(body.flat())].sort())).toEqual([
+      [0, 1, 2, 9],
+      [3, 4, 5],
+    ]);
   });
 
   it("goes through every node, and straight where the nodes are in line", () => {

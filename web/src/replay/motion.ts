@@ -60,6 +60,17 @@ export function chainsOf(edges: readonly (readonly [number, number])[]): number[
   return chains;
 }
 
+/** The chains of each body, which are connected. */
+export function bodiesOf(edges: readonly (readonly [number, number])[]): number[][][] {
+  const bodies: number[][][] = [];
+  for (const chain of chainsOf(edges)) {
+    const touching = bodies.filter((body) => body.flat().some((node) => chain.includes(node)));
+    for (const body of touching) bodies.splice(bodies.indexOf(body), 1);
+    bodies.push([...touching.flat(), chain]);
+  }
+  return bodies;
+}
+
 function key(a: number, b: number): string {
   return a < b ? `${a} ${b}` : `${b} ${a}`;
 }

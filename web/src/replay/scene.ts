@@ -3,7 +3,7 @@
 import { type Replay, solidColumns } from "../decode/replay";
 import { type Size, type Theme, prepare } from "../ui/canvas";
 import type { FluidPainter } from "./fluid";
-import { type Point, BODY_INK, chainsOf, meanOf, positionsAt, splineOf } from "./motion";
+import { type Point, BODY_INK, bodiesOf, meanOf, positionsAt, splineOf } from "./motion";
 import { type Particles, drawTracers } from "./tracers";
 
 /** Cells between points of the grid, which is fixed in the world. */
@@ -13,11 +13,14 @@ interface Scene {
   replay: Replay;
   /** Null if no field is shown. */
   painter: FluidPainter | null;
-  chains: number[][];
+  /** Chains of nodes of each body. */
+  bodies: number[][][];
   /** In cells, y upwards. */
   obstacles: Path2D;
-  /** The body's mean position in each frame. */
+  /** The mean position of the first nodes in each frame. */
   path: Point[];
+  /** The number of first nodes that the view follows. */
+  leader: number;
   follow: boolean;
   /** The brightness of the background. */
   theme: Theme;
@@ -41,11 +44,13 @@ const INK = {
 
 export function sceneOf(
   replay: Replay,
-  view: Pick<Scene, "painter" | "follow" | "theme" | "tracers">,
+  view: Pick<Scene, "painter" | "follow" | "theme" | "tracers"> & { leader?: number },
 ): Scene {
-  const { frames, edges } = replay.header;
-  const path = Array.from({ length: frames }, (_, frame) => meanOf(positionsAt(replay, frame)));
-  return { replay, chains: chainsOf(edges), obstacles: obstaclesOf(replay), path, ...view };
+  const { frames, edges, nodes } = replay.header;
+  const { leader = nodes } = view;
+  const mean = (frame: number) => meanOf(positionsAt(replay, frame).slice(0, leader));
+  const path = Array.from({ length: frames }, (_, frame) => mean(frame));
+  return { replay, bodies: bodiesOf(edges), obstacles: obstaclesOf(replay), path, ...view, leader };
 }
 
 /** Solid cells; they overlap a little so that no seam shows. */
@@ -63,7 +68,7 @@ export function drawScene(canvas: HTMLCanvasElement, size: Size, scene: Scene, t
   const [width, height] = scene.replay.header.size;
   const scale = size.width / width;
   const points = positionsAt(scene.replay, time);
-  const mean = meanOf(points);
+  const mean = meanOf(points.slice(0, scene.leader));
   const camera = scene.follow ? mean : scene.path[0]!;
   const screen = ([x, y]: Point): Point => [
     (x - camera[0] + width / 2) * scale,
@@ -75,11 +80,19 @@ export function drawScene(canvas: HTMLCanvasElement, size: Size, scene: Scene, t
   if (scene.tracers) {
     drawTracers(context, scene.tracers, { time, camera, scale, colour: INK[scene.theme].body });
   }
-  for (const shift of periodicShifts(mean, camera, [width, height])) {
-    const place = (point: Point) => screen([point[0] + shift[0], point[1] + shift[1]]);
-    drawPath(context, [...scene.path.slice(0, Math.floor(time) + 1), mean].map(place), scene.theme);
-    const lines = scene.chains.map((chain) => chain.map((node) => place(points[node]!)));
-    drawBody(context, lines, Math.min(11, Math.max(3, 0.6 * scale)), scene.theme);
+  const shown = (around: Point, draw: (place: (point: Point) => Point) => void) => {
+    for (const [dx, dy] of periodicShifts(around, camera, [width, height])) {
+      draw(([x, y]) => screen([x + dx, y + dy]));
+    }
+  };
+  const path = [...scene.path.slice(0, Math.floor(time) + 1), mean];
+  shown(mean, (place) => drawPath(context, path.map(place), scene.theme));
+  for (const body of scene.bodies) {
+    const lines = body.map((chain) => chain.map((node) => points[node]!));
+    shown(meanOf(lines.flat()), (place) => {
+      const placed = lines.map((line) => line.map(place));
+      drawBody(context, placed, Math.min(11, Math.max(3, 0.6 * scale)), scene.theme);
+    });
   }
 }
 

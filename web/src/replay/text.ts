@@ -32,4 +32,9 @@ export const text = {
     moment: (generation: string) => `generation ${generation}`,
     newest: "Newest",
   },
+  addCreature: "Name or address of a creature",
+  addCreatureHint: "Paste a creature's name or address",
+  add: "Add",
+  addNamed: (name: string, fitness: string) => `Add ${name}, fitness ${fitness}`,
+  suggested: "Add one of the latest runs",
 };

@@ -1,4 +1,4 @@
-/** A creature that swims on in a web worker. */
+/** Creatures that swim on in a web worker. */
 
 import { kernelModule } from "./simulator";
 import { swimmer } from "./source";
@@ -11,10 +11,17 @@ export interface Begin {
 }
 
 export interface Push {
-  /** In cells from the creature's mean position. */
+  /** In cells from the first creature's mean position. */
   away: [number, number];
   /** In cells a step. */
   velocity: [number, number];
+}
+
+export interface Pull {
+  /** One of the nodes that have grown. */
+  node: number;
+  /** Where to, in cells from the first creature's mean position. */
+  away: [number, number];
 }
 
 export interface Steps {
@@ -23,9 +30,18 @@ export interface Steps {
   /** Of the stroke, relative to the recorded one. */
   speed: number;
   pushes: Push[];
+  pull: Pull | null;
+  /** Files of the inputs of creatures that join. */
+  joining: ArrayBuffer[];
 }
 
-export type Event = { stage: Stage } | { frame: Frame } | { error: string };
+export interface Advanced {
+  frame: Frame;
+  /** Why a creature could not join. */
+  refused: string | null;
+}
+
+export type Event = { stage: Stage } | Advanced | { error: string };
 
 export class Live {
   private constructor(
@@ -46,8 +62,8 @@ export class Live {
     }
   }
 
-  async advance(steps: Steps): Promise<Frame> {
-    return ((await answered(this.worker, steps)) as { frame: Frame }).frame;
+  async advance(steps: Steps): Promise<Advanced> {
+    return (await answered(this.worker, steps)) as Advanced;
   }
 
   end(): void {

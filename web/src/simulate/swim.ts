@@ -1,78 +1,99 @@
-/** A creature that swims on after its evaluation, in water that visitors change. */
+/** Creatures that swim on after their evaluation, in water that visitors change. */
 
 import type { EvaluationInputs } from "../decode/evaluation";
+import { joined } from "./joining";
 import { type Area, Kernel, type Results } from "./kernel";
-import { GIVEN, type Named, PLANE, simulated } from "./simulation";
-import { type Plane, pushed, quantised, velocities, vorticity } from "./water";
+import { GIVEN, type Named, PLANE } from "./simulation";
+import { REST, type Rest, STATE, type Swimmer, swimmerOf, within, writeRest } from "./swimmer";
+import {
+  type Place,
+  type Plane,
+  forced,
+  freest,
+  pushed,
+  quantised,
+  shortest,
+  velocities,
+  vorticity,
+} from "./water";
 
 /** The present state, as a replay of one frame holds it. */
 export interface Frame {
   /** Positions (node, 2) of the nodes that have grown, in cells. */
   positions: Float32Array;
+  /** Pairs of these nodes. */
+  edges: [number, number][];
+  /** The number of nodes of the first creature, which the view follows. */
+  leader: number;
   vorticity: Int8Array;
   velocity: Int8Array;
   scales: { vorticity: number; velocity: number };
 }
 
-/** What stays the same while a creature swims. */
+/** What stays the same while creatures swim. */
 export interface Stage {
   size: [number, number];
-  /** Pairs of nodes that have grown. */
-  edges: [number, number][];
   viscosity: number;
-  /** Steps of a stroke; of the whole simulation for a creature without strokes. */
+  /** Steps of a stroke of the first creature. */
   stroke: number;
 }
 
-/** Steps of the window of the last strokes, in the results of a summary. */
-const WINDOW = { start: 3, stop: 4, strokes: 5 };
 /** The place of the viscosity among the parameters of a rollout. */
 const VISCOSITY = 0;
 /** Most steps at a time. */
 const MOST = 64;
-const PLACES = { planes: 0, positions: 9, angles: 10, energy: 11, collected: 12 };
+/** The place of the positions among the results, after the planes. */
+const POSITIONS = 9;
+/** The force of a pull, in lattice units for each cell to the pointer, and the largest. */
+const [STIFFNESS, STRONGEST] = [0.005, 0.05];
 
 export class Swim {
   readonly stage: Stage;
-  private readonly kernel: Kernel;
-  private readonly numbers: Record<string, number>;
-  private readonly begin: Named;
-  private readonly rest: Named;
-  private readonly window: { start: number; stop: number };
-  private readonly nodes: number[];
-  private readonly parameters: Area;
-  private readonly nothing: Area;
-  private state: Results;
-  private spare: Results = [];
-  /** The recorded step at which it is, which may lie between two. */
-  private step: number;
-  private readonly scratch = new Map<string, Area>();
-  /** Recorded steps of its stroke in each step. */
+  private readonly swimmers: Swimmer[];
+  private kernel!: Kernel;
+  private numbers!: Record<string, number>;
+  private operands!: Named;
+  private nothing!: Area;
+  private state!: Results;
+  private spare!: Results;
+  private scratch!: Record<Rest, Area>;
+  /** Nodes that have grown. */
+  private grown!: number[];
+  /** Recorded steps of a stroke in each step. */
   speed = 1;
 
   /** Evaluate a creature, and stand at the end. */
-  constructor(module: WebAssembly.Module, inputs: EvaluationInputs) {
-    const kernel = (this.kernel = new Kernel(module));
-    const { begin, end, observed, summary } = simulated(kernel, inputs, inputs.trials[0]![0]!);
-    const shown = kernel.read(summary.get("shown")!);
-    this.numbers = { ...inputs.numbers.rollout, commands: GIVEN };
-    this.begin = begin;
-    this.rest = observed;
-    this.window = { start: shown[WINDOW.start]!, stop: shown[WINDOW.stop]! };
-    this.parameters = kernel.put(kernel.read(begin.get("parameters")!));
-    this.nothing = kernel.put(new Float32Array(0));
-    this.state = end;
-    this.step = this.window.start;
-    const present = kernel.readIntegers(begin.get("present")!);
-    this.nodes = [...present.keys()].filter((node) => present[node]);
-    const { height, width } = this.numbers;
-    const viscosity = kernel.view(this.parameters)[VISCOSITY]!;
-    const stroke = (this.window.stop - this.window.start) / Math.max(1, shown[WINDOW.strokes]!);
-    this.stage = { size: [height!, width!], edges: this.grownEdges(), viscosity, stroke };
+  constructor(
+    private readonly module: WebAssembly.Module,
+    inputs: EvaluationInputs,
+  ) {
+    const first = swimmerOf(module, inputs);
+    const { height, width } = first.numbers;
+    const viscosity = first.arrays.get("parameters")![VISCOSITY]!;
+    this.stage = { size: [height!, width!], viscosity, stroke: first.stroke };
+    this.swimmers = [first];
+    this.begin(first.planes);
   }
 
   set viscosity(viscosity: number) {
-    this.kernel.view(this.parameters)[VISCOSITY] = viscosity;
+    this.kernel.view(this.operands.get("parameters")!)[VISCOSITY] = viscosity;
+  }
+
+  /** Evaluate another creature and put it where most room is; throws an error if it does not fit. */
+  join(inputs: EvaluationInputs): void {
+    const other = swimmerOf(this.module, inputs);
+    joined([...this.swimmers, other]); // Whether it fits, before anything changes.
+    const positions = other.arrays.get("positions")!;
+    const away = freest(this.positions(), this.stage.size);
+    const mean = meanPlace(positions);
+    other.arrays.set(
+      "positions",
+      positions.map((place, i) => place + away[i % 2]! - mean[i % 2]!),
+    );
+    const planes = this.planes().map((plane) => plane.slice());
+    this.keep();
+    this.swimmers.push(other);
+    this.begin(planes);
   }
 
   /** Take steps, with the rest shapes of the last strokes again and again. */
@@ -80,17 +101,29 @@ export class Swim {
     for (let left = steps; left > 0;) {
       const taken = Math.min(left, MOST);
       this.take(taken);
-      this.step = this.within(this.step + taken * this.speed);
+      for (const swimmer of this.swimmers) swimmer.step = within(swimmer, swimmer.step + taken * this.speed);
       left -= taken;
     }
   }
 
-  /** Push the water at a distance from the creature, in cells, by a velocity in cells a step. */
-  push([dx, dy]: [number, number], velocity: [number, number]): void {
-    const places = this.positions();
-    const mean = (axis: number) =>
-      places.reduce((sum, place, i) => (i % 2 === axis ? sum + place : sum), 0) / (places.length / 2);
-    pushed(this.planes(), this.stage.size, [mean(0) + dx, mean(1) + dy], velocity);
+  /** Push the water at a distance from the first creature, in cells, by a velocity in cells a step. */
+  push(away: Place, velocity: Place): void {
+    pushed(this.planes(), this.stage.size, this.from(away), velocity);
+  }
+
+  /** For one step, pull a node that has grown towards a place at a distance from the first creature. */
+  pull(node: number, away: Place): void {
+    const positions = this.kernel.view(this.state[POSITIONS]!);
+    const at = 2 * this.grown[node]!;
+    const from: Place = [positions[at]!, positions[at + 1]!];
+    const to = this.from(away);
+    const way = shortest([to[0] - from[0], to[1] - from[1]], this.stage.size);
+    const each = Math.min(STIFFNESS, STRONGEST / Math.max(1e-9, Math.hypot(...way)));
+    const force: Place = [each * way[0], each * way[1]];
+    // The body has no mass: all of the force acts on the water, where the body moves it.
+    positions[at]! += force[0];
+    positions[at + 1]! += force[1];
+    forced(this.planes(), this.stage.size, from, force);
   }
 
   frame(): Frame {
@@ -99,74 +132,106 @@ export class Swim {
     const [velocity, velocityScale] = quantised(flow);
     return {
       positions: this.positions(),
+      edges: this.grownEdges(),
+      leader: this.leader(),
       vorticity: curl,
       velocity,
       scales: { vorticity: vorticityScale, velocity: velocityScale },
     };
   }
 
-  private positions(): Float32Array {
-    const all = this.kernel.view(this.state[PLACES.positions]!);
-    return Float32Array.from(this.nodes.flatMap((node) => [all[2 * node]!, all[2 * node + 1]!]));
+  /** Put all creatures into a new kernel, whose memory holds nothing else. */
+  private begin(planes: Plane[]): void {
+    const kernel = (this.kernel = new Kernel(this.module));
+    const { numbers, arrays } = joined(this.swimmers);
+    this.numbers = { ...numbers, commands: GIVEN };
+    this.operands = new Map([...arrays].map(([name, values]) => [name, kernel.put(values)]));
+    this.nothing = kernel.put(new Float32Array(0));
+    const put = (name: string, values: Float32Array) => ({ ...kernel.put(values), name });
+    this.state = [
+      ...planes.map((plane) => put(PLANE, plane)),
+      ...STATE.map((name) => put(name, arrays.get(name) as Float32Array)),
+    ];
+    this.spare = [];
+    const room = (of: string) => kernel.put(new Float32Array(MOST * numbers[of]!));
+    this.scratch = { "rest angles": room("joints"), "rest lengths": room("edges") };
+    this.grown = [...arrays.get("present")!.keys()].filter((node) => arrays.get("present")![node]);
+  }
+
+  /** Keep the present state of each creature with it. */
+  private keep(): void {
+    for (const [name, counted, each] of [
+      ["positions", "nodes", 2],
+      ["angles", "edges", 1],
+      ["collected", "nodes", 1],
+    ] as const) {
+      const all = this.kernel.read(this.state.find((result) => result.name === name)!);
+      let at = 0;
+      for (const { arrays, numbers } of this.swimmers) {
+        const items = all.length > 0 ? each * numbers[counted]! : 0;
+        arrays.set(name, all.slice(at, at + items));
+        at += items;
+      }
+    }
+    const energy = this.state.find(({ name }) => name === "energy")!;
+    this.swimmers[0]!.arrays.set("energy", this.kernel.read(energy));
   }
 
   private take(steps: number): void {
     const { state } = this;
-    const numbers = { ...this.numbers, steps };
-    const present: Named = new Map([
-      ["positions", state[PLACES.positions]!],
-      ["angles", state[PLACES.angles]!],
-      ["energy", state[PLACES.energy]!],
-      ["collected", state[PLACES.collected]!],
-      ["parameters", this.parameters],
-    ]);
+    const present = new Map(
+      state.slice(POSITIONS, POSITIONS + STATE.length).map((area) => [area.name, area]),
+    );
     this.state = this.kernel.call(
       "rollout",
-      numbers,
+      { ...this.numbers, steps },
       (place, name, items) => {
         if (items === 0) return this.nothing;
-        if (name === PLANE) return state[PLACES.planes + place];
-        if (name === "rest angles" || name === "rest lengths") return this.rows(name, items, steps);
-        return present.get(name) ?? this.begin.get(name);
+        if (name === PLANE) return state[place];
+        if ((REST as string[]).includes(name)) return this.rows(name as Rest, items, steps);
+        return present.get(name) ?? this.operands.get(name);
       },
       this.spare,
     );
     this.spare = state;
   }
 
-  /** The rest shapes of the next steps, between the recorded ones. */
-  private rows(name: string, items: number, steps: number): Area {
-    const each = items / steps;
-    const known = this.scratch.get(name) ?? this.kernel.put(new Float32Array(MOST * each));
-    this.scratch.set(name, known);
-    const area = { address: known.address, items };
-    const from = this.kernel.view({ ...this.rest.get(name)!, items: this.window.stop * each });
+  /** The rest shapes of the next steps. */
+  private rows(name: Rest, items: number, steps: number): Area {
+    const area = { address: this.scratch[name].address, items };
     const to = this.kernel.view(area);
+    let at = 0;
     for (let step = 0; step < steps; step++) {
-      const at = this.within(this.step + step * this.speed);
-      const [before, share] = [Math.floor(at), at % 1];
-      const after = this.within(before + 1);
-      for (let i = 0; i < each; i++) {
-        const value = from[before * each + i]!;
-        to[step * each + i] = share === 0 ? value : value + share * (from[after * each + i]! - value);
+      for (const swimmer of this.swimmers) {
+        at += writeRest(swimmer, name, swimmer.step + step * this.speed, to.subarray(at));
       }
     }
     return area;
   }
 
-  /** A step of the window of the last strokes, which repeat. */
-  private within(step: number): number {
-    const { start, stop } = this.window;
-    return step < stop ? step : start + ((step - start) % (stop - start));
+  /** The place at a distance from the first creature. */
+  private from([dx, dy]: Place): Place {
+    const [x, y] = meanPlace(this.positions().subarray(0, 2 * this.leader()));
+    return [x + dx, y + dy];
+  }
+
+  /** The number of grown nodes of the first creature. */
+  private leader(): number {
+    return this.grown.filter((node) => node < this.swimmers[0]!.numbers.nodes!).length;
+  }
+
+  private positions(): Float32Array {
+    const all = this.kernel.view(this.state[POSITIONS]!);
+    return Float32Array.from(this.grown.flatMap((node) => [all[2 * node]!, all[2 * node + 1]!]));
   }
 
   private planes(): Plane[] {
-    return this.state.slice(PLACES.planes, PLACES.planes + 9).map((area) => this.kernel.view(area));
+    return this.state.slice(0, POSITIONS).map((area) => this.kernel.view(area));
   }
 
   private grownEdges(): [number, number][] {
-    const ends = this.kernel.readIntegers(this.begin.get("edges")!);
-    const row = new Map(this.nodes.map((node, number) => [node, number]));
+    const ends = this.kernel.readIntegers(this.operands.get("edges")!);
+    const row = new Map(this.grown.map((node, number) => [node, number]));
     const found: [number, number][] = [];
     for (let edge = 0; edge < ends.length; edge += 2) {
       const [one, other] = [row.get(ends[edge]!), row.get(ends[edge + 1]!)];
@@ -174,4 +239,10 @@ export class Swim {
     }
     return found;
   }
+}
+
+function meanPlace(places: ArrayLike<number>): Place {
+  const sum: Place = [0, 0];
+  for (let i = 0; i < places.length; i++) sum[i % 2]! += places[i]!;
+  return [(2 * sum[0]) / places.length, (2 * sum[1]) / places.length];
 }

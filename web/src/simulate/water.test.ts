@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { type Plane, pushed, quantised, velocities, vorticity } from "./water";
+import { type Plane, forced, freest, pushed, quantised, shortest, velocities, vorticity } from "./water";
 
 const SIZE: [number, number] = [16, 12];
 const CELLS = SIZE[0] * SIZE[1];
@@ -9,6 +9,33 @@ const total = (plane: Plane) => plane.reduce((sum, value) => sum + value, 0);
 /** A plane of a function of x and y. */
 const planeOf = (of: (x: number, y: number) => number) =>
   Float32Array.from({ length: CELLS }, (_, cell) => of(Math.floor(cell / SIZE[1]), cell % SIZE[1]));
+
+describe("a force", () => {
+  it("is the momentum that the water gains, wherever it acts", () => {
+    for (const place of [
+      [8, 6],
+      [0.3, 11.8],
+    ] as [number, number][]) {
+      const water = still();
+      forced(water, SIZE, place, [0.04, -0.02]);
+      const momentum = (axis: 0 | 1) =>
+        [1, -1, 0, 0, 1, -1, 1, -1].reduce((sum, cx, i) => {
+          const cy = [0, 0, 1, -1, 1, -1, -1, 1][i]!;
+          return sum + (axis === 0 ? cx : cy) * total(water[i + 1]!);
+        }, 0);
+      expect(momentum(0)).toBeCloseTo(0.04, 6);
+      expect(momentum(1)).toBeCloseTo(-0.02, 6);
+    }
+  });
+});
+
+describe("a place for another creature", () => {
+  it("is the farthest from all nodes, across the edges of the world too", () => {
+    expect(freest(Float32Array.of(0, 0, 16, 12), SIZE)).toEqual([8, 6]);
+    expect(freest(Float32Array.of(8, 6, 40, 30), SIZE)).toEqual([0, 0]);
+    expect(shortest([15, -11], SIZE)).toEqual([-1, 1]);
+  });
+});
 
 describe("a push", () => {
   it("gives the water its velocity and adds no mass", () => {

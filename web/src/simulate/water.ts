@@ -1,6 +1,8 @@
 /** Fields of the water from its populations, and pushing it; planes are (x, y), as in `fluid/lattice.py`. */
 
 export type Plane = Float32Array;
+/** A place or a vector, in cells. */
+export type Place = [x: number, y: number];
 
 /** Directions of the lattice, and their weights. */
 const DIRECTIONS = [
@@ -15,9 +17,11 @@ const DIRECTIONS = [
   [-1, 1],
 ] as const;
 const WEIGHTS = [4 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 36, 1 / 36, 1 / 36, 1 / 36];
-/** Cells around a push. */
+/** Cells around a push or a force. */
 const RADIUS = 3;
 const LEVELS = 127;
+/** Places along each axis where another creature may begin. */
+const GRID = 16;
 
 /** The velocity of each cell along x and y, in cells a step. */
 export function velocities(populations: Plane[]): [Plane, Plane] {
@@ -66,20 +70,57 @@ export function quantised(planes: Plane[]): [Int8Array, number] {
 }
 
 /** Add a velocity to the water around a place, the more the nearer. */
-export function pushed(
-  populations: Plane[],
-  [width, height]: [number, number],
-  [x0, y0]: [number, number],
-  [vx, vy]: [number, number],
-): void {
-  const wrapped = (at: number, size: number) => ((at % size) + size) % size;
+export function pushed(populations: Plane[], size: [number, number], place: Place, velocity: Place): void {
+  push(populations, around(size, place), velocity);
+}
+
+/** Let a force act on the water around a place for one step: the momentum of the water grows by it. */
+export function forced(populations: Plane[], size: [number, number], place: Place, force: Place): void {
+  const cells = around(size, place);
+  const total = cells.reduce((sum, [, share]) => sum + share, 0);
+  push(populations, cells, [force[0] / total, force[1] / total]);
+}
+
+function push(populations: Plane[], cells: [number, number][], [vx, vy]: Place): void {
+  for (const [cell, share] of cells) {
+    DIRECTIONS.forEach(([cx, cy], i) => {
+      populations[i]![cell]! += 3 * WEIGHTS[i]! * share * (cx * vx + cy * vy);
+    });
+  }
+}
+
+/** The cells around a place, each with a share from 0 to 1 that decreases with the distance. */
+function around([width, height]: [number, number], [x0, y0]: Place): [cell: number, share: number][] {
+  const found: [number, number][] = [];
   for (let x = Math.round(x0) - RADIUS; x <= x0 + RADIUS; x++) {
     for (let y = Math.round(y0) - RADIUS; y <= y0 + RADIUS; y++) {
       const share = Math.max(0, 1 - Math.hypot(x - x0, y - y0) / RADIUS);
-      const cell = wrapped(x, width) * height + wrapped(y, height);
-      DIRECTIONS.forEach(([cx, cy], i) => {
-        populations[i]![cell]! += 3 * WEIGHTS[i]! * share * (cx * vx + cy * vy);
-      });
+      found.push([wrap(x, width) * height + wrap(y, height), share]);
     }
   }
+  return found;
 }
+
+/** The place of a grid over the water that is the farthest from all positions (node, 2). */
+export function freest(positions: Float32Array, [width, height]: [number, number]): Place {
+  let best: Place = [0, 0];
+  let farthest = -1;
+  for (let i = 0; i < GRID ** 2; i++) {
+    const place: Place = [(Math.floor(i / GRID) * width) / GRID, ((i % GRID) * height) / GRID];
+    let nearest = Infinity;
+    for (let node = 0; node < positions.length; node += 2) {
+      const gap = shortest([positions[node]! - place[0], positions[node + 1]! - place[1]], [width, height]);
+      nearest = Math.min(nearest, Math.hypot(...gap));
+    }
+    if (nearest > farthest) [farthest, best] = [nearest, place];
+  }
+  return best;
+}
+
+/** The shortest of the ways between two places of a world that repeats. */
+export const shortest = ([x, y]: Place, [width, height]: [number, number]): Place => [
+  wrap(x + width / 2, width) - width / 2,
+  wrap(y + height / 2, height) - height / 2,
+];
+
+const wrap = (at: number, size: number) => ((at % size) + size) % size;

@@ -1,7 +1,7 @@
 /** Particles that drift in live water. */
 
-import type { Replay } from "../decode/replay";
-import { type Particles, initialPositions, velocityAt } from "../replay/tracers";
+import type { Replay } from "../../decode/replay";
+import { type Particles, initialPositions, velocityAt } from "../../replay/tracers";
 
 /** Cells per particle. */
 const CELLS = 1.5;

@@ -1,0 +1,113 @@
+/** Live water with what changes it: its field, viscosity, the stroke, pushes, pulls and other creatures. */
+
+import type { ComponentChildren } from "preact";
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import type { FieldName } from "../../replay/fields";
+import { text as replayText } from "../../replay/text";
+import type { Live, Push } from "../../simulate/live";
+import { usePolled } from "../../store/polling";
+import { number, shortId } from "../../ui/format";
+import { Segments } from "../../ui/Select";
+import { LiveStage } from "./LiveStage";
+import { Slider } from "./Slider";
+import { text } from "./text";
+import type { Wishes } from "./touch";
+
+const FIELDS = [
+  ["vorticity", replayText.fields.vorticity],
+  ["speed", replayText.fields.speed],
+  ["dye", text.dye],
+] as const;
+/** Of the slider of the stroke's speed. */
+const SPEEDS = [0.25, 2] as const;
+/** Viscosities of the slider, whose values are powers of 10. */
+const RANGE = [-2, 0] as const;
+/** What the buttons do beside the creature: a push, and a pull of its first node for a while. */
+const PUSH: Push = { away: [0, 6], velocity: [0.05, -0.05] };
+const PULL = { node: 0, away: [0, 10] as [number, number] };
+const PULL_MS = 1000;
+
+/** Other creatures that may join. */
+export interface Others {
+  /** Read the inputs of the evaluation of a creature; null while they are prepared. */
+  readInputs: (creature: string) => Promise<ArrayBuffer | null>;
+  /** What a creature is picked with. */
+  pick: (onPick: (creature: string) => void) => ComponentChildren;
+}
+
+interface Props {
+  live: Live;
+  /** Null where no other creature can be read. */
+  others: Others | null;
+  onFail: (reason: unknown) => void;
+}
+
+export function LiveView({ live, others, onFail }: Props) {
+  const [viscosity, setViscosity] = useState(live.stage.viscosity);
+  const [speed, setSpeed] = useState(1);
+  const [field, setField] = useState<FieldName | "dye">("vorticity");
+  const wishes = useMemo<Wishes>(() => ({ pushes: [], pull: null, joining: [] }), [live]);
+  const { note, pick, refuse } = useJoining(others, wishes);
+  return (
+    <>
+      <LiveStage {...{ live, viscosity, speed, field, wishes, onFail }} onRefuse={refuse} />
+      <div class="row">
+        <Segments label={replayText.field} choices={FIELDS} value={field} onSelect={setField} />
+        <Slider
+          title={text.viscosity(number(viscosity, 2))}
+          {...{ range: RANGE, step: 0.05, value: Math.log10(viscosity), shown: viscosity }}
+          onChange={(power) => setViscosity(10 ** power)}
+        />
+        <Slider
+          title={text.strokeSpeed(number(speed, 2))}
+          {...{ range: SPEEDS, step: 0.25, value: speed, shown: speed }}
+          onChange={setSpeed}
+        />
+        <button onClick={() => wishes.pushes.push(PUSH)}>{text.push}</button>
+        <button onClick={() => pullAWhile(wishes)}>{text.pull}</button>
+      </div>
+      {others && (
+        <details class="live-others">
+          <summary>{text.others}</summary>
+          {others.pick(pick)}
+        </details>
+      )}
+      <p class="quiet small" role="status">
+        {note}
+      </p>
+    </>
+  );
+}
+
+function pullAWhile(wishes: Wishes): void {
+  wishes.pull = PULL;
+  setTimeout(() => {
+    if (wishes.pull === PULL) wishes.pull = null;
+  }, PULL_MS);
+}
+
+/** Let a picked creature join once its inputs are there, and tell how far that is. */
+function useJoining(others: Others | null, wishes: Wishes) {
+  const [picked, setPicked] = useState<string | null>(null);
+  const [told, tell] = useState("");
+  const name = useRef("");
+  const { value, error } = usePolled(picked && others ? () => others.readInputs(picked) : null, [picked]);
+  useEffect(() => {
+    if (!value) return;
+    wishes.joining.push(value);
+    tell(text.joined(name.current));
+    setPicked(null);
+  }, [value]);
+  useEffect(() => {
+    if (error) tell(text.refused(name.current, error));
+  }, [error]);
+  return {
+    note: told,
+    pick: (creature: string) => {
+      name.current = shortId(creature);
+      tell(text.joining(name.current));
+      setPicked(creature);
+    },
+    refuse: (reason: string) => tell(text.refused(name.current, reason)),
+  };
+}

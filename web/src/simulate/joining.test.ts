@@ -1,0 +1,75 @@
+import { describe, expect, it } from "vitest";
+import { diagonal, joined } from "./joining";
+import type { Swimmer } from "./swimmer";
+
+/** A filament of some nodes. */
+function filament(nodes: number, numbers: Record<string, number> = {}): Swimmer {
+  const [edges, joints] = [nodes - 1, nodes - 2];
+  const row = (count: number, of: (i: number) => number) => Array.from({ length: count }, (_, i) => of(i));
+  const pair = (count: number) => Int32Array.from(row(count, (i) => i).flatMap((i) => [i, i + 1]));
+  const floats = (count: number) => Float32Array.from(row(count, (i) => i + nodes / 10));
+  const counts = { nodes, edges, joints, bodies: 1, matched: 1, laid_out: 1, soft: 0 };
+  return {
+    numbers: { ...counts, ...numbers },
+    arrays: new Map<string, Float32Array | Int32Array>([
+      ["positions", floats(2 * nodes)],
+      ["angles", floats(edges)],
+      ["edges", pair(edges)],
+      ["joints", pair(joints)],
+      ["member", new Int32Array(nodes)],
+      ["piece", new Int32Array(nodes)],
+      ["present", new Int32Array(nodes).fill(1)],
+      ["layout angles", floats(edges)],
+      ["layout rest angles", floats(joints)],
+      ["colours of edges", new Int32Array(0)],
+      ["colours of joints", new Int32Array(0)],
+      ["stretch", floats(edges)],
+      ["shear", floats(edges)],
+      ["bend", floats(joints)],
+      ["turned", new Float32Array(edges * joints).fill(nodes)],
+      ["placed", new Float32Array(nodes * edges).fill(nodes)],
+      ["collected", new Float32Array(0)],
+      ["parameters", Float32Array.of(nodes)],
+    ]),
+    planes: [],
+    rest: { "rest angles": floats(joints), "rest lengths": floats(edges) },
+    window: { start: 0, stop: 1 },
+    stroke: 1,
+    step: 0,
+  };
+}
+
+describe("creatures in one water", () => {
+  const { numbers, arrays } = joined([filament(4), filament(3)]);
+
+  it("are counted together, in the water of the first", () => {
+    expect(numbers).toMatchObject({ nodes: 7, edges: 5, joints: 3, bodies: 2 });
+    expect(arrays.get("parameters")).toEqual(Float32Array.of(4));
+  });
+
+  it("have nodes, edges and bodies of their own", () => {
+    expect([...arrays.get("edges")!]).toEqual([0, 1, 1, 2, 2, 3, 4, 5, 5, 6]);
+    expect([...arrays.get("joints")!]).toEqual([0, 1, 1, 2, 3, 4]);
+    expect([...arrays.get("member")!]).toEqual([0, 0, 0, 0, 1, 1, 1]);
+    expect([...arrays.get("piece")!]).toEqual([0, 0, 0, 0, 4, 4, 4]);
+    expect(arrays.get("positions")!.length).toBe(14);
+  });
+
+  it("turn and place no edge of another", () => {
+    expect(diagonal([block([1, 2], 1, 2), block([3, 4], 2, 1)])).toEqual(
+      Float32Array.of(1, 2, 0, 0, 0, 3, 0, 0, 4),
+    );
+    expect(arrays.get("turned")!.length).toBe(5 * 3);
+    expect(arrays.get("placed")!.length).toBe(7 * 5);
+  });
+
+  it("take their rest shapes in one way", () => {
+    expect(() => joined([filament(4), filament(4, { matched: 0 })])).toThrow("in another way");
+  });
+});
+
+const block = (values: number[], rows: number, columns: number) => ({
+  values: Float32Array.from(values),
+  rows,
+  columns,
+});
