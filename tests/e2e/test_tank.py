@@ -38,7 +38,7 @@ def water(page: Page):
 
 
 def pixels(page: Page) -> str:
-    return page.evaluate("document.querySelector('.water canvas').toDataURL()")
+    return page.evaluate("document.querySelector('.water canvas:last-of-type').toDataURL()")
 
 
 def wait_until_drawn(page: Page) -> None:

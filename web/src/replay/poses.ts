@@ -5,6 +5,8 @@ import { type Point, chainsOf, splineOf } from "./motion";
 
 /** In smaller squares, in pixels, straight edges cannot be told from a spline and are drawn faster. */
 const SMOOTH_SIDE = 80;
+/** In pixels: of shorter lines some are left out. */
+const SHORTEST = 3;
 
 interface Shape {
   chains: number[][];
@@ -121,20 +123,35 @@ export function traceBody(context: Path, stream: PoseStream, steps: number, [lef
   const { chains, offsets, radius, turn } = shapeOf(stream);
   const { nodes } = stream.header;
   const [before, after, share, loops] = momentOf(stream, steps);
-  const turned = rotation(loops * turn);
-  const turnedAfter = after > before ? turned : rotation((loops + 1) * turn);
   const scale = (0.42 * side) / radius;
-  const place = (node: number): Point => {
-    const next = turnedAfter(pointAt(offsets, after * nodes + node));
-    const [x, y] = between(turned(pointAt(offsets, before * nodes + node)), next, share);
-    return [left + side / 2 + scale * x, top + side / 2 - scale * y];
+  // Both frames are turned and weighed at once, without an array for each point: pages draw hundreds.
+  const angle = loops * turn;
+  const onward = after > before ? angle : angle + turn;
+  const [cos, sin] = [(1 - share) * scale * Math.cos(angle), (1 - share) * scale * Math.sin(angle)];
+  const [nextCos, nextSin] = [share * scale * Math.cos(onward), share * scale * Math.sin(onward)];
+  const [i0, j0] = [2 * before * nodes, 2 * after * nodes];
+  const across = (node: number) => {
+    const [i, j] = [i0 + 2 * node, j0 + 2 * node];
+    const x = cos * offsets[i]! - sin * offsets[i + 1]! + nextCos * offsets[j]! - nextSin * offsets[j + 1]!;
+    return left + side / 2 + x;
+  };
+  const down = (node: number) => {
+    const [i, j] = [i0 + 2 * node, j0 + 2 * node];
+    const y = sin * offsets[i]! + cos * offsets[i + 1]! + nextSin * offsets[j]! + nextCos * offsets[j + 1]!;
+    return top + side / 2 - y;
   };
   context.beginPath();
   for (const chain of chains) {
-    const points = chain.map(place);
-    context.moveTo(...points[0]!);
-    if (side < SMOOTH_SIDE) for (const point of points.slice(1)) context.lineTo(...point);
-    else for (const [a, b, end] of splineOf(points)) context.bezierCurveTo(...a, ...b, ...end);
+    context.moveTo(across(chain[0]!), down(chain[0]!));
+    if (side < SMOOTH_SIDE) {
+      const stride = Math.max(1, Math.floor((SHORTEST * chain.length) / (0.84 * side)));
+      for (let k = stride; k < chain.length - 1; k += stride)
+        context.lineTo(across(chain[k]!), down(chain[k]!));
+      context.lineTo(across(chain.at(-1)!), down(chain.at(-1)!));
+    } else {
+      const points = chain.map((node): Point => [across(node), down(node)]);
+      for (const [a, b, end] of splineOf(points)) context.bezierCurveTo(...a, ...b, ...end);
+    }
   }
 }
 

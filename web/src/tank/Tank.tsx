@@ -10,7 +10,7 @@ import { useStore } from "../store/store";
 import { useTank } from "../store/tank";
 import { type Size, prefersReducedMotion, px, useOnScreen, useSize } from "../ui/canvas";
 import { labelOf, number } from "../ui/format";
-import { drawTank } from "./drawTank";
+import { drawTank, drawTrails } from "./drawTank";
 import { type Swimmer, advance, nearestScale, swimmerAt, withSwimmers } from "./swimmers";
 import { TankLine } from "./TankLine";
 import { text } from "./text";
@@ -18,6 +18,8 @@ import "./tank.css";
 
 /** A phone shows fewer creatures. */
 const [MOST, ON_A_PHONE, PHONE] = [60, 30, 640];
+/** Frames until trails are drawn again. */
+const TRAIL_FRAMES = 6;
 
 export function Tank() {
   const box = useRef<HTMLElement>(null);
@@ -41,9 +43,10 @@ interface WaterProps {
 
 function Water({ tank, size }: WaterProps) {
   const canvas = useRef<HTMLCanvasElement>(null);
+  const trails = useRef<HTMLCanvasElement>(null);
   const [pointed, setPointed] = useState<string | null>(null);
   const [paused, setPaused] = useState(prefersReducedMotion);
-  const scene = useScene(tank, size, canvas, pointed, paused);
+  const scene = useScene(tank, size, { canvas, trails }, pointed, paused);
   const open = (creature: string | null) => creature && navigate(`/creatures/${creature}`);
   const under = (event: MouseEvent) => {
     const { left, top } = canvas.current!.getBoundingClientRect();
@@ -76,6 +79,7 @@ function Water({ tank, size }: WaterProps) {
         onKeyDown={press}
         onBlur={() => setPointed(null)}
       >
+        <canvas ref={trails} style={px({ ...size })} />
         <canvas ref={canvas} style={px({ ...size })} />
       </div>
       <Pointed tank={tank} creature={pointed} scene={scene} />
@@ -110,11 +114,12 @@ interface Scene {
 function useScene(
   tank: Tankful,
   size: Size,
-  canvas: RefObject<HTMLCanvasElement | null>,
+  { canvas, trails }: Record<"canvas" | "trails", RefObject<HTMLCanvasElement | null>>,
   pointed: string | null,
   paused: boolean,
 ): RefObject<Scene> & { current: Scene } {
   const scene = useRef<Scene>({ swimmers: [], nearest: 1 });
+  const frame = useRef(0);
   const poses = usePoses(readTankBatch, tank.swimmers, false);
   const streams = useMemo(
     () => tank.swimmers.flatMap(({ creature }) => poses.get(creature) ?? []),
@@ -124,6 +129,7 @@ function useScene(
     const { swimmers, nearest } = scene.current;
     if (!canvas.current || size.width === 0) return;
     drawTank(canvas.current, size, swimmers, nearest, pointed);
+    if (frame.current++ % TRAIL_FRAMES === 0) drawTrails(trails.current!, size, swimmers);
     if (swimmers.length > 0 && performance.getEntriesByName("tank").length === 0) performance.mark("tank");
   };
   useEffect(() => {
@@ -141,7 +147,10 @@ function useScene(
     scene.current.swimmers = advance(swimmers, seconds, nearest, size);
     draw();
   });
-  useEffect(draw);
+  useEffect(() => {
+    frame.current = 0;
+    draw();
+  });
   return scene;
 }
 

@@ -1,4 +1,4 @@
-/** Draw the creatures of the tank at one moment; the water is behind the canvas. */
+/** Draw the creatures of the tank at one moment, and their trails on a canvas behind; the water is behind both. */
 
 import type { Point } from "../replay/motion";
 import { radiusOf, traceBody } from "../replay/poses";
@@ -54,30 +54,42 @@ export function drawTank(
 ): void {
   const context = prepare(canvas, size);
   context.lineJoin = context.lineCap = "round";
-  const style = size.width < PHONE ? PLAIN : STYLE;
-  for (const one of swimmers) drawSwimmer(context, one, nearest, one.creature === pointed, style);
+  const { strokes, glowing } = styleOf(size);
+  for (const one of swimmers) {
+    const stroked = one.depth < glowing ? strokes.slice(-1) : strokes;
+    drawSwimmer(context, one, nearest, one.creature === pointed, stroked);
+  }
 }
+
+/** Draw the ways that creatures came. They change slowly: a few times a second is enough. */
+export function drawTrails(canvas: HTMLCanvasElement, size: Size, swimmers: readonly Swimmer[]): void {
+  const context = prepare(canvas, size);
+  context.lineJoin = context.lineCap = "round";
+  for (const one of swimmers) {
+    context.strokeStyle = inkOf(one, false);
+    drawTrail(context, one, presenceOf(one), styleOf(size).pieces);
+  }
+}
+
+const styleOf = ({ width }: Size): Style => (width < PHONE ? PLAIN : STYLE);
 
 function drawSwimmer(
   context: CanvasRenderingContext2D,
   one: Swimmer,
   nearest: number,
   pointed: boolean,
-  { strokes, glowing, pieces }: Style,
+  strokes: Style["strokes"],
 ): void {
   const presence = presenceOf(one);
-  const colour = pointed ? POINTED : mixed(one.depth);
   const scale = scaleAt(one.depth, nearest);
-  const ink = `rgb(${colour.join(" ")})`;
-  context.strokeStyle = ink;
-  drawTrail(context, one, presence, pieces);
+  context.strokeStyle = inkOf(one, pointed);
   const side = SIDE * scale * radiusOf(one.stream) * (0.4 + 0.6 * presence);
   context.save();
   context.translate(...one.position);
   context.rotate(-one.heading);
   traceBody(context, one.stream, one.steps, [-side / 2, -side / 2, side]);
   const width = (pointed ? 3.4 : 2.6) * (0.5 + 0.5 * one.depth);
-  for (const [share, strength] of one.depth < glowing ? strokes.slice(-1) : strokes) {
+  for (const [share, strength] of strokes) {
     context.globalAlpha = presence * strength * (0.35 + 0.65 * one.depth);
     context.lineWidth = share * width;
     context.stroke();
@@ -128,6 +140,7 @@ function drawTrail(context: CanvasRenderingContext2D, one: Swimmer, presence: nu
   }
 }
 
-function mixed(depth: number): number[] {
-  return FAR.map((far, i) => Math.round(far + (NEAR[i]! - far) * depth));
+function inkOf({ depth }: Swimmer, pointed: boolean): string {
+  const colour = pointed ? POINTED : FAR.map((far, i) => Math.round(far + (NEAR[i]! - far) * depth));
+  return `rgb(${colour.join(" ")})`;
 }
