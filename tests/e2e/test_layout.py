@@ -39,8 +39,13 @@ def every_page(shared: Any, idle: Any) -> Iterator[tuple[str, ProductPage]]:
     yield address, ProductPage("run-chosen", f"/runs/{voronoi}?cells=0-{CENTROIDS // 2}&at=1")
     yield address, ProductPage("shares-some", "/shares")
     yield address, ProductPage("commons-some", "/commons")
-    for share in published(shared.product.http, voronoi):
-        yield address, ProductPage("shared", f"/s/{share['slug']}")
+    archive, creature = published(shared.product.http, voronoi)
+    yield address, ProductPage("shared-archive", f"/s/{archive['slug']}")
+    for part in ("", "/tree", "/embed"):
+        yield address, ProductPage(f"shared-creature{part}", f"/s/{creature['slug']}{part}")
+    for share in (archive, creature):
+        yield address, ProductPage("import", f"/import?share={share['url']}")
+    yield address, ProductPage("import-nothing", "/import?share=nothing")
     yield address, ProductPage("shared-nothing", "/s/nothing")
     queued, cancelled = (idle.product.submit(TINY | {"seed": seed}) for seed in (1, 2))
     idle.product.ask(cancelled, "cancel")

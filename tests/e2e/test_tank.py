@@ -3,7 +3,8 @@
 import re
 
 import pytest
-from playwright.sync_api import Page, expect
+from pages import stage
+from playwright.sync_api import Locator, Page, expect
 
 NAMED = re.compile(r"^fitness .+generation \d+ of ")
 MOVES_MS = 700
@@ -14,6 +15,12 @@ COLOURFUL = """
 }
 """
 """Whether anything is drawn on a canvas."""
+COUNT_CLICKS = """
+addEventListener("click", ({ isTrusted }) => {
+  if (isTrusted) localStorage.setItem("clicks", 1 + Number(localStorage.getItem("clicks")));
+}, true);
+"""
+"""In all tabs of a site."""
 
 
 @pytest.fixture
@@ -45,6 +52,19 @@ def wait_until_drawn(page: Page) -> None:
     page.wait_for_function("() => performance.getEntriesByName('tank').length === 1")
 
 
+def point_at_a_creature(page: Page) -> Locator:
+    """Move the pointer until it names one: somewhere in the water there is a creature."""
+    box = water(page).bounding_box()
+    assert box
+    named = page.locator("#tank-pointed")
+    for k in range(400):
+        x, y = (k % 40 + 0.5) / 40, (k // 40 + 0.5) / 10
+        page.mouse.move(box["x"] + x * box["width"], box["y"] + y * 0.8 * box["height"])
+        if named.is_visible():
+            break
+    return named
+
+
 def moves(page: Page) -> bool:
     before = pixels(page)
     page.wait_for_timeout(MOVES_MS)
@@ -65,19 +85,31 @@ def test_creatures_swim_until_they_are_paused(home):
 def test_a_creature_is_named_when_pointed_at_and_opens_with_a_click(home, shared):
     wait_until_drawn(home)
     home.get_by_role("button", name="Pause the creatures").click()
-    box = water(home).bounding_box()
-    named = home.locator("#tank-pointed")
-    for k in range(400):  # Somewhere in the water there is a creature.
-        x, y = (k % 40 + 0.5) / 40, (k // 40 + 0.5) / 10
-        home.mouse.move(box["x"] + x * box["width"], box["y"] + y * 0.8 * box["height"])
-        if named.is_visible():
-            break
+    named = point_at_a_creature(home)
     expect(named).to_have_text(NAMED)
     home.mouse.down()
     home.mouse.up()
     home.wait_for_url(re.compile(r"/creatures/[0-9a-f]{64}$"))
     creature = home.url.rpartition("/")[2]
     assert creature in {one["creature"] for one in shared.product.get("tank")["swimmers"]}
+
+
+def test_six_clicks_lead_from_a_first_visit_to_a_shared_creature(settled, page):
+    page.context.add_init_script(COUNT_CLICKS)
+    page.goto(settled.product.url)
+    wait_until_drawn(page)
+    point_at_a_creature(page)
+    page.mouse.down()
+    page.mouse.up()
+    page.wait_for_url(re.compile(r"/creatures/[0-9a-f]{64}$"))
+    page.get_by_role("button", name="Publish").click()
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_role("button", name="Publish").click()
+    with page.context.expect_page() as opened:
+        dialog.get_by_role("link", name="Open").click()
+    expect(stage(opened.value)).to_be_visible()
+    assert re.search(r"/s/[\w-]+$", opened.value.url)
+    assert 4 <= page.evaluate("Number(localStorage.getItem('clicks'))") <= 6
 
 
 def test_the_keyboard_points_at_creatures_and_opens_them(home, shared):
