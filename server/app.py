@@ -38,6 +38,7 @@ from .maintenance.reconcile import reconciling
 from .notifications import routes as notifications
 from .notifications.notifier import notifying
 from .phylogenies import routes as phylogenies
+from .renderings import first
 from .renderings import routes as renderings
 from .runs import detail_routes as details
 from .runs import routes as runs
@@ -66,7 +67,7 @@ ROUTES = (
         phylogenies,
         creatures,
     ),
-    *(renderings, tank, shares, events, workers, queue, tokens, health),
+    *(renderings, first, tank, shares, events, workers, queue, tokens, health),
 )
 
 KEPT_ARCHIVES, KEPT_NETWORKS = 64 << 20, 16 << 20

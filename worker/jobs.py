@@ -1,6 +1,7 @@
-"""RQ jobs: `render`. The first job imports the engine."""
+"""RQ jobs: `render` and `first_creature`. The first job imports the engine."""
 
 from functools import cache
+from typing import Any
 
 from server.renderings import storage as renderings
 from server.services.services import Services, connect
@@ -29,3 +30,11 @@ def render(creature: str, kind: str = REPLAY) -> None:
     from .renderings import make
 
     renderings.save(services(), creature, kind, make(services(), creature, kind))
+
+
+def first_creature(name: str, spec: dict[str, Any], number: int) -> None:
+    """Keep the inputs of the evaluation of a creature of a spec's first generation."""
+    prepare_once()
+    from .renderings import first
+
+    services().jobs.keep_first(name, first(spec, number))

@@ -2,6 +2,8 @@
 
 import json
 from collections.abc import Callable
+from functools import lru_cache
+from typing import Any
 
 from microcosmos.viz.card import loop, preview
 from microcosmos.viz.film import gif, mp4
@@ -53,3 +55,21 @@ def make(services: Services, creature: str, kind: str) -> bytes:
         return record(file)
     known = ", ".join((REPLAY, AUDIT, MEASUREMENT, EVALUATION, *PICTURES))
     raise ValueError(f"`kind` of a rendering must be one of {known}; got {kind!r}")
+
+
+def first(document: dict[str, Any], number: int) -> bytes:
+    """Return the inputs of the evaluation of a creature of a spec's first generation."""
+    from microcosmos.audit import evaluation_inputs  # Loads JAX.
+
+    return evaluation_inputs(_first_generation(json.dumps(document))[number])
+
+
+@lru_cache(maxsize=4)
+def _first_generation(document: str) -> list[dict[str, Any]]:
+    from microcosmos.build import build  # Loads JAX.
+    from microcosmos.experiments.evolution import Evolution
+    from microcosmos.spec import parse
+
+    experiment = build(parse(json.loads(document)))
+    assert isinstance(experiment, Evolution)
+    return experiment.first_generation()

@@ -14,7 +14,6 @@ from ..runs.announce import changed
 from ..runs.deps import OwnRunId, find_run
 from ..runs.schemas import Extension, Fork, RunRead
 from ..runs.submission import (
-    SPEC_BYTES,
     IdempotencyKey,
     IdempotentRequest,
     answer,
@@ -22,6 +21,7 @@ from ..runs.submission import (
 )
 from ..services.services import ServicesDep
 from ..specs import parsing
+from ..specs.deps import SPEC_BYTES
 from . import extending, forking
 
 router = APIRouter(prefix="/runs/{run_id}", tags=["runs"], route_class=json_route(SPEC_BYTES))

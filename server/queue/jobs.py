@@ -17,6 +17,10 @@ from rq.serializers import JSONSerializer
 from ..tables import AUDIT, MEASUREMENT, REPLAY
 
 RENDER_JOB = "worker.jobs.render"
+FIRST, FIRST_JOB = "first", "worker.jobs.first_creature"
+"""The inputs of the evaluation of a first creature of a run that may never be queued."""
+FIRST_TTL = 600
+"""Seconds that Redis keeps them: nothing else does."""
 TIMEOUTS = {AUDIT: 3600, MEASUREMENT: 3600}
 RENDER_SECONDS = 600
 """Time limit of the renderings that `TIMEOUTS` does not name."""
@@ -62,6 +66,32 @@ class Jobs:
             failure_ttl=FAILURE_SECONDS,
             meta=meta,
         )
+
+    def order_first(self, name: str, spec: dict[str, Any], number: int) -> None:
+        """Enqueue the making of a first creature of a spec, before other renderings."""
+        job_id = self.rendering_id(name, FIRST)
+        self.remove(job_id)
+        self.renderings.enqueue(
+            FIRST_JOB,
+            name,
+            spec,
+            number,
+            job_id=job_id,
+            at_front=True,
+            job_timeout=RENDER_SECONDS,
+            result_ttl=0,
+            failure_ttl=FAILURE_SECONDS,
+        )
+
+    def keep_first(self, name: str, inputs: bytes) -> None:
+        self.redis.set(self._first_key(name), inputs, ex=FIRST_TTL)
+
+    def first(self, name: str) -> bytes | None:
+        """Return the inputs of the evaluation of a first creature; None if none are kept."""
+        return self.redis.get(self._first_key(name))  # type: ignore[return-value]
+
+    def _first_key(self, name: str) -> str:
+        return f"{self.slug}{FIRST}:{name}"
 
     def give_up(self, job: Job, reason: str) -> None:
         """Mark a job as failed whose worker has died."""

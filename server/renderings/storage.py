@@ -4,7 +4,7 @@ import json
 import re
 from typing import Any
 
-from rq.job import JobStatus
+from rq.job import Job, JobStatus
 from sqlalchemy import ColumnElement, delete, select, update
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
@@ -14,7 +14,7 @@ from microcosmos.viz.replay_file import REPLAY_VERSION
 from ..core.database import insert_missing
 from ..core.errors import ProblemError
 from ..creatures import storage as creatures
-from ..queue.jobs import FAILURE_SECONDS
+from ..queue.jobs import FAILURE_SECONDS, FIRST
 from ..services.services import Services
 from ..storage.artifacts import rendering_path
 from ..storage.garbage import discard
@@ -34,6 +34,7 @@ from ..tables import (
 ENGINE_ERROR = re.compile(r"^[\w.]*(?:CreatureError|Missing|Broken): ")
 """Prefix to remove from the engine's own errors; others keep their class name."""
 NOUNS = {AUDIT: "audit", STRIP: "picture", PREVIEW: "picture"}
+NOUNS |= {FIRST: "first creature"}
 NOUNS |= {GIF: "film", MP4: "film", LOOP: "film"}
 VERSIONS = {REPLAY: REPLAY_VERSION}
 """Versions of formats that have changed: a rendering in an earlier one does not count."""
@@ -72,15 +73,20 @@ def enqueue(
     An `anonymous` request goes last, and is not accepted while many wait.
     """
     job = services.jobs.find(services.jobs.rendering_id(creature, kind))
-    status = job.get_status(refresh=False) if job else None
-    if status in UNDERWAY:
+    if is_underway(job, kind, anonymous=anonymous):
         return
+    if not (anonymous and services.jobs.renderings.count >= ANONYMOUS_LIMIT):
+        services.jobs.render(creature, kind, anonymous=anonymous)
+
+
+def is_underway(job: Job | None, kind: str, *, anonymous: bool = False) -> bool:
+    """Tell whether a job waits or is computed; raise `RenderingFailed` if it failed."""
+    status = job.get_status(refresh=False) if job else None
     if job and status == JobStatus.FAILED:
         result = job.latest_result()
         text = (result.exc_string if result else None) or "the renderer's process died"
         raise RenderingFailed(kind, None if anonymous else ENGINE_ERROR.sub("", _reason(text)))
-    if not (anonymous and services.jobs.renderings.count >= ANONYMOUS_LIMIT):
-        services.jobs.render(creature, kind, anonymous=anonymous)
+    return status in UNDERWAY
 
 
 def is_ordered(services: Services, creature: str, kind: str) -> bool:

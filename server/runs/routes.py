@@ -3,10 +3,10 @@
 from typing import Annotated, Literal
 from uuid import UUID
 
-from fastapi import APIRouter, Body, Depends, Query, Request, Response
+from fastapi import APIRouter, Query, Request, Response
 from sqlalchemy.orm import Session
 
-from microcosmos.spec import EXPERIMENTS, Spec, drawing, estimate
+from microcosmos.spec import EXPERIMENTS, drawing, estimate
 
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, Reader, Writer
 from ..core.errors import invalid_field
@@ -15,8 +15,8 @@ from ..estimates import position
 from ..estimates.eta import speeds_of
 from ..estimates.schemas import EstimateRead
 from ..services.services import ServicesDep, SessionDep
-from ..specs import parsing
-from ..specs.schemas import DrawingRead, SpecDocument
+from ..specs.deps import SPEC_BYTES, SpecDep
+from ..specs.schemas import DrawingRead
 from ..tables import Run, Status
 from ..workers import registry
 from . import lifecycle, listing
@@ -25,7 +25,6 @@ from .deps import AnyRunDep, OwnRunId
 from .overview import read_run, read_runs
 from .schemas import RunChange, RunPage, RunRead, Submission
 from .submission import (
-    SPEC_BYTES,
     IdempotencyKey,
     IdempotentRequest,
     answer,
@@ -34,13 +33,6 @@ from .submission import (
 )
 
 router = APIRouter(prefix="/runs", tags=["runs"], route_class=json_route(SPEC_BYTES))
-
-
-def spec_sent(document: Annotated[SpecDocument, Body()], services: ServicesDep) -> Spec:
-    return parsing.parse(services, document)
-
-
-SpecDep = Annotated[Spec, Depends(spec_sent)]
 
 
 @router.post("", status_code=202, responses={200: {"model": RunRead}})

@@ -27,9 +27,6 @@ from ..workers import plugins, registry
 from .announce import announced, current
 from .schemas import RunRead, Scheduling
 
-SPEC_BYTES = 1 << 20
-"""Limit on the body of a request with a spec."""
-
 IdempotencyKey = Annotated[
     str | None, Header(alias="Idempotency-Key", min_length=1, max_length=255)
 ]

@@ -19,9 +19,10 @@ from ..estimates import position
 from ..estimates.eta import speeds_of
 from ..runs import lifecycle
 from ..runs.schemas import Scheduling
-from ..runs.submission import SPEC_BYTES, IdempotencyKey, memory_limit, refuse_urgent
+from ..runs.submission import IdempotencyKey, memory_limit, refuse_urgent
 from ..services.services import Services, ServicesDep, SessionDep
 from ..specs import parsing
+from ..specs.deps import SPEC_BYTES
 from ..tables import Run, Sweep
 from ..workers import registry
 from . import summary

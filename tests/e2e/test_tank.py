@@ -135,7 +135,8 @@ def test_the_tank_is_still_where_motion_is_reduced(page, settled):
 
 
 def test_a_run_has_its_best_creature_beside_its_name(home, shared):
-    (row,) = home.get_by_role("row").filter(has_text=shared.submitted["search"][:8]).all()
+    row = home.get_by_role("row").filter(has_text=shared.submitted["search"][:8])
+    expect(row).to_have_count(1)
     face = row.locator(".face canvas")
     face.scroll_into_view_if_needed()
     home.wait_for_timeout(500)

@@ -13,9 +13,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from .. import search
+from .. import naming, search
 from ..archive.report import Elite, Report
-from ..genomes import Genotype
+from ..genomes import Genotype, take
 from . import (
     archive_file,
     breeding,
@@ -27,7 +27,7 @@ from . import (
     reporting,
     screening,
 )
-from .offspring import Offspring, Programs, next_offspring
+from .offspring import Offspring, Programs, divided, next_offspring
 from .state import ENDS, MAX_INFEASIBLE, Infeasible, Plan, State, start
 
 
@@ -66,6 +66,24 @@ class Evolution:
             count = f"{len(named)} creatures"
             raise ValueError(f"`search.initial` names {count}, whose files are needed to begin")
         return start(self.plan)
+
+    def first_generation(self) -> list[dict[str, Any]]:
+        """Return the files of the creatures that the run evaluates first, without results.
+
+        Offspring that learn first are as they were before. Raise `ValueError` as `init` does.
+        """
+        state = self.init()
+        given = jnp.asarray(state.generation), divided(self.plan, state)
+        emitted = self.programs.emit(state.emitters, state.elites, state.counters, *given)
+        genotypes = jax.device_get(emitted[0].genotypes)
+        return [
+            naming.document(
+                lineage.identity(self.plan.identity_template, take(genotypes, number)),
+                None,
+                None,
+            )
+            for number in range(self.plan.batch)
+        ]
 
     def choose(self, state: State, files: Sequence[Mapping[str, Any]]) -> State:
         """Return the state whose next generations also descend from chosen creatures; see

@@ -89,6 +89,16 @@ def test_pose_streams_are_what_a_simulation_of_the_elites_gives(experiment, cour
         np.testing.assert_allclose(one.path[0], task.start.positions.mean(0), atol=1e-5)
 
 
+@pytest.mark.parametrize("name", ["quality-diversity", "neuroevolution"])
+def test_the_first_generation_is_known_before_it_is_evaluated(name, course_of):
+    course = course_of(name)
+    files = course.experiment.first_generation()
+    assert len({file["sha256"] for file in files}) == course.experiment.plan.batch
+    first = {elite.creature for elite in course.reports[0].elites}
+    assert first
+    assert first <= {creature.parse(file)["sha256"] for file in files}
+
+
 @pytest.mark.parametrize(
     ("name", "related"), [("quality-diversity", 1), ("neuroevolution", 11)]
 )

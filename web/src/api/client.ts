@@ -41,6 +41,15 @@ export const readRuns = (query: wire.RunQuery) =>
 export const readRun = (id: string) => typed<wire.Run>(client.GET("/runs/{run_id}", run(id)));
 export const estimateRun = (spec: wire.Spec) =>
   success(client.POST("/runs/estimate", { body: spec as never }));
+/** The inputs of the evaluation of a creature that a run would begin with; null while they are prepared. */
+export const readFirstCreature = (spec: wire.Spec, number: number) =>
+  whenReady<ArrayBuffer>(
+    client.POST("/first-creature", {
+      params: { query: { number } },
+      body: spec as never,
+      parseAs: "arrayBuffer",
+    }),
+  );
 /** Queue a run, with a name if there is one. */
 export function createRun(spec: wire.Spec, key: string, name: string | null) {
   const params = { ...keyed(key), query: name ? { name } : {} };

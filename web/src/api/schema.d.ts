@@ -614,6 +614,29 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/first-creature": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Read First Creature
+         * @description Return the inputs of the evaluation of a creature of a run's first generation.
+         *
+         *     202 while a renderer makes them. `number` counts within the generation, again and again.
+         *     The answer is kept for ten minutes; no run is queued and no creature is stored.
+         */
+        post: operations["read_first_creature_api_v1_first_creature_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/health": {
         parameters: {
             query?: never;
@@ -4695,6 +4718,53 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ExperimentRead"][];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_first_creature_api_v1_first_creature_post: {
+        parameters: {
+            query?: {
+                number?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": {
+                    /** @enum {unknown} */
+                    experiment: "folding" | "gaits" | "neuroevolution" | "quality-diversity" | "refinement" | "scaling";
+                };
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/vnd.microcosmos.columns": unknown;
+                };
+            };
+            /** @description Accepted */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Rendering"];
                 };
             };
             /** @description A problem (RFC 9457) */

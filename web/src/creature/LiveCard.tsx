@@ -1,14 +1,13 @@
 /** Let a creature swim on in this browser, in water that visitors change. */
 
-import { useEffect, useState } from "preact/hooks";
+import { useState } from "preact/hooks";
 import { messageOf } from "../api/problem";
-import { decodeEvaluation } from "../decode/evaluation";
-import { Live } from "../simulate/live";
 import { isInstalled } from "../simulate/source";
 import { usePolled } from "../store/polling";
 import { CheckCard } from "./CheckCard";
 import { type Others, LiveView } from "./live/LiveView";
 import { text } from "./live/text";
+import { useLive } from "./live/useLive";
 import { text as cards } from "./text";
 
 interface Props {
@@ -21,29 +20,12 @@ interface Props {
 export function LiveCard({ readInputs, others }: Props) {
   const [on, setOn] = useState(false);
   const { value: inputs, note, error } = usePolled(on ? readInputs : null, [on]);
-  const [live, setLive] = useState<Live | null>(null);
   const [failed, setFailed] = useState<string | null>(null);
   const fail = (reason: unknown) => {
     setFailed(messageOf(reason));
     setOn(false);
   };
-  useEffect(() => {
-    if (!inputs) return;
-    let begun: Live | null = null;
-    let active = true;
-    begin(inputs)
-      .then((found) => {
-        begun = found;
-        if (active) setLive(found);
-        else found.end();
-      })
-      .catch((reason) => active && fail(reason));
-    return () => {
-      active = false;
-      begun?.end();
-      setLive(null);
-    };
-  }, [inputs]);
+  const live = useLive(inputs, fail);
   const start = () => {
     setFailed(null);
     setOn(!on);
@@ -64,10 +46,4 @@ export function LiveCard({ readInputs, others }: Props) {
       {live && <LiveView {...{ live }} others={others ?? null} onFail={fail} />}
     </CheckCard>
   );
-}
-
-async function begin(inputs: ArrayBuffer): Promise<Live> {
-  const { uncovered } = decodeEvaluation(inputs);
-  if (uncovered !== null) throw new Error(text.notCovered(uncovered));
-  return Live.begin(inputs);
 }

@@ -13,6 +13,7 @@ import { ForkCard } from "./ForkCard";
 import { isSweep } from "./sweep";
 import { SpecView, type View } from "./SpecView";
 import { SweepCard } from "./SweepCard";
+import { lazy } from "../ui/lazy";
 import { text } from "./text";
 import "./form/form.css";
 
@@ -47,6 +48,7 @@ export function Editor(props: Props) {
       <div class="new-columns">
         <aside class="new-side" aria-label={text.overview}>
           <section class={`card ${check.estimate ? "" : "stale"}`} aria-label={text.body}>
+            {begins(current.spec as Json) && check.estimate && !refusal && <Preview spec={current.spec} />}
             <BodyDrawing drawing={editor.drawing} />
           </section>
           {check.estimate && <CostDetails estimate={check.estimate} />}
@@ -67,6 +69,25 @@ export function Editor(props: Props) {
       <SubmitBar editor={editor} illegible={illegible !== null} refusal={refusal} />
     </form>
   );
+}
+
+/** The simulator is loaded when a creature shall swim. */
+const FirstCreature = lazy(() => import("./FirstCreature").then((found) => found.FirstCreature), null);
+
+function Preview({ spec }: { spec: Draft["spec"] }) {
+  const [on, setOn] = useState(false);
+  if (on) return <FirstCreature spec={spec} />;
+  return (
+    <button type="button" class="first-show" onClick={() => setOn(true)}>
+      {text.firstShow}
+    </button>
+  );
+}
+
+/** True if a run starts from random creatures. */
+function begins(spec: Json): boolean {
+  const { experiment, search } = spec as { experiment?: string; search?: { initial?: unknown[] } };
+  return ["quality-diversity", "neuroevolution"].includes(experiment ?? "") && !search?.initial?.length;
 }
 
 interface SubmitProps {

@@ -19,6 +19,11 @@ export const text = {
   of: "of",
   runOf: (id: string) => `run ${id}`,
   afterGeneration: (generation: string) => `, taken after generation ${generation}`,
+  firstShow: "Let one of the first swim",
+  firstPrepared: "A renderer makes a creature of the first generation …",
+  firstNext: "Another",
+  firstAbout: (number: number) =>
+    `Creature ${number} of the first generation, at random: nobody has selected it.`,
   noDrawing: "The drawing appears once all values are valid.",
   targets: "Target pictures",
   worldScale: (width: string, height: string, grid: number) =>
