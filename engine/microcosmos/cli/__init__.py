@@ -3,6 +3,7 @@
 from . import (
     archive,
     cluster,
+    compare,
     creature,
     doctor,
     draw,

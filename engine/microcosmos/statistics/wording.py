@@ -1,0 +1,156 @@
+"""Sentences that state groups, tests and corrections, and numbers as text."""
+
+from collections.abc import Sequence
+from math import isinf
+from typing import Any
+
+from ..spec.differences import value_text
+from .aggregates import Aggregates
+from .comparison import Comparison, Pair
+from .effects import Bootstrap
+from .groups import Group
+
+NOT_REACHED = "not reached"
+MAX_FIELDS = 6
+"""Fields in which specs differ that a sentence names."""
+
+
+def number(value: float) -> str:
+    """Return a number with four digits; infinity is a value that a run does not reach."""
+    if isinf(value):
+        return NOT_REACHED
+    return f"{value:,.0f}" if abs(value) >= 10_000 else f"{value:.4g}"
+
+
+def interval(ends: tuple[float, float] | None) -> str:
+    return "" if ends is None else f"{number(ends[0])} to {number(ends[1])}"
+
+
+def probability(p: float) -> str:
+    """Return p as text, `< 0.001` where it is less."""
+    return "< 0.001" if p < 0.001 else f"{p:.3f}"
+
+
+def seeds(group: Group) -> str:
+    """Return the number of runs and the seeds, as `n = 5: seeds 0 to 4`."""
+    numbers = group.seeds
+    first, last = numbers[0], numbers[-1]
+    together = len(numbers) > 2 and numbers == list(range(first, last + 1))
+    listed = f"{first} to {last}" if together else ", ".join(map(str, numbers))
+    plural = "seed" if len(numbers) == 1 else "seeds"
+    return f"n = {len(group.runs)}: {plural} {listed}"
+
+
+def groups(found: Comparison) -> str:
+    """Return the fields in which groups differ, and the seeds of each."""
+    counted = "; ".join(f"{group.name} ({seeds(group)})" for group in found.groups)
+    return f"{difference(found)} {counted}."
+
+
+def difference(found: Comparison) -> str:
+    """Return a sentence on the fields in which the specs of groups differ."""
+    if len(found.groups) < 2:
+        return "There is one group."
+    if not found.differences:
+        return "The specs of the groups differ in nothing."
+    names = [group.name for group in found.groups]
+    parts = [_field(path, values, names) for path, values in found.differences.items()]
+    more = len(parts) - MAX_FIELDS
+    rest = f"; and {more} more fields" if more > 0 else ""
+    return f"The specs of the groups differ in {'; '.join(parts[:MAX_FIELDS])}{rest}."
+
+
+def _field(path: str, values: Sequence[Any], names: Sequence[str]) -> str:
+    pairs = zip(values, names, strict=True)
+    return f"{path}: " + ", ".join(f"{value_text(value)} in {name}" for value, name in pairs)
+
+
+def method(found: Comparison) -> str:
+    """Return the tests, the correction, and how intervals are made."""
+    first = "Median and quartiles over seeds."
+    if found.refusal:
+        return f"{first} {found.refusal}"
+    several, count = len(found.groups) > 2, found.tests
+    parts = [first]
+    if several:
+        parts.append("Kruskal–Wallis tests over all groups, not corrected.")
+    between = "pairs of groups" if several else "the groups"
+    plural = "test" if count == 1 else "tests"
+    parts.append(
+        f"Two-sided {tests(found)} between {between}; p after Holm’s correction for {count} "
+        f"{plural}."
+    )
+    parts.append(
+        "A12 (Vargha and Delaney) is the share of pairs of runs in which the first group’s "
+        "value is greater, IQM the mean of the middle half of the runs; both with "
+        f"{resampled(found.bootstrap)}."
+    )
+    return " ".join(parts)
+
+
+def tests(found: Comparison) -> str:
+    names = {pair.test.name for result in found.results for pair in result.pairs}
+    forms = {name.partition(", ")[2] for name in names} - {""}
+    stated = f" ({' or '.join(sorted(forms))})" if forms else ""
+    return f"Mann–Whitney tests{stated}"
+
+
+def resampled(bootstrap: Bootstrap) -> str:
+    return (
+        f"95 % percentile bootstrap intervals ({bootstrap.resamples:,} resamples, "
+        f"seed {bootstrap.seed})"
+    )
+
+
+def results(found: Comparison) -> str:
+    """Return the corrected p and A12 of every pair, for captions."""
+    said = []
+    for result in found.results:
+        pairs = "; ".join(map(_pair, result.pairs))
+        if pairs:
+            said.append(
+                f"{result.measure.title[0].upper()}{result.measure.title[1:]}: {pairs}."
+            )
+    return " ".join(said)
+
+
+def _pair(pair: Pair) -> str:
+    p = probability(pair.p)
+    equals = p if p.startswith("<") else f"= {p}"
+    return f"{pair.first} against {pair.second} p {equals}, A12 = {pair.superiority:.2f}"
+
+
+def cautions(found: Comparison) -> list[str]:
+    """Return what a reader should know: other versions or devices, and few values of p."""
+    said = []
+    if len(found.versions) > 1:
+        said.append(f"Runs are of several versions: {', '.join(found.versions)}.")
+    kinds = dict.fromkeys(
+        d for group in found.groups for run in group.runs for d in run.devices
+    )
+    if len(kinds) > 1:
+        said.append(f"Runs are of {len(kinds)} kinds of devices.")
+    if any(result.measure.less_is_better for result in found.results):
+        said.append(
+            "Fewer evaluations to a value are better; a run that does not reach it counts as "
+            "more than any other."
+        )
+    return said
+
+
+def aggregated(found: Aggregates) -> str:
+    """Return how aggregates over tasks are made, and over which."""
+    tasks = ", ".join(
+        " and ".join(f"{path} {value_text(value)}" for path, value in task.items())
+        for task in found.tasks
+    )
+    first = found.groups[0].group
+    said = [
+        f"Over {len(found.tasks)} tasks ({tasks}); scores are relative to the median of "
+        f"{first} in the task. IQM is the mean of the middle half of all runs, and "
+        "P(first > second) the mean over tasks of the share of pairs of runs."
+    ]
+    if found.refusal:
+        return f"{said[0]} {found.refusal}"
+    drawn = f"Stratified {resampled(found.bootstrap)}: each task’s runs are drawn again"
+    return f"{said[0]} {drawn} (Agarwal et al. 2021)."
