@@ -7,6 +7,7 @@ from . import (
     creature,
     doctor,
     draw,
+    draw_groups,
     manage,
     modules,
     monitor,

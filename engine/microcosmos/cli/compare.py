@@ -7,7 +7,7 @@ from typer import Option
 
 from ..archive.atomic import write_whole
 from .app import app, fail, failing
-from .groups import GROUPS, Resamples, Seed, read_groups
+from .groups import GROUPS, Measures, Resamples, Seed, read_groups
 from .remote import Token, Url
 
 FORMS = ("table", "csv", "json", "latex")
@@ -16,14 +16,7 @@ FORMS = ("table", "csv", "json", "latex")
 @app.command()
 def compare(
     groups: Annotated[list[str], GROUPS],
-    measure: Annotated[
-        list[str] | None,
-        Option(
-            help="A curve (qd_score), a curve after evaluations (qd_score@6400), or the "
-            "evaluations to a value (best>=0.5); repeatable.",
-            show_default="qd_score, coverage, best",
-        ),
-    ] = None,
+    measure: Measures = None,
     form: Annotated[str, Option("--as", help=f"{', '.join(FORMS)}.")] = "table",
     out: Annotated[
         Path | None, Option(dir_okay=False, help="File to write to; default: print.")

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 from typer import Argument, Option
 
@@ -18,6 +18,15 @@ GROUPS = Argument(
     help="A group: archive files, folders of them, or ids of runs and sweeps on a server. "
     "Without a name, runs form a group for each spec: a sweep has one for each case.",
 )
+Measures = Annotated[
+    list[str] | None,
+    Option(
+        "--measure",
+        help="A curve (qd_score), a curve after evaluations (qd_score@6400), or the "
+        "evaluations to a value (best>=0.5); repeatable.",
+        show_default="qd_score, coverage, best",
+    ),
+]
 Resamples = Option(min=99, help="Resamples of the bootstrap.")
 Seed = Option(min=0, help="Random seed of the bootstrap.")
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..spec.differences import IGNORED, differing, label
+from ..spec.differences import IGNORED, MAX_FIELDS, differing, label, value_text
 from .records import RunRecord
 
 
@@ -31,7 +31,7 @@ def by_spec(runs: Sequence[RunRecord]) -> list[Group]:
     for run in runs:
         found.setdefault(_key(run, IGNORED), []).append(run)
     paths = differing([same[0].fields for same in found.values()])
-    names = [label(same[0].fields, paths) or "all runs" for same in found.values()]
+    names = [_name(same[0], paths) for same in found.values()]
     if len(set(names)) < len(names):  # Labels are cut after some fields.
         names = [f"{name} ({number})" for number, name in enumerate(names, 1)]
     return named(dict(zip(names, found.values(), strict=True)))
@@ -104,6 +104,15 @@ def _refuse_shared(groups: Sequence[Group]) -> None:
                     f"a run belongs to one group, got {earlier.name}{same} in {name!r} and in "
                     f"{group.name!r}"
                 )
+
+
+def _name(run: RunRecord, paths: Sequence[str]) -> str:
+    """Return the values of the fields, each with the last word of its path if that is clear."""
+    last = [path.rpartition(".")[2].replace("_", " ") for path in paths]
+    if not paths or len(set(last)) < len(last) or len(last) > MAX_FIELDS:
+        return label(run.fields, paths) or "all runs"
+    values = [value_text(run.fields.get(path)) for path in paths]
+    return ", ".join(map(" ".join, zip(last, values, strict=True)))
 
 
 def _key(run: RunRecord, ignored: Iterable[str]) -> tuple:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..archive.file import HDF5, load
+from ..spec import parse
 from ..spec.differences import flattened
 
 IDENTIFYING = ("evaluations", "qd_score", "coverage", "best")
@@ -43,6 +44,11 @@ class RunRecord:
     def evaluations(self) -> np.ndarray:
         """Simulations of a creature up to each generation."""
         return self.curves["evaluations"]
+
+    @cached_property
+    def spec(self) -> Any:
+        """The spec as an object. Raises `ValueError` for one that is unknown here."""
+        return parse(self.document)
 
     @cached_property
     def fields(self) -> dict[str, Any]:

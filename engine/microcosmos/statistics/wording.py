@@ -1,8 +1,6 @@
 """Sentences that state groups, tests and corrections, and numbers as text."""
 
-from collections.abc import Sequence
 from math import isinf
-from typing import Any
 
 from ..spec.differences import value_text
 from .aggregates import Aggregates
@@ -13,6 +11,10 @@ from .groups import Group
 NOT_REACHED = "not reached"
 MAX_FIELDS = 6
 """Fields in which specs differ that a sentence names."""
+MAX_PAIRS = 12
+"""Pairs that a caption states one by one."""
+LEVEL = 0.05
+"""With more, those of a lower p."""
 
 
 def number(value: float) -> str:
@@ -32,37 +34,41 @@ def probability(p: float) -> str:
 
 
 def seeds(group: Group) -> str:
-    """Return the number of runs and the seeds, as `n = 5: seeds 0 to 4`."""
+    """Return the number of runs and the seeds, as `n = 5, seeds 0 to 4`."""
     numbers = group.seeds
     first, last = numbers[0], numbers[-1]
     together = len(numbers) > 2 and numbers == list(range(first, last + 1))
     listed = f"{first} to {last}" if together else ", ".join(map(str, numbers))
     plural = "seed" if len(numbers) == 1 else "seeds"
-    return f"n = {len(group.runs)}: {plural} {listed}"
+    return f"n = {len(group.runs)}, {plural} {listed}"
 
 
 def groups(found: Comparison) -> str:
     """Return the fields in which groups differ, and the seeds of each."""
-    counted = "; ".join(f"{group.name} ({seeds(group)})" for group in found.groups)
-    return f"{difference(found)} {counted}."
+    names = [group.name for group in found.groups]
+    counted = list(dict.fromkeys(map(seeds, found.groups)))
+    if len(counted) == 1:
+        each = "Each has" if len(names) > 1 else "It has"
+        return f"{difference(found)} {each} {counted[0]}."
+    listed = "; ".join(f"{group.name} has {seeds(group)}" for group in found.groups)
+    return f"{difference(found)} {listed}."
 
 
 def difference(found: Comparison) -> str:
-    """Return a sentence on the fields in which the specs of groups differ."""
+    """Return a sentence on the groups and the fields in which their specs differ."""
+    names = ", ".join(group.name for group in found.groups)
     if len(found.groups) < 2:
-        return "There is one group."
+        return f"There is one group: {names}."
     if not found.differences:
-        return "The specs of the groups differ in nothing."
-    names = [group.name for group in found.groups]
-    parts = [_field(path, values, names) for path, values in found.differences.items()]
+        return f"Groups: {names}; their specs do not differ."
+    parts = [
+        f"{path} ({', '.join(map(value_text, values))})"
+        for path, values in found.differences.items()
+    ]
     more = len(parts) - MAX_FIELDS
     rest = f"; and {more} more fields" if more > 0 else ""
-    return f"The specs of the groups differ in {'; '.join(parts[:MAX_FIELDS])}{rest}."
-
-
-def _field(path: str, values: Sequence[Any], names: Sequence[str]) -> str:
-    pairs = zip(values, names, strict=True)
-    return f"{path}: " + ", ".join(f"{value_text(value)} in {name}" for value, name in pairs)
+    shown = "; ".join(parts[:MAX_FIELDS])
+    return f"Groups: {names}; their specs differ, in this order, in {shown}{rest}."
 
 
 def method(found: Comparison) -> str:
@@ -103,21 +109,24 @@ def resampled(bootstrap: Bootstrap) -> str:
 
 
 def results(found: Comparison) -> str:
-    """Return the corrected p and A12 of every pair, for captions."""
+    """Return the corrected p and A12 of every pair, for captions; of many pairs, of those that
+    differ."""
+    many = found.tests > MAX_PAIRS
     said = []
     for result in found.results:
-        pairs = "; ".join(map(_pair, result.pairs))
-        if pairs:
-            said.append(
-                f"{result.measure.title[0].upper()}{result.measure.title[1:]}: {pairs}."
-            )
+        shown = [pair for pair in result.pairs if not many or pair.p < LEVEL]
+        if shown:
+            title = f"{result.measure.title[0].upper()}{result.measure.title[1:]}"
+            said.append(f"{title}: {'; '.join(map(_pair, shown))}.")
+    if many:
+        said.append(f"All other pairs have p ≥ {LEVEL:g}.")
     return " ".join(said)
 
 
 def _pair(pair: Pair) -> str:
     p = probability(pair.p)
     equals = p if p.startswith("<") else f"= {p}"
-    return f"{pair.first} against {pair.second} p {equals}, A12 = {pair.superiority:.2f}"
+    return f"{pair.first} against {pair.second}, p {equals}, A12 = {pair.superiority:.2f}"
 
 
 def cautions(found: Comparison) -> list[str]:

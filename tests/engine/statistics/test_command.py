@@ -46,7 +46,10 @@ def test_folders_are_groups(compare, folders, tmp_path):
     assert done.exit_code == 0, done.output
     line = next(one for one in done.output.splitlines() if one.startswith("QD score"))
     assert line.split()[2:5] == ["slow", "5", "3"]
-    assert "world.viscosity: 0.05 in slow, 0.2 in fast" in done.output
+    assert (
+        "slow, fast; their specs differ, in this order, in world.viscosity (0.05, 0.2). "
+        in done.output
+    )
 
 
 def test_files_without_names_are_grouped_by_spec_and_written(compare, folders, tmp_path):
@@ -56,7 +59,7 @@ def test_files_without_names_are_grouped_by_spec_and_written(compare, folders, t
     assert done.output.split() == [str(out)], done.output
     (measure,) = json.loads(out.read_text())["measures"]
     names = [one["group"] for one in measure["groups"]]
-    assert names == ["world viscosity 0.05", "world viscosity 0.2"]
+    assert names == ["viscosity 0.05", "viscosity 0.2"]
     assert measure["groups"][0]["values"] == [20, 30, 20, None, 40]
 
 

@@ -122,7 +122,7 @@ def test_an_unfinished_run_is_refused_with_how_far_it_is(group_of, run):
 def test_groups_without_names_are_those_of_specs(group_of):
     runs = group_of(SLOW) + group_of(FAST, world__viscosity=0.2)
     found = by_spec(runs[::-1])
-    names = ["world viscosity 0.2", "world viscosity 0.05"]
+    names = ["viscosity 0.2", "viscosity 0.05"]
     assert [(group.name, group.seeds) for group in found] == [
         (n, list(range(5))) for n in names
     ]

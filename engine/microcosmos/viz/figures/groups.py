@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +16,8 @@ class Group:
 
     label: str
     """Fields in which the group differs from the others."""
-    runs: tuple[Archive, ...]
+    runs: tuple[Any, ...]
+    """Archives, or records of statistics: see `reading.Described`."""
 
     @property
     def seeds(self) -> list[int]:
