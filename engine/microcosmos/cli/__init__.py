@@ -15,5 +15,6 @@ from . import (
     reproject,
     run,
     sharing,
+    study,
 )
 from .app import app
