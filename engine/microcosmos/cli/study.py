@@ -34,6 +34,9 @@ def study(
     dry_run: Annotated[
         bool, Option("--dry-run", help="Print the runs and what is left, and stop.")
     ] = False,
+    checkpoint_seconds: Annotated[
+        float, Option(min=0.0, help="Seconds between two checkpoints of a run.")
+    ] = 20.0,
     server: Annotated[
         bool, Option("--server", help="Carry out the runs on the server, and download them.")
     ] = False,
@@ -58,7 +61,7 @@ def study(
             if server:
                 _on_server(found, url, token)
             else:
-                _carry_out(found, processes, module or [])
+                _carry_out(found, processes, module or [], checkpoint_seconds)
             command = f"microcosmos study {file.name}"
             paths = report.write(found, file.read_text(), command)
     for path in paths[:1]:
@@ -87,7 +90,9 @@ def _show(plan: "Plan", processes: int) -> None:
     console.print(f"{len(rows)} runs; about {left:,} evaluations are left: {time}")
 
 
-def _carry_out(plan: "Plan", processes: int, modules: list[Path]) -> None:
+def _carry_out(
+    plan: "Plan", processes: int, modules: list[Path], checkpoint_seconds: float
+) -> None:
     from ..device import prepare
     from ..study import local
 
@@ -107,6 +112,7 @@ def _carry_out(plan: "Plan", processes: int, modules: list[Path]) -> None:
             tell=tell,
             stop=lambda: bool(stopped),
             modules=modules,
+            checkpoint_seconds=checkpoint_seconds,
             cache=CACHE,
         )
     if not done:

@@ -73,25 +73,27 @@ def difference(found: Comparison) -> str:
 
 def method(found: Comparison) -> str:
     """Return the tests, the correction, and how intervals are made."""
-    first = "Median and quartiles over seeds."
     if found.refusal:
-        return f"{first} {found.refusal}"
+        return f"Median and quartiles over seeds. {found.refusal}"
+    return (
+        f"Median and quartiles over seeds. {tested(found)} IQM is the mean of the middle half "
+        f"of the runs; it and A12 with {resampled(found.bootstrap)}."
+    )
+
+
+def tested(found: Comparison) -> str:
+    """Return the tests, the correction and the effect size, or why there are none."""
+    if found.refusal:
+        return found.refusal
     several, count = len(found.groups) > 2, found.tests
-    parts = [first]
-    if several:
-        parts.append("Kruskal–Wallis tests over all groups, not corrected.")
+    overall = "Kruskal–Wallis tests over all groups, not corrected. " if several else ""
     between = "pairs of groups" if several else "the groups"
     plural = "test" if count == 1 else "tests"
-    parts.append(
-        f"Two-sided {tests(found)} between {between}; p after Holm’s correction for {count} "
-        f"{plural}."
+    return (
+        f"{overall}Two-sided {tests(found)} between {between}; p after Holm’s correction for "
+        f"{count} {plural}. A12 (Vargha and Delaney) is the share of pairs of runs in which "
+        "the first group’s value is greater."
     )
-    parts.append(
-        "A12 (Vargha and Delaney) is the share of pairs of runs in which the first group’s "
-        "value is greater, IQM the mean of the middle half of the runs; both with "
-        f"{resampled(found.bootstrap)}."
-    )
-    return " ".join(parts)
 
 
 def tests(found: Comparison) -> str:

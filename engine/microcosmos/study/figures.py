@@ -7,17 +7,20 @@ from typing import Any
 
 import numpy as np
 
+from ..archive.atomic import write_whole
 from ..archive.file import load
 from ..archive.poses import streams
 from ..statistics import Group
 from ..viz.figures import caption, compared, compared_caption, curves, saving, sheet, strips
 from ..viz.figures.groups import Group as Drawn
 from ..viz.figures.reading import read
-from ..viz.figures.style import COLUMNS, styled
+from ..viz.figures.style import COLUMNS, INCH, styled
 from .document import Figure
 from .results import Compare, Results
 
 FORMATS = (".svg", ".pdf")
+PART_OF_PAGE = 130.0
+"""Width in mm beyond which a figure needs the whole width."""
 MOMENTS = 8
 
 
@@ -32,6 +35,8 @@ class Picture:
     pdf: bytes
     caption: str
     runs: tuple[str, ...]
+    wide: bool
+    """It fills the width of a page."""
 
 
 def draw(results: Results, tell: Callable[[int], None] = lambda done: None) -> list[Picture]:
@@ -49,8 +54,6 @@ def draw(results: Results, tell: Callable[[int], None] = lambda done: None) -> l
 
 def save(pictures: list[Picture], folder: Path) -> list[Path]:
     """Write every figure as SVG and PDF, with its caption; return the paths."""
-    from ..archive.atomic import write_whole
-
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     for number, one in enumerate(pictures, 1):
@@ -67,7 +70,8 @@ def _picture(results: Results, figure: Figure, of: Compare) -> Picture:
     with styled():
         drawn, text, shown = _DRAW[figure.kind](results, figure, of)
         svg, pdf = (saving.encoded(drawn, suffix, caption=text) for suffix in FORMATS)
-    return Picture(figure.kind, of.name, svg, pdf, text, shown or ids)
+    wide = drawn.get_figwidth() * INCH > PART_OF_PAGE
+    return Picture(figure.kind, of.name, svg, pdf, text, shown or ids, wide)
 
 
 Made = tuple[Any, str, tuple[str, ...]]

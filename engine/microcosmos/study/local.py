@@ -14,7 +14,6 @@ from . import pool
 from .lock import of_run
 from .runs import Plan, PlannedRun
 
-CHECKPOINT_SECONDS = 20.0
 SPEED = "speed.json"
 """File of the measured speed: it serves estimates alone."""
 
@@ -52,7 +51,7 @@ def carry_out(
     tell: Tell = lambda progress: None,
     stop: Callable[[], bool] = never,
     modules: Sequence[Path] = (),
-    checkpoint_seconds: float = CHECKPOINT_SECONDS,
+    checkpoint_seconds: float = 20.0,
     cache: Path | None = None,
 ) -> bool:
     """Carry out the runs that are not finished; return whether all are.

@@ -21,8 +21,6 @@ from .results import Compare, Results, gather
 from .runs import Plan, PlannedRun
 
 FILE = "report.html"
-WIDE = ("curves", "sheet", "creatures")
-"""Figures that fill the width of a page."""
 
 
 def write(plan: Plan, source: str, command: str) -> list[Path]:
@@ -75,7 +73,7 @@ def _comparison(number: int, one: Compare, pictures: Sequence[Picture]) -> list[
         body += _aggregates(number, one)
     for picture in pictures:
         said = f"{picture.kind} of {picture.of}"
-        body.append(markup.figure(picture.svg, picture.caption, said, picture.kind not in WIDE))
+        body.append(markup.figure(picture.svg, picture.caption, said, not picture.wide))
     body += _values(number, one)
     return body
 
@@ -107,14 +105,23 @@ def _tables(number: int, one: Compare) -> list[str]:
         of_group(row, summary.values, summary.median)
         for row, summary in zip(tables.group_rows(found), summaries, strict=True)
     ]
-    parts = [markup.table(tables.GROUPS, rows)]
+    parts = [markup.table(tables.GROUPS, _named_once(rows))]
     overall = [
         [row[0], *(Number(text, everything, f"c{number}") for text in row[1:])]
         for row in tables.overall_rows(found)
     ]
     pairs = [of_pair(row) for row in tables.pair_rows(found)]
     parts += [markup.table(tables.OVERALL, overall)] if overall else []
-    return parts + ([markup.table(tables.PAIRS, pairs)] if pairs else [])
+    return parts + ([markup.table(tables.PAIRS, _named_once(pairs))] if pairs else [])
+
+
+def _named_once(rows: list[list[Cell]]) -> list[list[Cell]]:
+    """Return the rows with each measure in the first of its rows alone."""
+    before = ["", *(row[0] for row in rows)]
+    return [
+        ["" if row[0] == above else row[0], *row[1:]]
+        for row, above in zip(rows, before[:-1], strict=True)
+    ]
 
 
 def _aggregates(number: int, one: Compare) -> list[str]:

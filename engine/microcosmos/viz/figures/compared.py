@@ -60,7 +60,7 @@ def _ticks(names: Sequence[str]) -> tuple[list[str], str]:
 
 def _panels(count: int, width: float, above: float = 0.0) -> tuple[Any, list[Any]]:
     """Return a figure with so many panels, and `above` mm for a legend."""
-    columns = min(count, COLUMNS)
+    columns = 2 if count == 4 else min(count, COLUMNS)
     rows = -(-count // columns)
     figure = blank(width, rows * min(max(48.0, 0.66 * width / columns), TALLEST) + above)
     panels = figure.subplots(rows, columns, squeeze=False).ravel().tolist()

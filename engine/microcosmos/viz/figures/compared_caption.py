@@ -44,7 +44,7 @@ def _measures(found: Comparison) -> str:
 
 
 def _stated(found: Comparison) -> list[str]:
-    said = [wording.groups(found), wording.method(found), wording.results(found)]
+    said = [wording.groups(found), wording.tested(found), wording.results(found)]
     said += wording.cautions(found)
     return [one for one in said if one] + [_rest(found.groups[0].runs[0])]
 
