@@ -205,9 +205,9 @@ def latex(found: Comparison) -> str:
 
 def _tabular(titles: Sequence[str], rows: Cells, columns: str) -> str:
     lines = [f"\\begin{{tabular}}{{{columns}}}", "\\toprule", _row(titles), "\\midrule"]
-    before = ""
+    before, several = "", len({row[0] for row in rows}) < len(rows)
     for row in rows:
-        if before and row[0] != before:
+        if several and before and row[0] != before:
             lines.append("\\addlinespace")
         lines.append(_row(["" if row[0] == before else row[0], *row[1:]]))
         before = row[0]

@@ -1,6 +1,6 @@
 """Sentences that state groups, tests and corrections, and numbers as text."""
 
-from math import isinf
+from math import comb, isinf
 
 from ..spec.differences import value_text
 from .aggregates import Aggregates
@@ -14,7 +14,7 @@ MAX_FIELDS = 6
 MAX_PAIRS = 12
 """Pairs that a caption states one by one."""
 LEVEL = 0.05
-"""With more, those of a lower p."""
+"""p below which a caption of more pairs states them, and that tests should be able to reach."""
 
 
 def number(value: float) -> str:
@@ -141,12 +141,25 @@ def cautions(found: Comparison) -> list[str]:
     )
     if len(kinds) > 1:
         said.append(f"Runs are of {len(kinds)} kinds of devices.")
+    if (least := _least(found)) > LEVEL:
+        said.append(
+            f"With these numbers of runs and {found.tests} tests, no p can be below "
+            f"{least:.3f}: add seeds or name fewer measures."
+        )
     if any(result.measure.less_is_better for result in found.results):
         said.append(
             "Fewer evaluations to a value are better; a run that does not reach it counts as "
             "more than any other."
         )
     return said
+
+
+def _least(found: Comparison) -> float:
+    """Return the least corrected p that a pair can have: of two groups that do not overlap."""
+    if found.refusal:
+        return 0.0
+    first, second = sorted(len(group.runs) for group in found.groups)[-2:]
+    return min(1.0, found.tests * 2 / comb(first + second, first))
 
 
 def aggregated(found: Aggregates) -> str:

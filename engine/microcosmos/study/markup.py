@@ -1,6 +1,7 @@
 """HTML of a report: tables whose every number links to the runs that it comes from."""
 
 import base64
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
@@ -10,7 +11,7 @@ STYLE = """
   --accent: #0b6b62 }
 * { box-sizing: border-box }
 body { margin: 0 auto; max-width: 60rem; padding: 2rem 1.25rem 4rem; color: var(--ink);
-  background: #fff; font: 15px/1.55 system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif;
+  background: #fff; font: .9375rem/1.55 system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif;
   font-variant-numeric: tabular-nums }
 h1 { font-size: 1.7rem; line-height: 1.2; margin: 0 0 .5rem }
 h2 { font-size: 1.2rem; margin: 2.5rem 0 .5rem; border-top: 1px solid var(--line);
@@ -37,13 +38,15 @@ code { font-family: ui-monospace, Menlo, Consolas, "DejaVu Sans Mono", monospace
   font-size: .9em }
 @page { size: A4; margin: 16mm 15mm }
 @media print {
-  body { padding: 0; max-width: none; font-size: 9.5pt }
+  html { font-size: 9.5pt }
+  body { padding: 0; max-width: none; font-size: 1rem }
+  p { max-width: none }
   h2, h3 { break-after: avoid }
   tr { break-inside: avoid }
   a { color: inherit }
   .scroll { overflow: visible }
   details { display: none }
-  table { font-size: 8pt }
+  table { font-size: .85rem }
 }
 """
 
@@ -105,7 +108,12 @@ def _cell(cell: Cell) -> str:
 
 
 def paragraph(text: str, quiet: bool = False) -> str:
-    return f"<p{' class=quiet' if quiet else ''}>{escape(text)}</p>"
+    return f"<p{' class=quiet' if quiet else ''}>{_words(text)}</p>"
+
+
+def _words(text: str) -> str:
+    """Return text with what stands between backquotes as code."""
+    return re.sub("`([^`]+)`", r"<code>\1</code>", escape(text))
 
 
 def heading(text: str, anchor: str = "", level: int = 2) -> str:
@@ -120,7 +128,7 @@ def figure(svg: bytes, caption: str, alternative: str, single: bool) -> str:
     source = f"data:image/svg+xml;base64,{data}"
     return (
         f'<figure{kind}><img alt="{escape(alternative)}" src="{source}">'
-        f"<figcaption>{escape(caption)}</figcaption></figure>"
+        f"<figcaption>{_words(caption)}</figcaption></figure>"
     )
 
 

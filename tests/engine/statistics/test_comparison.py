@@ -154,3 +154,14 @@ def test_latex_is_a_booktabs_table_of_escaped_words(group_of):
     assert r"50\,\% \& more & b\_2 & 0 & 0.008 & 0.008 & 0.00 & 0.00--0.00 \\" in text
     body = [line for line in text.splitlines() if line.endswith(r"\\")]
     assert {line.count(" & ") for line in body} == {6, 7}
+
+
+def test_tests_that_cannot_find_a_difference_are_said_to(group_of):
+    scores = {"a": [1.0, 2, 3, 4, 5], "b": [6.0, 7, 8, 9, 10]}
+    groups = named({name: group_of(values) for name, values in scores.items()})
+    many = compare(groups, ["qd_score", "qd_score@10", "qd_score@20", "qd_score@30", "best@10",
+                            "best@20", "best@30"], FEW)  # fmt: skip
+    least = min(pair.p for result in many.results for pair in result.pairs)
+    (caution,) = tables.document(many)["cautions"]
+    assert f"With these numbers of runs and 7 tests, no p can be below {least:.3f}" in caution
+    assert not tables.document(compare(groups, ["qd_score"], FEW))["cautions"]

@@ -7,7 +7,7 @@ import { count } from "../../ui/format";
 import { FileLink } from "../../ui/links";
 import { Card } from "../../ui/Page";
 import { type Column, Table } from "../../ui/Table";
-import { formatOf, intervalText, pairsOf, probability, summariesOf } from "./rows";
+import { capitalised, formatOf, intervalText, pairsOf, probability, summariesOf } from "./rows";
 import { text } from "./text";
 import "./statistics.css";
 
@@ -43,13 +43,17 @@ function Comparison(found: SweepStatistics) {
   return (
     <>
       <p class="small">{found.groups_in_words}</p>
-      <Table label={text.figures} columns={FIGURES} rows={summariesOf(found.measures)} keyOf={keyOf} />
-      {overall.length > 0 && (
-        <Table label={text.overall} columns={OVERALL} rows={overall} keyOf={({ measure }) => measure} />
-      )}
-      {pairs.length > 0 && (
-        <Table label={text.tests} kind="sweep-members" columns={PAIRS} rows={pairs} keyOf={keyOf} />
-      )}
+      <div class="statistics-tables">
+        <Table label={text.figures} columns={FIGURES} rows={summariesOf(found.measures)} keyOf={keyOf} />
+        <div>
+          {pairs.length > 0 && (
+            <Table label={text.tests} kind="sweep-members" columns={PAIRS} rows={pairs} keyOf={keyOf} />
+          )}
+          {overall.length > 0 && (
+            <Table label={text.overall} columns={OVERALL} rows={overall} keyOf={({ measure }) => measure} />
+          )}
+        </div>
+      </div>
       {[found.method, ...found.cautions].map((said) => (
         <p key={said} class="quiet small">
           {said}
@@ -86,7 +90,7 @@ const FIGURES: Column<Summary>[] = [
 ];
 
 const OVERALL: Column<MeasureStatistics>[] = [
-  { title: text.measure, cell: ({ title }) => title },
+  { title: text.measure, cell: ({ title }) => capitalised(title) },
   { title: text.statistic, cell: ({ overall }) => overall!.statistic.toFixed(2) },
   { title: text.plain, cell: ({ overall }) => probability(overall!.p) },
 ];

@@ -20,12 +20,14 @@ export const intervalText = (measure: MeasureStatistics, low: number | null, hig
 
 export const probability = (p: number) => (p < 0.001 ? text.under : p.toFixed(3));
 
+export const capitalised = (title: string) => title.charAt(0).toUpperCase() + title.slice(1);
+
 /** A row for each measure and group; the first of a measure names it. */
 export const summariesOf = (measures: MeasureStatistics[]) =>
   measures.flatMap((measure) =>
     measure.groups.map((group, i) => ({
       key: `${measure.measure} ${group.group}`,
-      named: i === 0 ? measure.title : "",
+      named: i === 0 ? capitalised(measure.title) : "",
       measure,
       group,
     })),
@@ -36,7 +38,7 @@ export const pairsOf = (measures: MeasureStatistics[]) =>
   measures.flatMap((measure) =>
     measure.pairs.map((pair, i) => ({
       key: `${measure.measure} ${pair.group} ${pair.other}`,
-      named: i === 0 ? measure.title : "",
+      named: i === 0 ? capitalised(measure.title) : "",
       pair,
     })),
   );

@@ -37,10 +37,10 @@ describe("statistics of a sweep", () => {
 
   it("names a measure in the first of its rows", () => {
     const measures = [measured("qd_score"), measured("best")];
-    expect(summariesOf(measures).map(({ named }) => named)).toEqual(["qd_score", "", "best", ""]);
+    expect(summariesOf(measures).map(({ named }) => named)).toEqual(["Qd_score", "", "Best", ""]);
     expect(pairsOf(measures).map(({ named, pair }) => [named, pair.other])).toEqual([
-      ["qd_score", "thick"],
-      ["best", "thick"],
+      ["Qd_score", "thick"],
+      ["Best", "thick"],
     ]);
     const keys = summariesOf(measures).map(({ key }) => key);
     expect(new Set(keys).size).toBe(keys.length);

@@ -11,7 +11,7 @@ export const text = {
   group: "Group",
   runs: "Runs",
   median: "Median",
-  middleMean: "Mean of the middle half",
+  middleMean: "IQM",
   first: "First",
   second: "Second",
   superiority: "A12",
