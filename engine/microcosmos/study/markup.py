@@ -11,7 +11,8 @@ STYLE = """
   --accent: #0b6b62 }
 * { box-sizing: border-box }
 body { margin: 0 auto; max-width: 60rem; padding: 2rem 1.25rem 4rem; color: var(--ink);
-  background: #fff; font: .9375rem/1.55 system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif;
+  background: #fff;
+  font: .9375rem/1.55 system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif;
   font-variant-numeric: tabular-nums }
 h1 { font-size: 1.7rem; line-height: 1.2; margin: 0 0 .5rem }
 h2 { font-size: 1.2rem; margin: 2.5rem 0 .5rem; border-top: 1px solid var(--line);
