@@ -50,6 +50,7 @@ from .shares.access import open_share
 from .specs import routes as experiments
 from .storage import mark
 from .sweeps import routes as sweeps
+from .sweeps import statistics_routes as sweep_statistics
 from .tables import migrations
 from .tank import routes as tank
 from .workers import routes as workers
@@ -62,6 +63,7 @@ ROUTES = (
         forks,
         deletion,
         sweeps,
+        sweep_statistics,
         details,
         archives,
         phylogenies,

@@ -8,12 +8,11 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from microcosmos.spec import Spec
+from microcosmos.spec import Spec, paths
 
 from ..core.errors import FieldError, field_errors, invalid_fields
 from ..runs.schemas import NAME_LENGTH
 from ..specs.parsing import Parse
-from . import fields
 
 MAX_ERRORS = 20
 
@@ -42,7 +41,7 @@ def cases_of(
         values = {path: asked[path][place] for path, place in at.items()}
         changed = document
         for path, value in values.items():
-            changed = fields.replaced(changed, path, value)
+            changed = paths.replaced(changed, path, value)
         try:
             cases.append(Case(values, at, parse(changed)))
         except ValidationError as error:
@@ -69,7 +68,7 @@ def _at_value(error: FieldError, values: dict[str, Any], places: dict[str, int])
 
 def related_paths(field: str, values: Mapping[str, Any]) -> list[str]:
     """Return the paths that lead to a field, into it, or to a part that contains it."""
-    return [path for path in values if fields.inside(field, path) or fields.inside(path, field)]
+    return [path for path in values if paths.inside(field, path) or paths.inside(path, field)]
 
 
 def _refuse_alike(cases: Sequence[Case]) -> None:

@@ -2,12 +2,13 @@
 
 from collections import Counter, defaultdict
 from collections.abc import Sequence
-from itertools import product
 from typing import Any
 from uuid import UUID
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
+
+from microcosmos.spec.paths import combinations
 
 from ..auth import tokens
 from ..tables import STATUSES, Run, Sweep
@@ -49,8 +50,3 @@ def _read(sweep: Sweep, all_runs: Sequence[Any], owner: str | None) -> SweepRead
         status_counts={status: counted[status] for status in STATUSES if counted[status]},
         progress=sum(shares) / len(shares) if shares else 1.0,
     )
-
-
-def combinations(grid: dict[str, list[Any]]) -> list[dict[str, Any]]:
-    """Return the values of each case, the last field fastest."""
-    return [dict(zip(grid, values, strict=True)) for values in product(*grid.values())]

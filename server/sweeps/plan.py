@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import ValidationError
 from sqlalchemy.orm import Session
 
-from microcosmos.spec import Spec
+from microcosmos.spec import Spec, paths
 from microcosmos.spec.creature import CreatureError
 
 from ..core.errors import (
@@ -22,7 +22,6 @@ from ..core.errors import (
 from ..creatures import initial
 from ..runs.submission import TOO_LARGE, too_large
 from ..specs.parsing import Parse
-from . import fields
 from .grid import MAX_ERRORS, Case, cases_of, combination, related_paths, relocated, run_name
 from .schemas import MAX_RUNS, SweepCreate
 
@@ -77,12 +76,12 @@ def _wrong_path(
 ) -> FieldError | None:
     if path in FIXED:
         return FieldError(field=f"grid.{path}", message=FIXED[path])
-    if not fields.exists(document, path):
-        near = fields.nearest(document, path)
+    if not paths.exists(document, path):
+        near = paths.nearest(document, path)
         meant = f"; did you mean `{near}`?" if near else ""
         message = f"the spec has no field `{path}`{meant}"
         return FieldError(field=f"grid.{path}", message=message, needed=near, got=path)
-    outer = next((one for one in asked if one != path and fields.inside(path, one)), None)
+    outer = next((one for one in asked if one != path and paths.inside(path, one)), None)
     if outer is not None:
         message = f"`{path}` lies in `{outer}`, which the grid replaces as a whole"
         return FieldError(field=f"grid.{path}", message=message)

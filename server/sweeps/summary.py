@@ -9,11 +9,12 @@ import numpy as np
 from sqlalchemy import case, select
 from sqlalchemy.orm import Session
 
+from microcosmos.spec.paths import combinations
+
 from ..runs.curves import numbers, thinned
 from ..runs.lifecycle import NOT_IN_BIN
 from ..runs.overview import faces_of
 from ..tables import CANCELLED, CORRECTED, FAILED, FINISHED, Generation, Run, Sweep
-from .overview import combinations
 from .schemas import (
     CaseSummary,
     Final,

@@ -89,3 +89,25 @@ def test_a_sweep_is_renamed_deleted_and_restored(page, idle):
     page.get_by_role("button", name="Restore").click()
     expect(states).to_have_text("2 cancelled")
     expect(page.get_by_text("All runs are in the bin.")).to_have_count(0)
+
+
+def test_statistics_of_a_finished_sweep_are_shown_and_downloaded(page, idle, complaints):
+    asked = {"spec": TINY, "seeds": 5, "grid": {"world.viscosity": [0.05, 0.1, 0.2]}}
+    sweep = idle.product.http.post("/api/v1/sweeps", json=asked).json()
+    for number, case in enumerate(sweep["cases"], 1):
+        for seed, run in enumerate(case["runs"]):
+            level = 10.0 * number + seed
+            compute(idle.services, run, [level / 2, level])
+    page.goto(f"{idle.product.url}/sweeps/{sweep['id']}")
+    card = page.get_by_role("region", name="Statistics", exact=True)
+    figures = card.get_by_role("region", name="Figures of the groups").get_by_role("row").nth(1)
+    expect(figures).to_contain_text("QD score")
+    expect(figures).to_contain_text("11 to 13")
+    pair = card.get_by_role("region", name="Tests between pairs of groups").get_by_role("row")
+    expect(pair.nth(2)).to_contain_text("viscosity 0.05")
+    expect(pair.nth(2)).to_contain_text("viscosity 0.2")
+    expect(pair.nth(2)).to_contain_text("0.00")
+    expect(card).to_contain_text("p after Holm’s correction for 9 tests")
+    with page.expect_download() as download:
+        card.get_by_role("link", name="statistics.csv").click()
+    assert download.value.path().read_text().startswith("table,measure,group")

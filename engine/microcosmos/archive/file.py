@@ -1,7 +1,7 @@
 """HDF5 files as bytes: nested arrays and attributes, the same content giving the same bytes."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from typing import Any
@@ -35,13 +35,15 @@ def dump(tree: Mapping[str, Any], attributes: Mapping[str, str]) -> bytes:
         return file.id.get_file_image()
 
 
-def load(data: bytes, wanted: str = FORMAT) -> tuple[Tree, Tree]:
-    """Return the arrays and attributes of our file. Raises `ValueError` for any other format
-    than the wanted one."""
+def load(
+    data: bytes, wanted: str = FORMAT, only: Sequence[str] | None = None
+) -> tuple[Tree, Tree]:
+    """Return the arrays and attributes of our file; `only` names the groups to read. Raises
+    `ValueError` for any other format than the wanted one."""
     try:
         with h5py.File(BytesIO(data), "r") as file:
             attributes = Tree({n: bytes(x).decode() for n, x in file.attrs.items()})
-            tree = _read(file)
+            tree = _read(file, only)
     except OSError as error:
         raise ValueError(f"an archive file must be HDF5: {error}") from error
     if attributes.get("format") != wanted:
@@ -57,8 +59,8 @@ def _write(group: h5py.Group, tree: Mapping[str, Any]) -> None:
             group.create_dataset(name, data=np.asarray(tree[name]), track_times=False)
 
 
-def _read(group: h5py.Group) -> Tree:
-    items = group.items()
+def _read(group: h5py.Group, only: Sequence[str] | None = None) -> Tree:
+    items = [(n, x) for n, x in group.items() if only is None or n in only]
     return Tree({n: _read(x) if isinstance(x, h5py.Group) else x[()] for n, x in items})
 
 

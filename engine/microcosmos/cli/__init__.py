@@ -3,9 +3,11 @@
 from . import (
     archive,
     cluster,
+    compare,
     creature,
     doctor,
     draw,
+    draw_groups,
     manage,
     modules,
     monitor,
@@ -13,5 +15,6 @@ from . import (
     reproject,
     run,
     sharing,
+    study,
 )
 from .app import app

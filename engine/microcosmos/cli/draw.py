@@ -52,7 +52,7 @@ Axes = Annotated[
 
 
 @contextmanager
-def _printed(
+def printed(
     width: Annotated[
         str, Option(help="single (85 mm), double (178 mm), or a width such as 120mm or 3.5in.")
     ] = "single",
@@ -96,7 +96,7 @@ def of_file(
 
 
 @figures.command()
-@with_options(_printed)
+@with_options(printed)
 def archive(
     options: drawing.Print,
     file: File,
@@ -105,26 +105,13 @@ def archive(
     colour: Annotated[str, Option(help="fitness, or a measure.")] = "fitness",
 ) -> None:
     """Draw the map of an archive: bins, or the cells of a tessellation."""
-    _print(drawing.archive(file, _beside(file, out, "archive"), options, _names(axes), colour))
+    show_paths(
+        drawing.archive(file, _beside(file, out, "archive"), options, names_in(axes), colour)
+    )
 
 
 @figures.command()
-@with_options(_printed, omit="palette", width="double")
-def curves(
-    options: drawing.Print,
-    files: Files,
-    shown: Annotated[
-        str, Option(help="Some of qd_score, coverage, best, mean, evaluations …, with commas.")
-    ] = "best,coverage,qd_score",
-    against: Annotated[str, Option(help="evaluations or generations.")] = "evaluations",
-) -> None:
-    """Draw the curves of runs: the median and a band over the seeds of each spec."""
-    given, out = _split(files)
-    _print(drawing.progress(given, out, options, _names(shown) or [], against))
-
-
-@figures.command()
-@with_options(_printed, width="double")
+@with_options(printed, width="double")
 def sheet(
     options: drawing.Print,
     file: File,
@@ -143,12 +130,12 @@ def sheet(
     prepare_engine(module)
     with Progress(console=console, transient=True) as bar:
         task = bar.add_task("simulating elites", total=None)
-        _print(
+        show_paths(
             drawing.contact(
                 file,
                 _beside(file, out, "sheet"),
                 options,
-                _names(axes),
+                names_in(axes),
                 (columns, rows),
                 moments,
                 lambda done, of: bar.update(task, completed=done, total=of),
@@ -158,7 +145,7 @@ def sheet(
 
 
 @figures.command()
-@with_options(_printed, width="double")
+@with_options(printed, width="double")
 def kinds(
     options: drawing.Print,
     files: Files,
@@ -166,12 +153,12 @@ def kinds(
     moments: Annotated[int, Option(min=2, max=32, help="Number of moments of a stroke.")] = 8,
 ) -> None:
     """Draw film strips of the kinds of motion in runs of one spec, the fittest first."""
-    given, out = _split(files)
-    _print(drawing.kinds(given, out, options, limit, moments))
+    given, out = split(files)
+    show_paths(drawing.kinds(given, out, options, limit, moments))
 
 
 @figures.command()
-@with_options(_printed, width="double")
+@with_options(printed, width="double")
 def lineage(
     options: drawing.Print,
     file: File,
@@ -182,10 +169,10 @@ def lineage(
     ] = None,
 ) -> None:
     """Draw the pedigree of an archive's elites, and the ancestors of one of them."""
-    _print(drawing.tree(file, _beside(file, out, "lineage"), options, cell))
+    show_paths(drawing.tree(file, _beside(file, out, "lineage"), options, cell))
 
 
-def _split(files: Sequence[Path]) -> tuple[list[Path], Path]:
+def split(files: Sequence[Path]) -> tuple[list[Path], Path]:
     """Return the files to read, and the one to write."""
     *given, out = files
     if not given:
@@ -195,7 +182,7 @@ def _split(files: Sequence[Path]) -> tuple[list[Path], Path]:
     return given, out
 
 
-def _print(written: list[Path]) -> None:
+def show_paths(written: list[Path]) -> None:
     for path in written:
         print(path)
 
@@ -204,7 +191,7 @@ def _beside(file: Path, out: Path | None, name: str) -> Path:
     return out or file.with_suffix(f".{name}.pdf")
 
 
-def _names(text: str | None) -> list[str] | None:
+def names_in(text: str | None) -> list[str] | None:
     return [name.strip() for name in text.split(",") if name.strip()] if text else None
 
 

@@ -8,7 +8,8 @@ from typing import Any
 import typer
 
 from ..client import shared
-from ..spec import EXPERIMENTS, Evolution, Spec, parse
+from ..spec import Evolution, Spec, parse
+from ..spec.experiments import presets
 from .app import fail, failing
 
 
@@ -44,12 +45,6 @@ def changed(spec: Spec, settings: Sequence[str], option: str = "--set") -> Spec:
     """Return the spec with some fields set."""
     with failing(option):
         return parse(applied(spec.model_dump(mode="json"), settings)) if settings else spec
-
-
-def presets() -> dict[str, Spec]:
-    """Return presets by experiment and name, those of quality-diversity also by name alone."""
-    named = {f"{e.name}/{p.name}": p.spec for e in EXPERIMENTS.values() for p in e.presets}
-    return {p.name: p.spec for p in EXPERIMENTS["quality-diversity"].presets} | named
 
 
 def value(text: str) -> Any:

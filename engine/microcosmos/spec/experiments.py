@@ -59,6 +59,12 @@ _ALL = (
 EXPERIMENTS = {one.name: one for one in (_experiment(*parts) for parts in _ALL)}
 
 
+def presets() -> dict[str, Spec]:
+    """Return presets by experiment and name, those of quality-diversity also by name alone."""
+    named = {f"{e.name}/{p.name}": p.spec for e in EXPERIMENTS.values() for p in e.presets}
+    return {p.name: p.spec for p in EXPERIMENTS["quality-diversity"].presets} | named
+
+
 def parse(document: Mapping[str, Any], known: Catalogue | None = None) -> Spec:
     """Return the spec in a document that names its `experiment`.
 

@@ -152,6 +152,8 @@ export const readSweepSummary = (id: string, points: number) =>
   typed<wire.SweepSummary>(client.GET("/sweeps/{sweep_id}/summary", sweep(id, { points })));
 export const readSweepCurves = (id: string, points: number) =>
   success(client.GET("/sweeps/{sweep_id}/curves", sweep(id, { points })));
+export const readSweepStatistics = (id: string, measures: string) =>
+  typed<wire.SweepStatistics>(client.GET("/sweeps/{sweep_id}/statistics", sweep(id, { measures })));
 export const estimateSweep = (request: wire.SweepRequest) =>
   success(client.POST("/sweeps/estimate", { body: request as never }));
 export const createSweep = (request: wire.SweepRequest, key: string) =>

@@ -50,6 +50,9 @@ export const archiveUrl = (id: string, kind: "h5" | "csv") => `${ROOT}/runs/${id
 export const resultsUrl = (id: string) => `${ROOT}/runs/${id}/results.csv`;
 /** With the spec, all that repeats a run with chosen creatures. */
 export const choicesUrl = (id: string) => `${ROOT}/runs/${id}/choices.json`;
+/** The statistics of a sweep, compared by `measures`. */
+export const statisticsUrl = (id: string, kind: "csv" | "tex", measures: string) =>
+  `${ROOT}/sweeps/${id}/statistics.${kind}?${new URLSearchParams({ measures })}`;
 export type PhylogenyFile = "csv" | "nwk";
 /** `of` is the path of a run or a creature. */
 export const phylogenyUrl = (of: string, kind: PhylogenyFile) => `${ROOT}${of}/phylogeny.${kind}`;

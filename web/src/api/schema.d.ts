@@ -1554,6 +1554,70 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/sweeps/{sweep_id}/statistics": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Statistics
+         * @description Compare the cases of a sweep whose runs are finished: quartiles, rank tests with Holm's
+         *     correction, and effect sizes with bootstrap intervals.
+         *
+         *     `measures` are curves (`qd_score`), curves after evaluations (`qd_score@6400`) or the
+         *     evaluations to a value (`best>=0.5`), separated by commas.
+         */
+        get: operations["read_statistics_api_v1_sweeps__sweep_id__statistics_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps/{sweep_id}/statistics.csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Statistics Csv
+         * @description Return the same comparison as CSV.
+         */
+        get: operations["read_statistics_csv_api_v1_sweeps__sweep_id__statistics_csv_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sweeps/{sweep_id}/statistics.tex": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Statistics Tex
+         * @description Return the same comparison as LaTeX.
+         */
+        get: operations["read_statistics_tex_api_v1_sweeps__sweep_id__statistics_tex_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sweeps/{sweep_id}/summary": {
         parameters: {
             query?: never;
@@ -1957,6 +2021,18 @@ export interface components {
             creatures: string[];
         };
         /**
+         * ComparedGroup
+         * @description The finished runs of a case.
+         */
+        ComparedGroup: {
+            /** N */
+            n: number;
+            /** Name */
+            name: string;
+            /** Runs */
+            runs: components["schemas"]["GroupRun"][];
+        };
+        /**
          * Comparison
          * @description A recorded figure and the same one measured here; None if it is not finite.
          */
@@ -2209,6 +2285,40 @@ export interface components {
             /** Uuid */
             uuid: string;
         };
+        /**
+         * GroupFigures
+         * @description One measure of a group; None where a run does not reach the value.
+         */
+        GroupFigures: {
+            /** Group */
+            group: string;
+            /** High */
+            high: number | null;
+            /** Iqm */
+            iqm: number | null;
+            /** Iqm High */
+            iqm_high: number | null;
+            /** Iqm Low */
+            iqm_low: number | null;
+            /** Low */
+            low: number | null;
+            /** Median */
+            median: number | null;
+            /** N */
+            n: number;
+            /** Values */
+            values: (number | null)[];
+        };
+        /** GroupRun */
+        GroupRun: {
+            /**
+             * Run
+             * Format: uuid
+             */
+            run: string;
+            /** Seed */
+            seed: number;
+        };
         /** Health */
         Health: {
             /** Help */
@@ -2314,6 +2424,20 @@ export interface components {
             /** Unit */
             unit: string;
         };
+        /** MeasureStatistics */
+        MeasureStatistics: {
+            /** Groups */
+            groups: components["schemas"]["GroupFigures"][];
+            /** Less Is Better */
+            less_is_better: boolean;
+            /** Measure */
+            measure: string;
+            overall: components["schemas"]["RankTest"] | null;
+            /** Pairs */
+            pairs: components["schemas"]["PairTest"][];
+            /** Title */
+            title: string;
+        };
         /**
          * MeasuredSpeed
          * @description Speed of earlier runs of the same kind on a device of a live worker.
@@ -2364,6 +2488,30 @@ export interface components {
             };
             /** Width */
             width: number;
+        };
+        /**
+         * PairTest
+         * @description Two groups beside each other.
+         */
+        PairTest: {
+            /** A12 */
+            a12: number;
+            /** A12 High */
+            a12_high: number;
+            /** A12 Low */
+            a12_low: number;
+            /** Group */
+            group: string;
+            /** Other */
+            other: string;
+            /** P */
+            p: number;
+            /** P Holm */
+            p_holm: number;
+            /** Statistic */
+            statistic: number;
+            /** Test */
+            test: string;
         };
         /** PictureRead */
         PictureRead: {
@@ -2603,6 +2751,15 @@ export interface components {
             max_queued?: number | null;
             /** Max Running */
             max_running?: number | null;
+        };
+        /** RankTest */
+        RankTest: {
+            /** P */
+            p: number;
+            /** Statistic */
+            statistic: number;
+            /** Test */
+            test: string;
         };
         /** Readiness */
         Readiness: {
@@ -3268,6 +3425,23 @@ export interface components {
              * @enum {string}
              */
             status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
+        };
+        /** SweepStatistics */
+        SweepStatistics: {
+            /** Cautions */
+            cautions: string[];
+            /** Groups */
+            groups: components["schemas"]["ComparedGroup"][];
+            /** Groups In Words */
+            groups_in_words: string;
+            /** Measures */
+            measures: components["schemas"]["MeasureStatistics"][];
+            /** Method */
+            method: string;
+            /** Refusal */
+            refusal: string | null;
+            /** Tests */
+            tests: number;
         };
         /** SweepSummary */
         SweepSummary: {
@@ -6661,6 +6835,154 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["SweepChanged"];
                 };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_statistics_api_v1_sweeps__sweep_id__statistics_get: {
+        parameters: {
+            query?: {
+                measures?: string;
+            };
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepStatistics"];
+                };
+            };
+            /** @description Unchanged */
+            304: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_statistics_csv_api_v1_sweeps__sweep_id__statistics_csv_get: {
+        parameters: {
+            query?: {
+                measures?: string;
+            };
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_statistics_tex_api_v1_sweeps__sweep_id__statistics_tex_get: {
+        parameters: {
+            query?: {
+                measures?: string;
+            };
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/x-tex": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description A problem (RFC 9457) */
             default: {

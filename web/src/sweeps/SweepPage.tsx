@@ -24,7 +24,13 @@ import { MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
 import { CurveBar, QueryCheck } from "../charts/curves/CurveOptions";
 import { CaseCreatures } from "./CaseCreatures";
 import { Cases, Finals, Members } from "./CaseTables";
+import { lazy } from "../ui/lazy";
 import { text } from "./text";
+
+const StatisticsCard = lazy(
+  async () => (await import("./statistics/StatisticsCard")).StatisticsCard,
+  "section",
+);
 
 export function SweepPage({ id, query }: { id: string; query: URLSearchParams }) {
   const each = query.get("each") === "1";
@@ -61,10 +67,19 @@ function LoadedSweep({ value, query, each }: { value: SweepDetail; query: URLSea
       </Card>
       <CaseCreatures shown={shown} />
       <Finals cases={cases} generation={summary.generation} />
+      {mayCompare(sweep) && <StatisticsCard id={sweep.id} corrected={hasCorrected(summary.cases)} />}
       <Members cases={cases} />
     </>
   );
 }
+
+/** Statistics need archives of finished runs. */
+function mayCompare({ spec, status_counts }: Sweep): boolean {
+  const { queued = 0, running = 0, paused = 0, finished = 0 } = status_counts;
+  return "search" in spec && finished > 0 && queued + running + paused === 0;
+}
+
+const hasCorrected = (cases: CaseSummary[]) => cases.every(({ finals }) => "corrected_qd_score" in finals);
 
 const shownOf = (summary: CaseSummary, caseIndex: number): ShownCase => ({
   summary,

@@ -8,7 +8,7 @@ import numpy as np
 from ...archive.export import unit as place_on
 from ...spec import Descriptor
 from ...spec.measures import MEASURES
-from .reading import Archive
+from .reading import Archive, Described, plugins_of
 
 BINS = 24
 """Bins of an axis that is not a grid's, as on the page."""
@@ -43,15 +43,15 @@ class Axis:
         return self.values(np.linspace(0, 1, self.bins + 1))
 
 
-def label(archive: Archive, name: str) -> str:
+def label(archive: Described, name: str) -> str:
     """Return the title and unit of a measure; a plug-in declares its own."""
-    known = archive.plugins.get(name) or MEASURES.get(name)
+    known = plugins_of(archive.spec).get(name) or MEASURES.get(name)
     if known is None:
         return name.replace("_", " ").capitalize()
     return known.title + (f" [{known.unit}]" if known.unit else "")
 
 
-def fitness_label(archive: Archive) -> str:
+def fitness_label(archive: Described) -> str:
     task = archive.spec.task
     if task.fitness == "displacement+energy":
         return f"Displacement + {task.energy_weight:g} × energy [cells]"

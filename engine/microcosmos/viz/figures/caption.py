@@ -10,7 +10,7 @@ from ...spec.body import GrownBody, PluginBody, SwimmerBody, shape
 from ...spec.emitters import PopulationEmitter
 from .axes import Axis, chosen
 from .groups import Group
-from .reading import Archive, Search
+from .reading import Archive, Described, Search
 from .sheet import Layout, Motion
 from .strips import Strip
 
@@ -109,7 +109,7 @@ def of_lineage(found: Archive, cell: int | None, ancestors: int) -> str:
     return " ".join([first, run(found)])
 
 
-def run(found: Archive, seeds: Sequence[int] | None = None) -> str:
+def run(found: Described, seeds: Sequence[int] | None = None) -> str:
     """Return the spec and the machine, in three sentences."""
     spec = found.spec
     seeds = [spec.seed] if seeds is None else seeds

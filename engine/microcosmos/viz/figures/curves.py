@@ -7,6 +7,7 @@ import numpy as np
 
 from .axes import fitness_label
 from .groups import Group, spread
+from .reading import Described
 from .style import COLOURS, GREY, blank, lettered
 
 SHOWN = ("best", "coverage", "qd_score")
@@ -80,7 +81,11 @@ def _dress(panel: Any, name: str, against: str, groups: Sequence[Group]) -> None
     from matplotlib.ticker import FuncFormatter, MaxNLocator
 
     along = "Generation" if against == "generations" else "Evaluations"
-    panel.set(xlabel=along, ylabel=_label(name, groups), xlim=(0, None))
+    panel.set(
+        xlabel=along,
+        ylabel=curve_label(name, [run for one in groups for run in one.runs]),
+        xlim=(0, None),
+    )
     panel.xaxis.set_major_locator(MaxNLocator(4, integer=True))
     panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:,.0f}"))
     panel.set_axisbelow(True)
@@ -88,8 +93,9 @@ def _dress(panel: Any, name: str, against: str, groups: Sequence[Group]) -> None
     panel.spines[["top", "right"]].set_visible(False)
 
 
-def _label(name: str, groups: Sequence[Group]) -> str:
-    labels = {fitness_label(run) for group in groups for run in group.runs}
+def curve_label(name: str, runs: Sequence[Described]) -> str:
+    """Return the title of a curve with the unit of fitness, if runs have one."""
+    labels = {fitness_label(run) for run in runs}
     fitness = labels.pop() if len(labels) == 1 else "Fitness"
     title, _, unit = fitness.partition(" [")
     unit = f" [{unit}" if unit else ""

@@ -3,12 +3,16 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from . import caption, curves, groups, lineage, maps, saving, sheet, strips
 from .lineage import family
-from .reading import Archive, read
+from .reading import Archive, Described, read
 from .style import millimetres, styled
 from .verdicts import verdicts
+
+if TYPE_CHECKING:
+    from ...statistics import Aggregates, Comparison
 
 
 @dataclass(frozen=True)
@@ -42,15 +46,48 @@ def archive(
 
 
 def progress(
-    files: Sequence[Path], out: Path, options: Print, shown: Sequence[str], against: str
+    found: Sequence[groups.Group],
+    out: Path,
+    options: Print,
+    shown: Sequence[str],
+    against: str,
 ) -> list[Path]:
-    """Draw the curves of one run or several."""
+    """Draw the curves of groups of runs."""
     saving.kind(out)
-    found = groups.grouped([open_archive(file) for file in files])
     with styled():
         width = millimetres(options.width)
         figure = curves.curves(found, shown=shown, against=against, width=width)
         return options.publish(figure, out, caption.of_curves(found, shown))
+
+
+def boxes(found: "Comparison", out: Path, options: Print) -> list[Path]:
+    """Draw every run of compared groups, with medians and quartiles."""
+    from . import compared, compared_caption  # Load SciPy.
+
+    saving.kind(out)
+    with styled():
+        figure = compared.boxes(found, width=millimetres(options.width))
+        return options.publish(figure, out, compared_caption.of_boxes(found))
+
+
+def parameter(found: "Comparison", path: str, out: Path, options: Print) -> list[Path]:
+    """Draw measures of compared groups against a field of their specs."""
+    from . import compared, compared_caption  # Load SciPy.
+
+    saving.kind(out)
+    with styled():
+        figure = compared.parameter(found, path, width=millimetres(options.width))
+        return options.publish(figure, out, compared_caption.of_parameter(found, path))
+
+
+def profiles(found: "Aggregates", first: Described, out: Path, options: Print) -> list[Path]:
+    """Draw performance profiles over tasks; `first` is a run whose spec the caption states."""
+    from . import compared, compared_caption  # Load SciPy.
+
+    saving.kind(out)
+    with styled():
+        figure = compared.profiles(found, width=millimetres(options.width))
+        return options.publish(figure, out, compared_caption.of_profiles(found, first))
 
 
 def contact(

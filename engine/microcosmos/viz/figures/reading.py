@@ -3,7 +3,7 @@
 import json
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -13,6 +13,25 @@ from ...spec import Descriptor, Neuroevolution, PluginVersion, QualityDiversity,
 
 Search = QualityDiversity | Neuroevolution
 """The specs whose runs fill an archive."""
+
+
+class Described(Protocol):
+    """A run as captions and labels need it: an archive, or a run's record of statistics."""
+
+    @property
+    def spec(self) -> Any: ...
+    @property
+    def curves(self) -> Any: ...
+    @property
+    def version(self) -> str: ...
+    @property
+    def devices(self) -> tuple[str, ...]: ...
+
+
+def plugins_of(spec: Search) -> dict[str, PluginVersion]:
+    """Return versions of the plug-ins among the measures, by name."""
+    task = spec.task
+    return spec.archive.plugins | ({task.fitness: task.plugin} if task.plugin else {})
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,12 +63,6 @@ class Archive:
     def pool(self) -> bool:
         """Whether a container numbers the places of elites, instead of cells."""
         return self.spec.archive.container is not None
-
-    @property
-    def plugins(self) -> dict[str, PluginVersion]:
-        """Versions of the plug-ins among the measures, by name."""
-        task = self.spec.task
-        return self.spec.archive.plugins | ({task.fitness: task.plugin} if task.plugin else {})
 
     @property
     def best(self) -> int:

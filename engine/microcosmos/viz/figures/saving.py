@@ -6,6 +6,7 @@ from textwrap import wrap
 from typing import Any
 
 from ...archive.atomic import write_whole
+from ...latex import latex
 from ...optional import require
 from .style import INCH
 
@@ -70,35 +71,3 @@ def below(figure: Any, caption: str) -> None:
     lines = wrap(caption, int(width * INCH / LETTER))
     figure.set_size_inches(width, height + (len(lines) + 1) * LINE / INCH)
     figure.supxlabel("\n".join(lines), x=0.01, ha="left", fontsize=6, linespacing=1.3)
-
-
-THIN = "\u202f"
-"""A narrow space."""
-
-ESCAPES = {
-    THIN: r"\,",
-    "\\": r"\textbackslash{}",
-    "{": r"\{",
-    "}": r"\}",
-    "%": r"\%",
-    "&": r"\&",
-    "#": r"\#",
-    "$": r"\$",
-    "_": r"\_",
-    "~": r"\textasciitilde{}",
-    "^": r"\textasciicircum{}",
-    "²": r"$^2$",
-    "³": r"$^3$",
-    "×": r"$\times$",
-    "·": r"$\cdot$",
-    "ν": r"$\nu$",
-    "−": r"$-$",
-    "…": r"\ldots{}",
-    "’": "'",
-}
-
-
-def latex(text: str) -> str:
-    """Return the text for LaTeX: special letters escaped, others as UTF-8."""
-    text = text.replace(" %", THIN + "%")
-    return "".join(ESCAPES.get(letter, letter) for letter in text)

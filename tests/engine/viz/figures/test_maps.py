@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scipy.spatial import KDTree
 
+from microcosmos.latex import latex
 from microcosmos.viz.figures import caption, maps, saving, style
 from microcosmos.viz.figures.axes import chosen, fitness_label
 from microcosmos.viz.figures.maps import borders, cells
-from microcosmos.viz.figures.saving import latex
 
 pytestmark = pytest.mark.long
 

@@ -1,7 +1,8 @@
-"""Fields of a spec by dotted path: test, replace, and find the nearest."""
+"""Fields of a spec by dotted path: test, replace, find the nearest, and combine values."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from difflib import get_close_matches
+from itertools import product
 from typing import Any
 
 SIMILARITY = 0.4
@@ -61,3 +62,8 @@ def nearest(document: Any, path: str) -> str | None:
 
 def inside(path: str, other: str) -> bool:
     return f"{path}.".startswith(f"{other}.")
+
+
+def combinations(grid: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
+    """Return the values of each case of a sweep, the last field fastest."""
+    return [dict(zip(grid, values, strict=True)) for values in product(*grid.values())]

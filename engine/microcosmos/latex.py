@@ -1,0 +1,32 @@
+"""Text for LaTeX."""
+
+THIN = "\u202f"
+"""A narrow space."""
+
+ESCAPES = {
+    THIN: r"\,",
+    "\\": r"\textbackslash{}",
+    "{": r"\{",
+    "}": r"\}",
+    "%": r"\%",
+    "&": r"\&",
+    "#": r"\#",
+    "$": r"\$",
+    "_": r"\_",
+    "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}",
+    "²": r"$^2$",
+    "³": r"$^3$",
+    "×": r"$\times$",
+    "·": r"$\cdot$",
+    "ν": r"$\nu$",
+    "−": r"$-$",
+    "…": r"\ldots{}",
+    "’": "'",
+}
+
+
+def latex(text: str) -> str:
+    """Return the text for LaTeX: special letters escaped, others as UTF-8."""
+    text = text.replace(" %", THIN + "%")
+    return "".join(ESCAPES.get(letter, letter) for letter in text)

@@ -1,0 +1,215 @@
+"""Aggregates over several tasks, as rliable has them: the interquartile mean, the probability
+of improvement, and performance profiles.
+
+Agarwal, Schwarzer, Castro, Courville and Bellemare, NeurIPS 2021, arXiv:2108.13264.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from .comparison import FEWEST
+from .effects import Bootstrap, middle_mean, superiority
+from .groups import Group, refuse_wrong
+from .measures import Measure
+from .records import RunRecord
+
+POINTS = 101
+"""Scores at which a performance profile is drawn."""
+
+
+@dataclass(frozen=True)
+class Aggregate:
+    """A group over all tasks; scores are relative to the first group's median of the task."""
+
+    group: str
+    runs: int
+    middle_mean: float
+    interval: tuple[float, float] | None
+    """95 % stratified bootstrap interval; None with fewer than five runs of a task."""
+    profile: tuple[float, ...]
+    """Share of runs with a greater score, at each of the aggregates' `scores`."""
+    band: tuple[tuple[float, ...], tuple[float, ...]] | None
+    """95 % stratified bootstrap interval of the profile."""
+
+
+@dataclass(frozen=True)
+class Improvement:
+    """The probability that a run of the first group is greater, mean over tasks."""
+
+    first: str
+    second: str
+    probability: float
+    interval: tuple[float, float] | None
+
+
+@dataclass(frozen=True)
+class Aggregates:
+    measure: Measure
+    tasks: tuple[dict[str, Any], ...]
+    """The values of the tasks' fields."""
+    groups: tuple[Aggregate, ...]
+    improvements: tuple[Improvement, ...]
+    scores: tuple[float, ...]
+    refusal: str
+    bootstrap: Bootstrap
+
+
+def across(
+    groups: Sequence[Group],
+    measure: Measure | str,
+    tasks: Sequence[str],
+    bootstrap: Bootstrap | None = None,
+) -> Aggregates:
+    """Aggregate groups over tasks, which are the values of some fields of the spec.
+
+    Raises `ValueError` as `compare` does, and where a group lacks a task or has unequal numbers
+    of runs, or where the median by which scores are divided is not above 0.
+    """
+    refuse_wrong(groups, tasks)
+    bootstrap = bootstrap or Bootstrap()
+    measure = Measure.parse(measure) if isinstance(measure, str) else measure
+    if measure.reaches is not None:
+        raise ValueError(f"aggregates need the value of a curve, got {measure.text!r}")
+    split = [_by_task(group, tasks) for group in groups]
+    _refuse_unequal(groups, split, measure)
+    keys = list(split[0])
+    scores = _scores(split, keys, measure)
+    refusal = _too_few(groups, split)
+    most = max(float(np.max(one)) for group in scores for one in group)
+    along = np.linspace(0.0, most, POINTS)
+    aggregates = tuple(
+        _aggregate(group.name, one, along, not refusal, bootstrap)
+        for group, one in zip(groups, scores, strict=True)
+    )
+    improvements = tuple(
+        _improvement(
+            (groups[i].name, scores[i]), (groups[j].name, scores[j]), not refusal, bootstrap
+        )
+        for i, j in combinations(range(len(groups)), 2)
+    )
+    named = tuple(dict(zip(tasks, values, strict=True)) for values in keys)
+    points = tuple(along.tolist())
+    return Aggregates(measure, named, aggregates, improvements, points, refusal, bootstrap)
+
+
+Split = Mapping[tuple, list[RunRecord]]
+
+
+def _by_task(group: Group, tasks: Sequence[str]) -> Split:
+    found: dict[tuple, list[RunRecord]] = {}
+    for run in group.runs:
+        missing = [path for path in tasks if path not in run.fields]
+        if missing:
+            raise ValueError(f"{run.name}: the spec has no field `{missing[0]}` for tasks")
+        found.setdefault(tuple(run.fields[path] for path in tasks), []).append(run)
+    return found
+
+
+def _refuse_unequal(groups: Sequence[Group], split: Sequence[Split], measure: Measure) -> None:
+    first = split[0]
+    for group, one in zip(groups, split, strict=True):
+        if set(one) != set(first):
+            raise ValueError(
+                f"every group needs the same tasks, got {sorted(map(str, first))} in "
+                f"{groups[0].name!r} and {sorted(map(str, one))} in {group.name!r}"
+            )
+        if len({len(runs) for runs in one.values()}) > 1:
+            counts = ", ".join(str(len(runs)) for runs in one.values())
+            raise ValueError(
+                f"group {group.name!r} needs as many runs of every task, got {counts}"
+            )
+    if measure.at is not None:
+        return
+    for task in first:
+        ends = {int(run.evaluations[-1]) for one in split for run in one[task]}
+        if len(ends) > 1:
+            raise ValueError(
+                f"`{measure.text}` needs runs with equal evaluations in a task, got "
+                f"{min(ends):,} and {max(ends):,}; compare at {measure.curve}@{min(ends)}"
+            )
+
+
+def _scores(
+    split: Sequence[Split], keys: Sequence[tuple], measure: Measure
+) -> list[list[np.ndarray]]:
+    """Return scores by group, task and run, relative to the first group's median."""
+    raw = [[np.array([measure.of(run) for run in one[key]]) for key in keys] for one in split]
+    scales = [float(np.median(values)) for values in raw[0]]
+    if wrong := [scale for scale in scales if scale <= 0]:
+        raise ValueError(
+            "scores are relative to the first group's median of each task, which must be "
+            f"above 0, got {wrong[0]:g}"
+        )
+    return [[x / s for x, s in zip(one, scales, strict=True)] for one in raw]
+
+
+def _too_few(groups: Sequence[Group], split: Sequence[Split]) -> str:
+    counts = {
+        group.name: len(next(iter(one.values())))
+        for group, one in zip(groups, split, strict=True)
+    }
+    short = [f"{n} in {name!r}" for name, n in counts.items() if n < FEWEST]
+    if not short:
+        return ""
+    return f"Intervals need at least {FEWEST} seeds of each task, got {', '.join(short)}."
+
+
+def _aggregate(
+    name: str,
+    scores: Sequence[np.ndarray],
+    along: np.ndarray,
+    tested: bool,
+    bootstrap: Bootstrap,
+) -> Aggregate:
+    profile = _profile(along)(*scores)
+    return Aggregate(
+        group=name,
+        runs=sum(map(len, scores)),
+        middle_mean=float(middle_mean(*scores)),
+        interval=bootstrap.interval(scores, middle_mean) if tested else None,
+        profile=tuple(profile.tolist()),
+        band=_band(scores, along, bootstrap) if tested else None,
+    )
+
+
+def _profile(along: np.ndarray) -> Callable[..., np.ndarray]:
+    def share(*samples: np.ndarray, axis: int = -1) -> np.ndarray:
+        together = np.concatenate(samples, axis=axis)
+        return np.stack([(together > score).mean(axis) for score in along])
+
+    return share
+
+
+def _band(
+    scores: Sequence[np.ndarray], along: np.ndarray, bootstrap: Bootstrap
+) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Return pointwise intervals of the profile: each task's runs are drawn again."""
+    rng = np.random.default_rng(bootstrap.seed)
+    drawn = [
+        one[rng.integers(len(one), size=(bootstrap.resamples, len(one)))] for one in scores
+    ]
+    shares = _profile(along)(*drawn)
+    low, high = np.quantile(shares, (0.025, 0.975), axis=1)
+    return tuple(low.tolist()), tuple(high.tolist())
+
+
+def _improvement(
+    first: tuple[str, Sequence[np.ndarray]],
+    second: tuple[str, Sequence[np.ndarray]],
+    tested: bool,
+    bootstrap: Bootstrap,
+) -> Improvement:
+    (name, ours), (other, theirs) = first, second
+    tasks = len(ours)
+
+    def mean(*samples: np.ndarray, axis: int = -1) -> np.ndarray:
+        pairs = zip(samples[:tasks], samples[tasks:], strict=True)
+        return np.mean([superiority(x, y, axis) for x, y in pairs], axis=0)
+
+    samples = [*ours, *theirs]
+    interval = bootstrap.interval(samples, mean) if tested else None
+    return Improvement(name, other, float(mean(*samples)), interval)

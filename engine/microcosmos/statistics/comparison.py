@@ -1,0 +1,183 @@
+"""Compare groups of runs: quartiles, rank tests with Holm's correction, effect sizes."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from .effects import Bootstrap, middle_mean, quartiles, superiority
+from .groups import Group, differences, refuse_wrong
+from .measures import DEFAULT, Measure
+from .testing import Test, holm, kruskal_wallis, mann_whitney
+
+FEWEST = 5
+"""Runs that each group needs for tests and intervals."""
+
+
+@dataclass(frozen=True)
+class Summary:
+    """One measure of the runs of a group."""
+
+    group: str
+    values: tuple[float, ...]
+    """In the order of the group's runs; infinite where a run does not reach the value."""
+    low: float
+    median: float
+    high: float
+    middle_mean: float
+    """The interquartile mean."""
+    interval: tuple[float, float] | None
+    """95 % bootstrap interval of the interquartile mean; None without tests."""
+
+    @property
+    def count(self) -> int:
+        return len(self.values)
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two groups beside each other in one measure."""
+
+    first: str
+    second: str
+    test: Test
+    p: float
+    """After Holm's correction for all pairs of all measures."""
+    superiority: float
+    """A12: the share of pairs of runs in which the first group's value is greater."""
+    interval: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Result:
+    """One measure of all groups."""
+
+    measure: Measure
+    summaries: tuple[Summary, ...]
+    overall: Test | None
+    """Of more than two groups."""
+    pairs: tuple[Pair, ...]
+
+
+@dataclass(frozen=True)
+class Comparison:
+    groups: tuple[Group, ...]
+    results: tuple[Result, ...]
+    refusal: str
+    """Why there are no tests; empty if there are."""
+    bootstrap: Bootstrap
+    differences: dict[str, list[Any]] = field(default_factory=dict)
+    """Fields in which the specs of groups differ, each with the value of every group."""
+
+    @property
+    def tests(self) -> int:
+        """The number of tests for which p is corrected."""
+        return sum(len(result.pairs) for result in self.results)
+
+    @property
+    def versions(self) -> tuple[str, ...]:
+        runs = [run for group in self.groups for run in group.runs]
+        return tuple(dict.fromkeys(run.version for run in runs))
+
+
+def compare(
+    groups: Sequence[Group],
+    measures: Sequence[Measure | str] = DEFAULT,
+    bootstrap: Bootstrap | None = None,
+) -> Comparison:
+    """Compare groups of runs by measures.
+
+    Groups of fewer than five runs get quartiles, and a sentence in place of tests. Raises
+    `ValueError` for a run that is unfinished or in two groups, for a group that has a seed
+    twice or differs in more than the seed, and for runs compared at unequal evaluations.
+    """
+    refuse_wrong(groups)
+    bootstrap = bootstrap or Bootstrap()
+    asked = [Measure.parse(one) if isinstance(one, str) else one for one in measures]
+    for measure in asked:
+        _refuse_unequal(groups, measure)
+    refusal = too_few(groups)
+    results = [_result(groups, measure, not refusal, bootstrap) for measure in asked]
+    return Comparison(
+        tuple(groups), _corrected(results), refusal, bootstrap, differences(groups)
+    )
+
+
+def too_few(groups: Sequence[Group]) -> str:
+    """Return why there are no tests: too few groups, or too few runs in one; else nothing."""
+    if len(groups) < 2:
+        return f"Tests need at least 2 groups, got {len(groups)}."
+    short = [group for group in groups if len(group.runs) < FEWEST]
+    if not short:
+        return ""
+    counts = ", ".join(f"{len(group.runs)} in {group.name!r}" for group in short)
+    return f"Tests need at least {FEWEST} seeds in each group, got {counts}."
+
+
+def _refuse_unequal(groups: Sequence[Group], measure: Measure) -> None:
+    """Raise `ValueError` where final values belong to unequal numbers of evaluations."""
+    if measure.at is not None or measure.reaches is not None:
+        return
+    runs = [run for group in groups for run in group.runs]
+    ends = {int(run.evaluations[-1]): run for run in reversed(runs)}
+    if len(ends) < 2:
+        return
+    low, high = min(ends), max(ends)
+    raise ValueError(
+        f"`{measure.text}` needs runs with equal evaluations, got {low:,} in {ends[low].name} "
+        f"and {high:,} in {ends[high].name}; compare at a number that all reach, as "
+        f"{measure.curve}@{low}"
+    )
+
+
+def _result(
+    groups: Sequence[Group], measure: Measure, tested: bool, bootstrap: Bootstrap
+) -> Result:
+    values = [np.array([measure.of(run) for run in group.runs]) for group in groups]
+    summaries = tuple(
+        _summary(group, one, tested, bootstrap)
+        for group, one in zip(groups, values, strict=True)
+    )
+    if not tested:
+        return Result(measure, summaries, None, ())
+    pairs = tuple(
+        _pair((groups[i].name, values[i]), (groups[j].name, values[j]), bootstrap)
+        for i, j in combinations(range(len(groups)), 2)
+    )
+    overall = kruskal_wallis(values) if len(groups) > 2 else None
+    return Result(measure, summaries, overall, pairs)
+
+
+def _summary(group: Group, values: np.ndarray, tested: bool, bootstrap: Bootstrap) -> Summary:
+    low, median, high = quartiles(values)
+    finite = bool(np.isfinite(values).all())
+    return Summary(
+        group=group.name,
+        values=tuple(values.tolist()),
+        low=low,
+        median=median,
+        high=high,
+        middle_mean=float(middle_mean(values)) if finite else float("inf"),
+        interval=bootstrap.interval([values], middle_mean) if tested and finite else None,
+    )
+
+
+def _pair(
+    first: tuple[str, np.ndarray], second: tuple[str, np.ndarray], bootstrap: Bootstrap
+) -> Pair:
+    (name, ours), (other, theirs) = first, second
+    test = mann_whitney(ours, theirs)
+    share = float(superiority(ours, theirs))
+    interval = bootstrap.interval([ours, theirs], superiority)
+    return Pair(name, other, test, test.p, share, interval)
+
+
+def _corrected(results: Sequence[Result]) -> tuple[Result, ...]:
+    """Return the results with p of all pairs corrected for their number."""
+    corrected = iter(holm([pair.test.p for result in results for pair in result.pairs]))
+    return tuple(
+        replace(one, pairs=tuple(replace(pair, p=next(corrected)) for pair in one.pairs))
+        for one in results
+    )

@@ -1,0 +1,262 @@
+"""A comparison as rows, text, CSV, JSON and LaTeX; aggregates over tasks as text and JSON."""
+
+import csv as csv_module
+import json as json_module
+from collections.abc import Sequence
+from dataclasses import asdict
+from io import StringIO
+from math import isfinite
+from typing import Any
+
+from ..latex import latex as escaped
+from . import wording
+from .aggregates import Aggregates
+from .comparison import Comparison, Pair, Result, Summary
+
+Cells = list[list[str]]
+GROUPS = ("measure", "group", "n", "median", "quartiles", "IQM", "95 %")
+PAIRS = ("measure", "first", "second", "U", "p", "p (Holm)", "A12", "95 %")
+OVERALL = ("measure", "groups", "H", "p")
+COLUMNS = (
+    *("table", "measure", "group", "other", "n", "low", "median", "high"),
+    *("iqm", "iqm_low", "iqm_high", "test", "statistic", "p", "p_holm"),
+    *("a12", "a12_low", "a12_high", "run", "seed", "value"),
+)
+"""Columns of the CSV: one row for each group, test and run, with empty cells."""
+
+
+def group_rows(found: Comparison) -> Cells:
+    """Return a row for each measure and group, under `GROUPS`."""
+    return [
+        [
+            result.measure.title,
+            one.group,
+            str(one.count),
+            wording.number(one.median),
+            wording.interval((one.low, one.high)),
+            wording.number(one.middle_mean),
+            wording.interval(one.interval),
+        ]
+        for result in found.results
+        for one in result.summaries
+    ]
+
+
+def pair_rows(found: Comparison) -> Cells:
+    """Return a row for each measure and pair of groups, under `PAIRS`."""
+    return [
+        [
+            result.measure.title,
+            pair.first,
+            pair.second,
+            f"{pair.test.statistic:g}",
+            wording.probability(pair.test.p),
+            wording.probability(pair.p),
+            f"{pair.superiority:.2f}",
+            f"{pair.interval[0]:.2f} to {pair.interval[1]:.2f}",
+        ]
+        for result in found.results
+        for pair in result.pairs
+    ]
+
+
+def overall_rows(found: Comparison) -> Cells:
+    """Return a row for each measure's test over all groups, under `OVERALL`."""
+    return [
+        [
+            result.measure.title,
+            str(len(found.groups)),
+            f"{result.overall.statistic:.4g}",
+            wording.probability(result.overall.p),
+        ]
+        for result in found.results
+        if result.overall
+    ]
+
+
+def text(found: Comparison) -> str:
+    """Return tables for a terminal, then sentences on groups, tests and intervals."""
+    parts = [_aligned(GROUPS, group_rows(found))]
+    for titles, rows in ((OVERALL, overall_rows(found)), (PAIRS, pair_rows(found))):
+        parts += [_aligned(titles, rows)] if rows else []
+    parts += [wording.groups(found), wording.method(found), *wording.cautions(found)]
+    return "\n\n".join(parts) + "\n"
+
+
+def _aligned(titles: Sequence[str], rows: Cells) -> str:
+    lines = [list(titles), *rows]
+    widths = [max(len(line[i]) for line in lines) for i in range(len(titles))]
+    return "\n".join(
+        "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
+        for line in lines
+    )
+
+
+def csv(found: Comparison) -> str:
+    """Return a row for each group, test and run, with full precision."""
+    text = StringIO()
+    writer = csv_module.DictWriter(text, COLUMNS, restval="", lineterminator="\n")
+    writer.writeheader()
+    for result in found.results:
+        measure = {"measure": result.measure.text}
+        writer.writerows(measure | _summary(one) for one in result.summaries)
+        if result.overall:
+            writer.writerow(measure | {"table": "all groups"} | vars_of(result.overall))
+        writer.writerows(measure | _pair(pair) for pair in result.pairs)
+        writer.writerows(measure | row for row in _runs(found, result))
+    return text.getvalue()
+
+
+def _summary(one: Summary) -> dict[str, Any]:
+    low, high = one.interval or ("", "")
+    return {
+        "table": "group",
+        "group": one.group,
+        "n": one.count,
+        "low": one.low,
+        "median": one.median,
+        "high": one.high,
+        "iqm": one.middle_mean,
+        "iqm_low": low,
+        "iqm_high": high,
+    }
+
+
+def _pair(pair: Pair) -> dict[str, Any]:
+    low, high = pair.interval
+    effect = {"a12": pair.superiority, "a12_low": low, "a12_high": high, "p_holm": pair.p}
+    ends = {"table": "pair", "group": pair.first, "other": pair.second}
+    return ends | vars_of(pair.test) | effect
+
+
+def vars_of(test: Any) -> dict[str, Any]:
+    return {"test": test.name, "statistic": test.statistic, "p": test.p}
+
+
+def _runs(found: Comparison, result: Result) -> list[dict[str, Any]]:
+    return [
+        {"table": "run", "group": group.name, "run": run.name, "seed": run.seed, "value": value}
+        for group, one in zip(found.groups, result.summaries, strict=True)
+        for run, value in zip(group.runs, one.values, strict=True)
+    ]
+
+
+def document(found: Comparison) -> dict[str, Any]:
+    """Return all of a comparison as JSON's values; null where a run does not reach a value."""
+    return {
+        "groups": [
+            {
+                "name": group.name,
+                "n": len(group.runs),
+                "runs": [{"run": run.name, "seed": run.seed} for run in group.runs],
+            }
+            for group in found.groups
+        ],
+        "differences": found.differences,
+        "measures": [_result(result) for result in found.results],
+        "refusal": found.refusal or None,
+        "groups_in_words": wording.groups(found),
+        "method": wording.method(found),
+        "cautions": wording.cautions(found),
+        "tests": found.tests,
+        "bootstrap": {"resamples": found.bootstrap.resamples, "seed": found.bootstrap.seed},
+        "versions": list(found.versions),
+    }
+
+
+def _result(result: Result) -> dict[str, Any]:
+    numbers = [
+        {"values": [_plain(x) for x in one.values]}
+        | {k: _plain(v) for k, v in _summary(one).items() if k != "table"}
+        for one in result.summaries
+    ]
+    pairs = [{k: v for k, v in _pair(pair).items() if k != "table"} for pair in result.pairs]
+    return {
+        "measure": result.measure.text,
+        "title": result.measure.title,
+        "less_is_better": result.measure.less_is_better,
+        "groups": numbers,
+        "overall": vars_of(result.overall) if result.overall else None,
+        "pairs": pairs,
+    }
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, float):
+        return value if isfinite(value) else None
+    return None if value == "" else value
+
+
+def json(found: Comparison) -> str:
+    return json_module.dumps(document(found), indent=1, ensure_ascii=False) + "\n"
+
+
+def latex(found: Comparison) -> str:
+    """Return tables for LaTeX with booktabs, and the caption as a comment."""
+    parts = [_tabular(GROUPS, group_rows(found), "llrrrrr")]
+    if overall := overall_rows(found):
+        parts.append(_tabular(OVERALL, overall, "lrrr"))
+    if pairs := pair_rows(found):
+        parts.append(_tabular(PAIRS, pairs, "lllrrrrr"))
+    said = " ".join([wording.groups(found), wording.method(found), *wording.cautions(found)])
+    head = f"% \\usepackage{{booktabs}}\n% \\caption{{{escaped(said)}}}\n"
+    return head + "\n\n".join(parts) + "\n"
+
+
+def _tabular(titles: Sequence[str], rows: Cells, columns: str) -> str:
+    lines = [f"\\begin{{tabular}}{{{columns}}}", "\\toprule", _row(titles), "\\midrule"]
+    before, several = "", len({row[0] for row in rows}) < len(rows)
+    for row in rows:
+        if several and before and row[0] != before:
+            lines.append("\\addlinespace")
+        lines.append(_row(["" if row[0] == before else row[0], *row[1:]]))
+        before = row[0]
+    return "\n".join([*lines, "\\bottomrule", "\\end{tabular}"])
+
+
+def _row(cells: Sequence[str]) -> str:
+    return " & ".join(_letters(cell) for cell in cells) + r" \\"
+
+
+def _letters(text: str) -> str:
+    text = text.replace("< 0.001", "<0.001")
+    found = escaped(text).replace("<", "$<$").replace(" to ", "--")
+    return {"A12": "$A_{12}$", "U": "$U$", "H": "$H$", "p": "$p$"}.get(text, found)
+
+
+def aggregates_text(several: Sequence[Aggregates]) -> str:
+    """Return tables for a terminal: the mean of the middle half, and improvements."""
+    titles = ("measure", "group", "runs", "IQM", "95 %")
+    rows = [
+        [
+            found.measure.title,
+            one.group,
+            str(one.runs),
+            wording.number(one.middle_mean),
+            wording.interval(one.interval),
+        ]
+        for found in several
+        for one in found.groups
+    ]
+    parts = [_aligned(titles, rows)]
+    improved = [
+        [
+            found.measure.title,
+            one.first,
+            one.second,
+            f"{one.probability:.2f}",
+            wording.interval(one.interval),
+        ]
+        for found in several
+        for one in found.improvements
+    ]
+    if improved:
+        named = ("measure", "first", "second", "P(first > second)", "95 %")
+        parts.append(_aligned(named, improved))
+    return "\n\n".join([*parts, wording.aggregated(several[0])]) + "\n"
+
+
+def aggregates_json(several: Sequence[Aggregates]) -> str:
+    """Return all of the aggregates as JSON, with the performance profiles."""
+    found = [asdict(one) | {"measure": one.measure.text} for one in several]
+    return json_module.dumps(found, indent=1, ensure_ascii=False) + "\n"

@@ -1,0 +1,143 @@
+"""The statistics of a sweep are those of the library, of finished runs alone."""
+
+import csv
+from io import StringIO
+from uuid import UUID
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from microcosmos.statistics.testing import holm
+from server.tables import Generation, Run
+
+VISCOSITIES = {"world.viscosity": [0.05, 0.1, 0.2]}
+SCORES = np.array([[5.0, 3, 4, 1, 2], [6, 9, 8, 7, 2.5], [12, 11, 10, 14, 13]])
+
+
+@pytest.fixture
+def write(services):
+    """A function that writes two generations of a run, and its status."""
+
+    def record(run, score, status="finished", evaluations=8):
+        others = {"infeasible": 0, "seconds": 1.0, "mean": 0.1}
+        with services.sessions.write.begin() as session:
+            row = session.get_one(Run, UUID(run))
+            row.generation, row.status = 2, status
+            for number in (1, 2):
+                share = number / 2
+                corrected = {"corrected_qd_score": 0.8 * score} if number == 2 else None
+                session.add(
+                    Generation(
+                        run_id=row.id,
+                        generation=number,
+                        evaluations=evaluations * number,
+                        qd_score=share * score,
+                        coverage=share,
+                        best=share,
+                        summary=corrected,
+                        **others,
+                    )
+                )
+
+    return record
+
+
+@pytest.fixture
+def sweep(post, write):
+    found = post(seeds=5, grid=VISCOSITIES).json()
+    for case, scores in zip(found["cases"], SCORES, strict=True):
+        for run, score in zip(case["runs"], scores.tolist(), strict=True):
+            write(run, score)
+    return found
+
+
+def read(api, sweep, path="statistics", **query):
+    return api.get(f"sweeps/{sweep['id']}/{path}", params=query)
+
+
+def test_cases_are_compared_as_in_the_library(api, sweep):
+    found = read(api, sweep, measures="qd_score,corrected_qd_score").json()
+    names = ["viscosity 0.05", "viscosity 0.1", "viscosity 0.2"]
+    assert [group["name"] for group in found["groups"]] == names
+    assert [run["run"] for run in found["groups"][1]["runs"]] == sweep["cases"][1]["runs"]
+    plain, corrected = found["measures"]
+    assert [group["median"] for group in plain["groups"]] == np.median(SCORES, 1).tolist()
+    np.testing.assert_allclose(corrected["groups"][0]["values"], 0.8 * SCORES[0])
+    assert plain["overall"]["p"] == pytest.approx(stats.kruskal(*SCORES).pvalue)
+    p = [
+        stats.mannwhitneyu(SCORES[i], SCORES[j], method="exact").pvalue
+        for i, j in ((0, 1), (0, 2), (1, 2))
+    ]
+    assert [pair["p_holm"] for pair in plain["pairs"]] == pytest.approx(holm(p * 2)[:3])
+    assert plain["pairs"][1]["a12"] == 0
+    assert found["tests"] == 6
+    assert found["refusal"] is None
+
+
+def test_curves_at_evaluations_and_evaluations_to_a_value_are_measures(api, sweep):
+    found = read(api, sweep, measures="qd_score@8,qd_score>=4").json()
+    early, first = found["measures"]
+    assert early["groups"][0]["values"] == (SCORES[0] / 2).tolist()
+    assert first["groups"][0]["values"] == [16, None, 16, None, None]
+    assert first["less_is_better"]
+
+
+def test_tables_are_downloaded(api, sweep):
+    table = read(api, sweep, "statistics.csv")
+    assert table.headers["content-type"].startswith("text/csv")
+    assert "attachment" in table.headers["content-disposition"]
+    rows = list(csv.DictReader(StringIO(table.text)))
+    assert sum(row["table"] == "run" for row in rows) == 45
+    latex = read(api, sweep, "statistics.tex", measures="best")
+    assert latex.text.startswith("% \\usepackage{booktabs}")
+
+
+def test_an_answer_is_made_once_for_each_state_of_the_runs(api, sweep, write, services):
+    first = read(api, sweep)
+    known = {"If-None-Match": first.headers["etag"]}
+    path = f"sweeps/{sweep['id']}/statistics"
+    assert api.get(path, headers=known).status_code == 304
+    with services.sessions.write.begin() as session:
+        session.get_one(Run, UUID(sweep["cases"][0]["runs"][0])).rewinds += 1
+    assert api.get(path, headers=known).status_code == 200
+
+
+def test_runs_that_are_not_finished_are_refused_with_how_many_are(api, post, write):
+    found = post(seeds=2).json()
+    write(found["cases"][0]["runs"][0], 1.0)
+    refused = read(api, found)
+    assert refused.status_code == 409
+    assert refused.json()["detail"] == "Statistics need finished runs; 1 of 2 are finished."
+
+
+def test_failed_runs_are_left_out_and_said(api, sweep, services):
+    with services.sessions.write.begin() as session:
+        session.get_one(Run, UUID(sweep["cases"][0]["runs"][0])).status = "failed"
+    found = read(api, sweep).json()
+    assert found["groups"][0]["n"] == 4
+    assert found["refusal"].endswith("got 4 in 'viscosity 0.05'.")
+    assert found["cautions"][0].startswith("1 run is left out")
+
+
+def test_wrong_use_is_refused_with_a_sentence(api, sweep, write, services):
+    unknown = read(api, sweep, measures="beauty!")
+    assert (unknown.status_code, unknown.json()["errors"][0]["field"]) == (422, "measures")
+    assert read(api, sweep, measures=",".join(["best"] * 13)).status_code == 422
+    missing = read(api, sweep, measures="beauty")
+    assert missing.status_code == 409
+    assert "a curve must be one of best" in missing.json()["detail"]
+    with services.sessions.write.begin() as session:
+        run = UUID(sweep["cases"][0]["runs"][0])
+        session.get_one(Generation, (run, 2)).evaluations = 20
+    unequal = read(api, sweep)
+    assert unequal.status_code == 409
+    assert "needs runs with equal evaluations, got 16 in" in unequal.json()["detail"]
+
+
+def test_a_sweep_without_archives_has_none(api):
+    found = api.post("sweeps", json={"spec": {"experiment": "gaits"}, "seeds": 1}).json()
+    refused = read(api, found)
+    assert refused.status_code == 404
+    assert "runs of `gaits` have tables" in refused.json()["detail"]
+    assert api.get(f"sweeps/{UUID(int=0)}/statistics").status_code == 404

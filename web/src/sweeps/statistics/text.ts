@@ -1,0 +1,28 @@
+/** Texts of the statistics of a sweep. */
+
+export const text = {
+  statistics: "Statistics",
+  about: "finished runs, case by case",
+  computing: "Computing …",
+  figures: "Figures of the groups",
+  tests: "Tests between pairs of groups",
+  overall: "Tests over all groups",
+  measure: "Measure",
+  group: "Group",
+  runs: "Runs",
+  median: "Median",
+  middleMean: "IQM",
+  first: "First",
+  second: "Second",
+  superiority: "A12",
+  corrected: "p (Holm)",
+  plain: "p",
+  statistic: "H",
+  range: (low: string, high: string) => `${low} to ${high}`,
+  notReached: "not reached",
+  under: "< 0.001",
+  csv: "statistics.csv",
+  latex: "statistics.tex",
+  csvAbout: "Every number in full, with the value of every run",
+  latexAbout: "Tables for LaTeX with booktabs",
+};
