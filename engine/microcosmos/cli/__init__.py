@@ -6,6 +6,7 @@ from . import (
     creature,
     doctor,
     draw,
+    exporting,
     manage,
     modules,
     monitor,
