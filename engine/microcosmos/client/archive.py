@@ -110,7 +110,7 @@ class Archive:
             ),
             "fitness": Column(self.fitness, "Fitness", ""),
             "generation": Column(entered, "Generation of the elite", "generations"),
-            "age": Column(age, "Generations since then", "generations"),
+            "age": Column(age, "Age", "generations"),
         }
         if self.kind == "grid":
             found |= bins(self.cell, self.axes)

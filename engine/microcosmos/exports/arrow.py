@@ -15,6 +15,8 @@ from .table import Column, Columns, Ragged
 
 FORMAT = "microcosmos-table/1"
 EXTRA = "microcosmos[exports]"
+ITEM = "element"
+"""Name of the items of lists in Parquet."""
 
 
 def to_arrow(archive: Source, table: str = "archive", run: str = "run") -> Any:
@@ -93,12 +95,15 @@ def _values(pa: Any, values: Any) -> Any:
     """Return values without a change of a bit; NaN stays NaN."""
     if isinstance(values, Ragged):
         offsets = np.concatenate([[0], np.cumsum(values.counts)]).astype(np.int32)
-        return pa.ListArray.from_arrays(pa.array(offsets), _values(pa, values.items))
+        items = _values(pa, values.items)
+        kind = pa.list_(pa.field(ITEM, items.type))
+        return pa.ListArray.from_arrays(pa.array(offsets), items, type=kind)
     if not isinstance(values, np.ndarray):
         return pa.array(values, pa.string())
     if values.ndim == 2:
         flat = pa.array(np.ascontiguousarray(values).ravel())
-        return pa.FixedSizeListArray.from_arrays(flat, values.shape[1])
+        kind = pa.list_(pa.field(ITEM, flat.type), values.shape[1])
+        return pa.FixedSizeListArray.from_arrays(flat, type=kind)
     return pa.array(np.ascontiguousarray(values))
 
 
@@ -119,7 +124,7 @@ def parquet(table: Any) -> bytes:
 def _leaf(pa: Any, path: str, kind: Any) -> tuple[str, Any]:
     """Return the path and type of what a column's lists hold, as Parquet names it."""
     if pa.types.is_list(kind) or pa.types.is_fixed_size_list(kind):
-        return _leaf(pa, f"{path}.list.element", kind.value_type)
+        return _leaf(pa, f"{path}.list.{ITEM}", kind.value_type)
     return path, kind
 
 

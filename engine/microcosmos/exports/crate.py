@@ -59,6 +59,7 @@ def crate(
     command that repeats the run, checksums and a citation. Raises `ValueError` for a run
     without an archive, and `ImportError` without pyarrow, xarray or rocrate.
     """
+    run.archive()  # It refuses other runs.
     about = publication or Publication()
     title = about.title or f"Microcosmos: the archive of {run.name} ({run.spec['experiment']})"
     file, found = f"{run.name}.h5", environment()

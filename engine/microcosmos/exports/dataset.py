@@ -92,7 +92,9 @@ def _spread(column: Column, row: np.ndarray, shape: tuple[int, ...]) -> np.ndarr
 
 
 def _about(column: Column) -> dict[str, str]:
-    return {"long_name": column.title} | ({"units": column.unit} if column.unit else {})
+    """Return attributes with which xarray labels plots."""
+    named = {"units": column.unit} if column.unit not in ("", "1") else {}
+    return {"long_name": column.title, **named}
 
 
 def _attributes(found: Elites) -> dict[str, Any]:

@@ -47,9 +47,7 @@ def elites(run: RunFile) -> Elites:
         "cell": Column(archive["cell"], "Place in the container" if pool else "Cell"),
         "fitness": Column(archive["fitness"], "Fitness", unit),
         "generation": Column(entered, "Generation of the elite", "generations"),
-        "age": Column(
-            (run.generation - entered).astype(np.int32), "Generations since then", "generations"
-        ),
+        "age": Column((run.generation - entered).astype(np.int32), "Age", "generations"),
         "operator": _word(archive["operator"], operators, "Operator that made it"),
         "device": _word(archive["device"], devices, "Kind of device that measured it"),
         "curiosity": Column(archive["curiosity"], "Score as a parent"),
