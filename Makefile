@@ -112,6 +112,7 @@ bench: peers web
 	$(BIN)/python engine/benchmarks/networks.py
 	$(BIN)/python engine/benchmarks/xor.py
 	$(BIN)/python engine/benchmarks/generation.py
+	$(BIN)/python engine/benchmarks/sinks.py
 	$(BIN)/python engine/benchmarks/cluster.py --seconds 0.1 1
 	$(BIN)/python server/benchmarks/load.py
 	$(BIN)/python web/benchmarks/start.py
