@@ -41,7 +41,7 @@ def evolve(
     that `search.initial` names; a resumed run needs none. `over` may give the run other
     devices, as `partial(cluster.over, url="tls://host:8786")` does. `sinks` are places that get
     curves, pictures and the last files, as `tensorboard:FOLDER`; they never fail or slow the
-    run, see `docs/sinks.md`. Raises `ValueError` where
+    run, see `docs/exports.md`. Raises `ValueError` where
     the file is of another spec or of other `choices`, where a choice is of no creature of the
     run, and, without `other_device`, where the file is of another kind of device.
     """
