@@ -37,5 +37,3 @@ def test_a_run_is_downloaded_in_a_chosen_format(page, idle, kept):
     assert coming.value.suggested_filename == f"quality-diversity-{str(kept)[:8]}-parquet.zip"
     with zipfile.ZipFile(io.BytesIO(coming.value.path().read_bytes())) as whole:
         assert any(name.endswith("/archive.parquet") for name in whole.namelist())
-    card.get_by_role("button", name="RO-Crate").press("Escape")
-    expect(card.get_by_role("listitem").first).to_be_hidden()

@@ -1,11 +1,10 @@
-/** The button that opens the formats in which a run can be downloaded. */
+/** The formats in which a run can be downloaded, below their button. */
 
 import { useState } from "preact/hooks";
 import { checkFile, downloadFile, exportUrl, type ExportFormat } from "../../api/files";
 import type { Run } from "../../api/types";
 import { hasArchive } from "../../store/fetch";
 import { showFailure } from "../../store/toasts";
-import { Dropdown } from "../../ui/Dropdown";
 import "./exports.css";
 import { text } from "./text";
 
@@ -29,9 +28,10 @@ export function ExportMenu({ run }: { run: Run }) {
     }
   };
   return (
-    <Dropdown title={text.export}>
+    <details class="exports">
+      <summary class="button">{text.export}</summary>
       <p class="quiet small">{text.about}</p>
-      <ul class="exports">
+      <ul>
         {(hasArchive(run) ? FORMATS : TABLES).map((format) => (
           <li key={format}>
             <button class="link" aria-disabled={preparing !== null} onClick={() => void download(format)}>
@@ -43,6 +43,6 @@ export function ExportMenu({ run }: { run: Run }) {
           </li>
         ))}
       </ul>
-    </Dropdown>
+    </details>
   );
 }
