@@ -20,8 +20,8 @@ from server.attempts import choices
 from server.attempts.attempt import Attempt
 from server.settings import Settings
 
-from . import following
 from .plugins import load
+from .sinks import last_files, open_sinks
 
 
 def carry_out(attempt: Attempt) -> None:
@@ -55,13 +55,13 @@ def compute(attempt: Attempt) -> None:
         # The schedule did not know its kind of device; it does now.
         attempt.pause_until_resumed(str(error), device=error.recorded)
         return
-    sinks = following.open_sinks(attempt, state.generation)
+    sinks = open_sinks(attempt, state.generation)
     attempt.record_device(experiment.device, sinks.names)
     with sinks:
         state = advance(attempt, experiment, state, sinks)
         done, save = experiment.done(state), cache(lambda: experiment.save(state))
         attempt.end(done, state.generation, save)
-        files = following.last_files(experiment, state, save) if sinks.names and done else {}
+        files = last_files(experiment, state, save) if sinks.names and done else {}
         sinks.close(state.generation, files, done=done)
 
 

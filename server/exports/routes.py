@@ -20,7 +20,7 @@ from ..core.answers import respond, tag_of
 from ..core.api import sends
 from ..core.errors import ProblemError
 from ..runs.deps import find_run
-from ..services.services import ServicesDep
+from ..services.services import Services, ServicesDep
 from ..tables import Artifact, Run
 from . import making
 
@@ -78,6 +78,13 @@ async def export_run(
     tag = tag_of(
         VERSION, form, run.id, run.name, checkpoint.sha256, run.rewinds, run.generation
     )
-    make = partial(making.make, services, run, checkpoint.path, form)
+    make = partial(_make, services, found)
     kept = request.app.state.archive_answers
     return await respond(request, kept, tag, make, MEDIA_TYPES.get(form, ZIP), found.headers)
+
+
+def _make(services: Services, found: Exported) -> bytes:
+    try:
+        return making.make(services, found.run, found.checkpoint.path, found.form)
+    except ValueError as error:
+        raise ProblemError(422, "Cannot be exported", f"{error}.") from error

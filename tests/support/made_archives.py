@@ -25,21 +25,15 @@ def stream(nodes, creature):
     )
 
 
-def made(kind="grid", sizes=(3, 5, 4), parents=None, generations=(1, 2, 2), **arrays):
-    """Return the bytes of an archive whose elites lie in cells 1, 6 and 11."""
-    container = {"kind": "novelty", "size": 12} if kind == "pool" else None
-    described = {"descriptors": AXES, "container": container}
-    described |= {"centroids": 12 if kind == "cvt" else None}
-    names = np.arange(96, dtype=np.uint8).reshape(3, 32)
-    draw = np.random.default_rng(1)
-    entered = np.array(generations, np.int32)
+def elites(kind, sizes, generations):
+    """Return the group `archive` of the elites, whose bodies have so many nodes."""
+    names, draw = np.arange(96, dtype=np.uint8).reshape(3, 32), np.random.default_rng(1)
     streams = [stream(n, bytes(name).hex()) for n, name in zip(sizes, names, strict=True)]
-    measures = draw.random((3, len(MEASURES))).astype(np.float32)
-    archive = {
+    found = {
         "cell": CELLS,
         "fitness": np.array([1.5, 2.5, np.pi], np.float32),
-        "measures": measures,
-        "generation": entered,
+        "measures": draw.random((3, len(MEASURES))).astype(np.float32),
+        "generation": np.array(generations, np.int32),
         "curiosity": np.ones(3, np.float32),
         "operator": np.array([0, 1, 1], np.int32),
         "device": np.zeros(3, np.int32),
@@ -47,21 +41,25 @@ def made(kind="grid", sizes=(3, 5, 4), parents=None, generations=(1, 2, 2), **ar
         "genomes": {"weight": draw.random((3, 4)).astype(np.float32)},
         "poses": poses.columns(streams),
     }
-    if kind == "cvt":
-        archive["centroids"] = AROUND
+    return found | ({"centroids": AROUND} if kind == "cvt" else {})
+
+
+def made(kind="grid", sizes=(3, 5, 4), parents=None, generations=(1, 2, 2), **arrays):
+    """Return the bytes of an archive whose elites lie in cells 1, 6 and 11."""
+    container = {"kind": "novelty", "size": 12} if kind == "pool" else None
+    described = {"descriptors": AXES, "container": container}
+    described |= {"centroids": 12 if kind == "cvt" else None}
+    archive = elites(kind, sizes, generations)
+    copied = ("creature", "operator", "generation", "cell", "fitness")
     lineage = {
-        "creature": names,
+        **{name: archive[name] for name in copied},
         "parents": np.zeros((3, 2, 32), np.uint8) if parents is None else parents,
-        "operator": archive["operator"],
-        "generation": entered,
-        "cell": CELLS,
-        "fitness": archive["fitness"],
-        "descriptors": measures[:, :2],
+        "descriptors": archive["measures"][:, :2],
     }
     curves = ("qd_score", "coverage", "best", "mean", "evaluations")
     tree = {
         "archive": archive,
-        "curves": {name: draw.random(3) * 0 + 3 for name in curves},
+        "curves": {name: np.full(3, 3.0) for name in curves},
         "emitters": {"children": np.full((3, 1), 8)},
         "lineage": lineage,
         "loop": {"generation": np.int64(3)},

@@ -95,6 +95,14 @@ def test_runs_without_a_checkpoint_or_too_large_are_refused(api, run_id, service
     assert api.get(f"runs/{run_id}/export/excel").status_code == 422
 
 
+def test_a_file_that_lacks_columns_is_refused_with_their_name(api, run_id, services):
+    attempt = claim(services, run_id, "worker")
+    attempt.record(reports.report(1, {5: 1.0}), 1.0)
+    attempt.save(1, reports.archive_file(reports.DEMO.model_dump(mode="json")))
+    said = detail(api.get(f"runs/{run_id}/export/netcdf"), 422)
+    assert "the file must hold" in said
+
+
 def test_a_table_has_no_phylogeny(api, services):
     spec = EXPERIMENTS["gaits"].presets[0].spec
     run_id = submit(services, spec)[0].id
