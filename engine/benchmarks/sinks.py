@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from microcosmos import spec
+from microcosmos.archive.report import Report
 from microcosmos.build.local import evolve
 from microcosmos.device import prepare
 from microcosmos.sinks import delivery
@@ -38,11 +39,11 @@ class Times(NamedTuple):
 def measured(name: str, chosen: spec.Spec, folder: Path) -> Times:
     at: list[tuple[float, float]] = []
     calls: list[float] = []
-    close, report = delivery.Sinks.close, delivery.Sinks.report
+    close, reported = delivery.Sinks.close, delivery.Sinks.report
 
-    def timed(*given: Any) -> None:
+    def timed(self: delivery.Sinks, report: Report) -> None:
         began = time.perf_counter()
-        report(*given)
+        reported(self, report)
         calls.append(time.perf_counter() - began)
 
     def note(*given: Any, **options: Any) -> None:
@@ -60,7 +61,7 @@ def measured(name: str, chosen: spec.Spec, folder: Path) -> Times:
         place = folder / f"{name}-{time.time()}.h5"
         evolve(chosen, place, sinks=SINKS[name], tell=lambda report: None if at else note())
     finally:
-        delivery.Sinks.close, delivery.Sinks.report = close, report
+        delivery.Sinks.close, delivery.Sinks.report = close, reported
         delivery.COMMAND, delivery.PATIENCE = command, patience
     (wall, cpu), (end, last) = at[0], at[1]
     return Times(end - wall, last - cpu, sum(calls))
