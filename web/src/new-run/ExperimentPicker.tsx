@@ -29,7 +29,7 @@ export function ExperimentPicker({
         {experiments.map((one) => {
           const [name, sentence] = one.title.split(": ") as [string, string?];
           return (
-            <label key={one.experiment} class="experiment">
+            <label key={one.experiment} class="experiment" title={words(sentence ?? "")}>
               <input
                 type="radio"
                 name="experiment"
@@ -49,6 +49,7 @@ export function ExperimentPicker({
             type="button"
             key={each.name}
             class="preset"
+            title={each.title}
             aria-pressed={each === preset}
             onClick={() => onPreset(each, selected)}
           >
@@ -59,6 +60,7 @@ export function ExperimentPicker({
         ))}
         {selected.presets.length === 0 && <p class="quiet needs-creature">{text.needsCreature}</p>}
       </fieldset>
+      {preset && <p class="quiet small preset-about">{preset.title}.</p>}
     </>
   );
 }
