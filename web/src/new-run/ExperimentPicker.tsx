@@ -37,7 +37,7 @@ export function ExperimentPicker({
                 onChange={() => onExperiment(one)}
               />
               <b>{name}</b>
-              <span>{words(sentence ?? "")}</span>
+              <span class={one === selected ? "" : "unseen"}>{words(sentence ?? "")}</span>
             </label>
           );
         })}
@@ -49,12 +49,13 @@ export function ExperimentPicker({
             type="button"
             key={each.name}
             class="preset"
-            title={each.title}
             aria-pressed={each === preset}
             onClick={() => onPreset(each, selected)}
           >
             <b>{words(each.name)}</b>
-            <span>{each.title}</span>
+            <span class="preset-title" title={each.title}>
+              {each.title}
+            </span>
             <span class="preset-cost">{costOf(estimates.get(each))}</span>
           </button>
         ))}
