@@ -42,6 +42,16 @@ export function ExperimentPicker({
           );
         })}
       </fieldset>
+      <Presets {...{ selected, preset, estimates, onPreset }} />
+    </>
+  );
+}
+
+type PresetsProps = Pick<Props, "selected" | "preset" | "estimates" | "onPreset">;
+
+function Presets({ selected, preset, estimates, onPreset }: PresetsProps) {
+  return (
+    <>
       <fieldset class="presets">
         <legend class="unseen">{selected.title}</legend>
         {selected.presets.map((each) => (
