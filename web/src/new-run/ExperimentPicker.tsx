@@ -1,5 +1,6 @@
 /** The choice of an experiment and a preset. */
 
+import { useState } from "preact/hooks";
 import type { Estimate, Experiment, Preset } from "../api/types";
 import { timeText } from "./Costs";
 import { bytes, words } from "../ui/format";
@@ -49,7 +50,10 @@ export function ExperimentPicker({
 
 type PresetsProps = Pick<Props, "selected" | "preset" | "estimates" | "onPreset">;
 
+/** The presets of an experiment; below them what the pointed one is, or else the chosen one. */
 function Presets({ selected, preset, estimates, onPreset }: PresetsProps) {
+  const [pointed, setPointed] = useState<Preset | null>(null);
+  const shown = pointed ?? preset;
   return (
     <>
       <fieldset class="presets">
@@ -59,19 +63,21 @@ function Presets({ selected, preset, estimates, onPreset }: PresetsProps) {
             type="button"
             key={each.name}
             class="preset"
+            title={each.title}
             aria-pressed={each === preset}
             onClick={() => onPreset(each, selected)}
+            onPointerEnter={() => setPointed(each)}
+            onPointerLeave={() => setPointed(null)}
+            onFocus={() => setPointed(each)}
+            onBlur={() => setPointed(null)}
           >
             <b>{words(each.name)}</b>
-            <span class="preset-title" title={each.title}>
-              {each.title}
-            </span>
             <span class="preset-cost">{costOf(estimates.get(each))}</span>
           </button>
         ))}
         {selected.presets.length === 0 && <p class="quiet needs-creature">{text.needsCreature}</p>}
       </fieldset>
-      {preset && <p class="quiet small preset-about">{preset.title}.</p>}
+      <p class="quiet small preset-about">{shown && `${shown.title}.`}</p>
     </>
   );
 }
