@@ -22,6 +22,8 @@ _HOME = {
     "evolve": "build.local",
     "refine": "build.local",
     "prepare": "device",
+    "ArchiveMap": "widgets",
+    "Player": "widgets",
     "record": "viz.replay",
     "show": "viz",
     "audit": "audit",
