@@ -31,6 +31,7 @@ _HOME = {
     "gradient": "audit",
     "report_gradient": "audit",
     "learned_axes": "archive.learned",
+    "physical": "archive.physical",
     "pose_streams": "archive.export",
     "to_pandas": "archive.export",
     "to_ribs": "archive.export",

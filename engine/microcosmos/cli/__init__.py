@@ -11,6 +11,7 @@ from . import (
     manage,
     modules,
     monitor,
+    physical,
     pictures,
     reproject,
     run,
