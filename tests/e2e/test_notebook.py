@@ -95,6 +95,7 @@ def test_widgets_in_jupyterlab_show_hover_play_and_tell_python_what_is_selected(
     page = new_page()
     page.goto(lab)
     page.locator(".jp-Notebook .jp-Cell").first.wait_for()
+    expect(page.get_by_role("button", name="Python 3 (ipykernel) | Idle")).to_be_visible()
     page.get_by_role("menuitem", name="Run", exact=True).click()
     page.get_by_role("menuitem", name="Run All Cells", exact=True).click()
     about = page.locator(".microcosmos .about").first
