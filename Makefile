@@ -116,6 +116,7 @@ bench: peers web
 	$(BIN)/python engine/benchmarks/networks.py
 	$(BIN)/python engine/benchmarks/xor.py
 	$(BIN)/python engine/benchmarks/generation.py
+	$(BIN)/python engine/benchmarks/sinks.py
 	$(BIN)/python engine/benchmarks/cluster.py --seconds 0.1 1
 	$(BIN)/python server/benchmarks/load.py
 	$(BIN)/python web/benchmarks/start.py
@@ -184,11 +185,14 @@ tensorneat: install
 	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps "$(TENSORNEAT_SRC)"
 	@$(BIN)/python -c 'import tensorneat.algorithm'
 
+# What a run's curves and files can go to; the tests need all of them.
+SINKS := --extra exports --extra tensorboard --extra mlflow --extra wandb
+
 lock:
 	@$(BIN)/python -m pip install -q --disable-pip-version-check uv
 	$(eval COMPILE := $(BIN)/uv pip compile -q --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header --no-annotate)
-	$(COMPILE) pyproject.toml --group dev --group server --group build --extra figures --extra studies --extra notebook --extra shapes --extra cluster -o requirements.lock
-	$(COMPILE) pyproject.toml --group dev --group server --group build --extra figures --extra studies --extra notebook --extra shapes --extra cluster --extra cuda -c requirements.lock -o requirements-cuda.lock
+	$(COMPILE) pyproject.toml --group dev --group server --group build --extra figures --extra studies --extra notebook --extra shapes --extra cluster $(SINKS) -o requirements.lock
+	$(COMPILE) pyproject.toml --group dev --group server --group build --extra figures --extra studies --extra notebook --extra shapes --extra cluster $(SINKS) --extra cuda -c requirements.lock -o requirements-cuda.lock
 	$(COMPILE) --group pyproject.toml:server -c requirements.lock -o requirements-server.lock
 	$(COMPILE) --group pyproject.toml:lab -c requirements.lock -o requirements-lab.lock
 	$(COMPILE) --group pyproject.toml:docs -c requirements.lock -o requirements-docs.lock

@@ -31,6 +31,7 @@ from .deletion import routes as deletion
 from .estimates import routes as queue
 from .events import routes as events
 from .events.fanout import Fanout
+from .exports import routes as exports
 from .forks import routes as forks
 from .maintenance import routes as health
 from .maintenance.metrics import CountRequests, Metrics
@@ -67,6 +68,7 @@ ROUTES = (
         details,
         archives,
         phylogenies,
+        exports,
         creatures,
     ),
     *(renderings, first, tank, shares, events, workers, queue, tokens, health),

@@ -17,6 +17,8 @@ from pydantic import (
 )
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
+from microcosmos.sinks.address import parse_all
+
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 MIN_TOKEN_LENGTH = 16
 WEBHOOK_PREFIX = "whsec_"
@@ -82,6 +84,9 @@ class Settings(BaseSettings):
     Only workers read it."""
     cluster_certificate: Path | None = None
     """File of `microcosmos cluster certificate`, which tls:// needs."""
+    sinks: str = ""
+    """Where workers send the curves, pictures and files of their runs too, separated by
+    commas: `tensorboard:FOLDER`, `mlflow:URI`, `wandb:PROJECT`."""
     checkpoint_interval: float = Field(default=60.0, ge=0.0)
     """Seconds between two checkpoints of a run."""
     lease: float = Field(default=20.0, gt=0.0)
@@ -133,6 +138,12 @@ class Settings(BaseSettings):
                 "AWS_SECRET_ACCESS_KEY"
             )
         return url
+
+    @field_validator("sinks")
+    @classmethod
+    def refuse_other_sinks(cls, sinks: str) -> str:
+        parse_all(sinks.split(","))
+        return sinks
 
     @field_validator("webhook_url")
     @classmethod

@@ -2,6 +2,7 @@
 
 import time
 from contextlib import AbstractContextManager, nullcontext, suppress
+from functools import cache
 from typing import Any
 
 from pydantic import ValidationError
@@ -13,12 +14,14 @@ from microcosmos.experiments import Experiment, OtherDevice, Stopped
 from microcosmos.experiments.breeding import UnknownCreature
 from microcosmos.experiments.evolution import Evolution
 from microcosmos.plugins import Broken, Missing
+from microcosmos.sinks.delivery import Sinks
 from microcosmos.spec import field_path, parse
 from server.attempts import choices
 from server.attempts.attempt import Attempt
 from server.settings import Settings
 
 from .plugins import load
+from .sinks import last_files, open_sinks
 
 
 def carry_out(attempt: Attempt) -> None:
@@ -52,17 +55,30 @@ def compute(attempt: Attempt) -> None:
         # The schedule did not know its kind of device; it does now.
         attempt.pause_until_resumed(str(error), device=error.recorded)
         return
-    attempt.record_device(experiment.device)
+    sinks = open_sinks(attempt, state.generation)
+    attempt.record_device(experiment.device, sinks.names)
+    with sinks:
+        state = advance(attempt, experiment, state, sinks)
+        done, save = experiment.done(state), cache(lambda: experiment.save(state))
+        attempt.end(done, state.generation, save)
+        files = last_files(experiment, state, save) if sinks.names and done else {}
+        sinks.close(state.generation, files, done=done)
+
+
+def advance(attempt: Attempt, experiment: Experiment, state: Any, sinks: Sinks) -> Any:
+    """Return the state in which the run is done or has to stop; record all until then."""
     with on_cluster(experiment, attempt.services.settings) as computing, suppress(Stopped):
         while not (computing.done(state) or attempt.interrupted()):
             started = time.monotonic()
             before = with_choices(attempt, computing, state)
             state, report = computing.advance(before, stop=attempt.interrupted)
             attempt.record(report, time.monotonic() - started)
+            sinks.report(report)
             if attempt.checkpoint_due():
-                attempt.checkpoint(report.generation, experiment.save(state))
-    done, generation = experiment.done(state), state.generation
-    attempt.end(done, generation, lambda: experiment.save(state))
+                data = experiment.save(state)
+                attempt.checkpoint(report.generation, data)
+                sinks.checkpoint(report.generation, data)
+    return state
 
 
 def with_choices(attempt: Attempt, experiment: Experiment, state: Any) -> Any:

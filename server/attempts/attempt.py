@@ -3,7 +3,7 @@
 import logging
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
@@ -74,9 +74,10 @@ class Attempt:
         # Save the first generation at once: its file holds the centroids of a CVT.
         self.saved_at = time.monotonic() if self.generation else -math.inf
 
-    def record_device(self, device: str) -> None:
-        """Record the kind of device that computes the run from here on."""
-        self._update(f"Computing on {device}.", device=device)
+    def record_device(self, device: str, sinks: Sequence[str] = ()) -> None:
+        """Record the kind of device that computes the run from here on, and its sinks."""
+        copied = f" Curves and files also go to {', '.join(sinks)}." if sinks else ""
+        self._update(f"Computing on {device}.{copied}", device=device, sinks=list(sinks))
 
     @retried
     def initial(self) -> list[dict[str, Any]]:

@@ -21,7 +21,8 @@ END_SECONDS = 0.2
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "HDF5_PLUGIN_PRELOAD": "::"}
 """A process that forks must have one thread, and HDF5 must load no plug-in."""
 SECRETS = [f"MICROCOSMOS_{name}_URL" for name in ("DATABASE", "REDIS", "ARTIFACTS")]
-SECRETS += ["MICROCOSMOS_TOKEN"]
+SECRETS += ["MICROCOSMOS_TOKEN", "WANDB_API_KEY"]
+SECRETS += [f"MLFLOW_TRACKING_{name}" for name in ("USERNAME", "PASSWORD", "TOKEN")]
 """Variables that the process does not inherit."""
 
 

@@ -1,14 +1,12 @@
 """Queries of births: creatures with their parents and the runs in which they entered."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from operator import itemgetter
-from typing import Any
 from uuid import UUID
 
 from sqlalchemy import Select, func, select
 from sqlalchemy.orm import Session, aliased
 
-from microcosmos.archive.phylogeny import NONE, Birth
+from microcosmos.archive.phylogeny import NONE, Birth, births_of, entries
 
 from ..archives.elites import recorded_in
 from ..core.errors import ProblemError
@@ -38,15 +36,8 @@ def entered(session: Session, run: Run) -> list[Birth]:
     ).all()
     names = select(Elite.creature).where(mine, Elite.creature.is_not(None))
     links = select(Parent.child, Parent.parent).where(Parent.child.in_(names))
-    name, next_cell, next_generation = str(run.id), None, 0
-    entries: list[Sequence[Any]] = []
-    for cell, generation, creature, fitness, operator in reversed(rows):
-        lost = next_generation if cell == next_cell else None
-        if creature is not None:
-            entries.append((creature, name, generation, lost, operator, fitness))
-        next_cell, next_generation = cell, generation
-    entries.sort(key=itemgetter(2))
-    return list(_births(entries, _linked(session, links)))
+    found = entries(str(run.id), rows)
+    return list(births_of(found, _linked(session, links)))
 
 
 def ancestors_of_run(session: Session, run: Run) -> list[Birth]:
@@ -155,7 +146,8 @@ def _read(session: Session, names: Iterable[str], besides: UUID | None = None) -
             .order_by(Run.created_at, Run.id, Elite.generation)
         )
         links = select(Parent.child, Parent.parent).where(Parent.child.in_(some))
-        found += _births(session.execute(rows), _linked(session, links))
+        named = ((one[0], one[1] and str(one[1]), *one[2:]) for one in session.execute(rows))
+        found += births_of(named, _linked(session, links))
     return found
 
 
@@ -164,26 +156,3 @@ def _linked(session: Session, links: Select[str, str]) -> Links:
     for child, parent in session.execute(links.order_by(Parent.child, Parent.position)):
         found.setdefault(child, []).append(parent)
     return found
-
-
-def _births(entries: Iterable[Sequence[Any]], links: Links) -> Iterator[Birth]:
-    """Yield the first entry of each creature; it is lost when its run has it in no cell.
-
-    An entry has the name, run, generation, the generation in which its cell went to another
-    (None if it still has it), operator and fitness.
-    """
-    listed: dict[str, list[Sequence[Any]]] = {}
-    for entry in entries:
-        listed.setdefault(entry[0], []).append(entry)
-    for name, found in listed.items():
-        _, run, generation, lost, operator, fitness = found[0]
-        ends = [lost] if len(found) == 1 else [one[3] for one in found if one[1] == run]
-        yield Birth(
-            creature=name,
-            parents=links.get(name, ()),
-            run=run and str(run),
-            generation=NONE if generation is None else generation,
-            lost=NONE if None in ends else max(ends),
-            operator=operator,
-            fitness=fitness,
-        )

@@ -8,11 +8,9 @@ from uuid import UUID
 from fastapi import APIRouter, Depends, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import Response
-from sqlalchemy import select
-from sqlalchemy.orm import Session
 
 from microcosmos.archive import columns
-from microcosmos.archive.phylogeny import Birth, Phylogeny, alife_csv, newick, phylogeny
+from microcosmos.archive.phylogeny import Birth, Phylogeny, alife_csv, newick
 from microcosmos.version import VERSION
 
 from ..archives.shown import refuse_table
@@ -24,6 +22,7 @@ from ..runs.deps import find_run
 from ..services.services import ServicesDep
 from ..tables import Run
 from . import births
+from .trees import arranged, of_run
 
 router = APIRouter(tags=["phylogenies"])
 
@@ -59,14 +58,6 @@ FORMS = (
 )
 
 
-def arranged(session: Session, found: list[Birth]) -> Phylogeny:
-    """Arrange births, with their runs in the order of creation."""
-    named = {UUID(one.run) for one in found if one.run}
-    ordered = select(Run.id).where(Run.id.in_(named)).order_by(Run.created_at, Run.id)
-    runs = [str(run) for run in session.scalars(ordered)]
-    return phylogeny(found, runs, births.initial(session, named))
-
-
 @dataclass(frozen=True)
 class RunTree:
     """The tree of a run in the state of one moment."""
@@ -97,13 +88,10 @@ def _headers(form: Form, name: str) -> dict[str, str]:
 def _run_reader(form: Form) -> Callable[..., Awaitable[Response]]:
     async def read(request: Request, tree: RunTreeDep, services: ServicesDep) -> Response:
         run, above = tree.run, tree.ancestors
-        known = {one.creature for one in above}
 
         def make() -> bytes:
             with services.sessions.read() as session:
-                mine = births.entered(session, run)
-                alone = [one for one in mine if one.creature not in known]
-                return form.write(arranged(session, [*above, *alone]))
+                return form.write(of_run(session, run, above))
 
         tag = tag_of(VERSION, form.ending, run.id, run.rewinds, run.generation, above)
         kept = request.app.state.archive_answers

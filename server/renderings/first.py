@@ -17,7 +17,7 @@ from ..queue.jobs import FIRST
 from ..services.services import ServicesDep
 from ..specs.deps import SPEC_BYTES, SpecDep
 from . import storage
-from .routes import PENDING
+from .responses import PENDING
 from .schemas import Rendering
 
 router = APIRouter(tags=["runs"], route_class=json_route(SPEC_BYTES))

@@ -6,6 +6,7 @@ from sqlalchemy.orm import Session
 
 from microcosmos.archive import columns
 
+from ..core.api import Answers
 from ..services.services import Services
 from ..storage import ranges
 from ..tables import (
@@ -34,6 +35,7 @@ MEDIA_TYPES = {
     MEASUREMENT: "application/json",
     EVALUATION: columns.MEDIA_TYPE,
 }
+PENDING: Answers = {202: {"model": Rendering}}
 ON_REQUEST = (REPLAY, STRIP, PREVIEW, LOOP, GIF, MP4, EVALUATION)
 """Renderings that the first request for them enqueues. Audits and measurements are ordered."""
 

@@ -16,11 +16,10 @@ from ..creatures.deps import CreatureDep
 from ..services.services import ServicesDep, SessionDep
 from ..tables import AUDIT, EVALUATION, LOOP, MEASUREMENT, PREVIEW, REPLAY
 from . import poses, storage
-from .responses import MEDIA_TYPES, ON_REQUEST, enqueued, existing
+from .responses import MEDIA_TYPES, ON_REQUEST, PENDING, enqueued, existing
 from .schemas import Measurement, Rendering, Verdict
 
 router = APIRouter(prefix="/creatures/{sha}", tags=["creatures"])
-PENDING: Answers = {202: {"model": Rendering}}
 EXPORTS = (
     ("csv", "text/csv", PoseStream.csv),
     ("npz", "application/octet-stream", PoseStream.npz),

@@ -161,6 +161,8 @@ class RunRead(RunBrief):
     error: str | None
     warning: str | None
     device: str | None
+    sinks: list[str] | None
+    """Where its curves and files go too, as `tensorboard:FOLDER`; null before it starts."""
     version: str
     owner: str | None
     """Name of the token that created it."""

@@ -109,6 +109,8 @@ class Run(Owned, Base):
     """The worker of an attempt that failed: others go first."""
     device: Mapped[str | None] = mapped_column(Text)
     """The kind of device that has computed it so far."""
+    sinks: Mapped[list[str] | None] = mapped_column(JSON(none_as_null=True))
+    """Where its worker sends curves and files too, as `tensorboard:FOLDER`."""
     heartbeat_at: Mapped[datetime | None]
     generations: Mapped[int]
     """Number of generations at the end."""

@@ -117,7 +117,7 @@ def broken(
 TEXT = (Path(__file__).parents[2] / "docs" / "operation.md").read_text()
 ELSEWHERE = {"database_url", "redis_url", "artifacts_url", "token", "max_bytes", "data"}
 ELSEWHERE |= {"public_url", "modules", "labels", "cluster", "cluster_certificate"}
-ELSEWHERE |= {"webhook_url", "webhook_secret"}
+ELSEWHERE |= {"webhook_url", "webhook_secret", "sinks"}
 """Settings whose defaults are described in words."""
 
 

@@ -83,9 +83,10 @@ from worker.evolution import carry_out
 outcome = {}
 for spec in json.loads(sys.argv[1]):
     attempt = SimpleNamespace(
+        run_id="a",
         spec=spec,
         services=SimpleNamespace(settings=Settings()),
-        record_device=lambda device: None,
+        record_device=lambda device, sinks: None,
         restore=lambda: None,
         initial=lambda: [],
         pause_until_resumed=lambda text: outcome.update(aside=text),

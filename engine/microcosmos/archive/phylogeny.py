@@ -1,10 +1,11 @@
 """Phylogenies: creatures with parents and times, as ALife standard CSV, Newick and columns."""
 
 import csv
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from io import StringIO
-from typing import NamedTuple
+from operator import itemgetter
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,6 +26,53 @@ class Birth(NamedTuple):
     """The generation in which its last cell went to another, or `NONE`."""
     operator: str | None
     fitness: float | None
+
+
+Entry = tuple[str, str | None, int | None, int | None, str | None, float | None]
+"""Creature, run, generation, the generation in which its cell went to another (None if it
+still has it), operator and fitness."""
+
+
+def entries(
+    run: str, rows: Sequence[Sequence[Any]], held: Callable[[str], int | None] | None = None
+) -> list[Entry]:
+    """Return the entries of a run by generation, from rows of cell, generation, creature,
+    fitness and operator, in the order of cells and generations.
+
+    A row without a creature empties its cell. `held` tells of the last creature of a cell when
+    it was lost, None if it still has it.
+    """
+    found: list[Entry] = []
+    next_cell, next_generation = None, 0
+    for cell, generation, creature, fitness, operator in reversed(rows):
+        lost = held(creature) if held and creature else None
+        lost = next_generation if cell == next_cell else lost
+        if creature is not None:
+            found.append((creature, run, generation, lost, operator, fitness))
+        next_cell, next_generation = cell, generation
+    return sorted(found, key=itemgetter(2))
+
+
+def births_of(found: Iterable[Entry], links: Mapping[str, Sequence[str]]) -> Iterator[Birth]:
+    """Yield the first entry of each creature; it is lost when its run has it in no cell.
+
+    `links` are parents by the name of their child, in the order in which it names them.
+    """
+    listed: dict[str, list[Entry]] = {}
+    for entry in found:
+        listed.setdefault(entry[0], []).append(entry)
+    for name, mine in listed.items():
+        _, run, generation, lost, operator, fitness = mine[0]
+        ends = [lost] if len(mine) == 1 else [one[3] for one in mine if one[1] == run]
+        yield Birth(
+            creature=name,
+            parents=links.get(name, ()),
+            run=run,
+            generation=NONE if generation is None else generation,
+            lost=NONE if None in ends else max(end for end in ends if end is not None),
+            operator=operator,
+            fitness=fitness,
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,9 @@ from ..archive.atomic import write_whole
 from ..experiments import Experiment, Report, Stopped, breeding
 from ..experiments.evolution import Evolution
 from ..search import never
+from ..sinks import address
+from ..sinks.delivery import Sinks
+from ..sinks.record import of_file
 from ..spec import Archive, Refinement, Spec, breeding_refusal
 from . import build
 
@@ -24,6 +27,7 @@ def evolve(
     *,
     stop: Callable[[], bool] = never,
     tell: Callable[[Report], None] = lambda report: None,
+    sinks: Sequence[str] = (),
     checkpoint_seconds: float = 60.0,
     other_device: bool = False,
     initial: Sequence[Mapping[str, Any]] = (),
@@ -35,10 +39,13 @@ def evolve(
     The archive file is the checkpoint: a run resumed from it ends with the same bytes as an
     uninterrupted one. The best creature is written beside it. `initial` are the creature files
     that `search.initial` names; a resumed run needs none. `over` may give the run other
-    devices, as `partial(cluster.over, url="tls://host:8786")` does. Raises `ValueError` where
+    devices, as `partial(cluster.over, url="tls://host:8786")` does. `sinks` are places that get
+    curves, pictures and the last files, as `tensorboard:FOLDER`; they never fail or slow the
+    run, see `docs/exports.md`. Raises `ValueError` where
     the file is of another spec or of other `choices`, where a choice is of no creature of the
     run, and, without `other_device`, where the file is of another kind of device.
     """
+    addresses = address.parse_all(sinks)
     if choices and (refusal := breeding_refusal(spec.model_dump(mode="json"))):
         raise ValueError(refusal)
     built = build(spec, initial) if initial else build(spec)
@@ -46,8 +53,11 @@ def evolve(
         state = _begun(experiment, archive, other_device)
         if choices:
             _refuse_others(experiment, state, choices)
-        given = experiment, state, archive, stop, tell, checkpoint_seconds
-        return _carry_out(*given, choices or {})
+        document = spec.model_dump(mode="json")
+        record = of_file(archive, document, getattr(state, "generation", 0))
+        with Sinks(addresses, record) as followers:
+            given = experiment, state, archive, stop, tell, followers, checkpoint_seconds
+            return _carry_out(*given, choices or {})
 
 
 def _begun(experiment: Experiment, archive: Path, other_device: bool) -> Any:
@@ -80,6 +90,7 @@ def _carry_out(
     archive: Path,
     stop: Callable[[], bool],
     tell: Callable[[Report], None],
+    sinks: Sinks,
     checkpoint_seconds: float,
     choices: Choices,
 ) -> bool:
@@ -92,13 +103,18 @@ def _carry_out(
                 before = experiment.choose(state, files)
             state, report = experiment.advance(before, stop)
             tell(report)
+            sinks.report(report)
             if time.monotonic() - saved >= checkpoint_seconds:
-                _save(experiment, state, archive)
+                sinks.checkpoint(state.generation, _save(experiment, state, archive))
                 saved = time.monotonic()
     except Stopped:
         pass
-    _save(experiment, state, archive)
-    return experiment.done(state)
+    data, done = _save(experiment, state, archive), experiment.done(state)
+    files = {archive.name: data} if done else {}
+    if done and (best := archive.with_suffix(".best.json")).exists():
+        files[best.name] = best.read_bytes()
+    sinks.close(state.generation, files, done=done)
+    return done
 
 
 def refine(
@@ -119,9 +135,12 @@ def refine(
     return refined, [dict(row.values) for row in state.table.rows]
 
 
-def _save(experiment: Experiment, state: Any, archive: Path) -> None:
-    write_whole(archive, experiment.save(state))
+def _save(experiment: Experiment, state: Any, archive: Path) -> bytes:
+    """Write the archive file, and the best creature beside it; return the former."""
+    data = experiment.save(state)
+    write_whole(archive, data)
     best = experiment.best(state)
     if best is not None:
         path = archive.with_suffix(".best.json")
         write_whole(path, json.dumps(best, indent=1).encode())
+    return data

@@ -8,6 +8,7 @@ from . import (
     doctor,
     draw,
     draw_groups,
+    exporting,
     manage,
     modules,
     monitor,

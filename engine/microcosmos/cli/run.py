@@ -22,6 +22,7 @@ from ..archive import choices as choices_file
 from ..archive.creature import parse
 from ..archive.file import read_table
 from ..doctor.machine import memory_bytes
+from ..sinks.address import parse_all
 from ..spec import Archive, Refinement, Spec, estimate
 from .app import CACHE, CreaturePath, OtherDevice, Set, app, console, fail, failing
 from .cluster import Certificate
@@ -35,6 +36,15 @@ Choices = Annotated[
         exists=True,
         dir_okay=False,
         help="File of chosen creatures that generations descend from, as a server exports it.",
+    ),
+]
+
+SinkAddresses = Annotated[
+    list[str] | None,
+    Option(
+        "--sink",
+        help="Also send curves, pictures and files to tensorboard:FOLDER, mlflow:URI or "
+        "wandb:PROJECT; repeatable.",
     ),
 ]
 
@@ -65,10 +75,13 @@ def evolve(
         Option(help="Scheduler whose helpers compute too, like tls://host:8786."),
     ] = None,
     certificate: Certificate = None,
+    sink: SinkAddresses = None,
     module: Modules = None,
 ) -> None:
     """Carry out a run. If the archive file exists, continue it."""
     load_modules(module)
+    with failing("--sink"):
+        parse_all(sink or ())
     chosen = changed(read_spec(spec), settings or [])
     if generations is not None:
         chosen = with_generations(chosen, generations)
@@ -79,6 +92,7 @@ def evolve(
     chosen, initial = with_initial(chosen, begin_from or (), path)
     console.print(f"{evaluations:,} evaluations on {device_kind()} into {path}")
     options = {**_over(cluster, certificate), "choices": _read_choices(choices)}
+    options["sinks"] = sink or ()
     run_with_progress(chosen, path, checkpoint_seconds, other_device, initial, **options)
     best = path.with_suffix(".best.json")
     console.print(f"Done: {path}" + (f"; the best creature: {best}" if best.exists() else ""))

@@ -8,6 +8,9 @@ import numpy as np
 from ..archive import poses
 from ..archive.axes import Axis, cells
 from ..archive.export import scaled, unit
+from ..exports import arrow, dataset
+from ..exports.table import Column, Elites, placed
+from ..exports.tables import bins
 from . import columns, drawing
 from .connection import Connection
 from .creature import Creature
@@ -107,6 +110,45 @@ class Archive:
         Genes are in the run's file: `microcosmos.to_pandas(run.pull("run.h5"))`.
         """
         return columns.frame(self.columns())
+
+    def to_arrow(self) -> Any:
+        """Return a `pyarrow.Table` with a row for each elite, in columns of
+        `microcosmos.to_arrow`; raise `ImportError` without pyarrow."""
+        return arrow.of_columns(self.elites().columns, self.run)
+
+    def to_xarray(self) -> Any:
+        """Return an `xarray.Dataset` over the axes, as `microcosmos.to_xarray` does; raise
+        `ImportError` without xarray."""
+        return dataset.of_elites(self.elites())
+
+    def elites(self) -> Elites:
+        """Return the columns with titles and units."""
+        axes = {axis["name"]: axis for axis in self.axes}
+        about = {one["name"]: (one["title"], one["unit"] or "1") for one in self.recorded}
+        entered = self.elite_generation
+        age = (self.generation - entered).astype(np.int32)
+        found = {
+            "creature": Column(self.creature, "SHA-256 of the creature's identity"),
+            "cell": Column(
+                self.cell, "Place in the container" if self.kind == "pool" else "Cell"
+            ),
+            "fitness": Column(self.fitness, "Fitness", ""),
+            "generation": Column(entered, "Generation of the elite", "generations"),
+            "age": Column(age, "Age", "generations"),
+        }
+        if self.kind == "grid":
+            found |= bins(self.cell, self.axes)
+        for name, values in self.measures.items():
+            column = Column(values, *about[name], axis=axes.get(name))
+            found[placed(name, found)] = column
+        attributes = {"run": self.run, "generation": self.generation}
+        return Elites(self.kind, self.axes, self.cell, found, self._centroids(), attributes)
+
+    def _centroids(self) -> np.ndarray | None:
+        if self.kind != "cvt":
+            return None
+        found = self._connection.read(f"runs/{self.run}/archive/centroids")["centroids"]
+        return np.array(found, np.float32)
 
     def columns(self) -> dict[str, Any]:
         place = unit if self.kind == "cvt" else scaled

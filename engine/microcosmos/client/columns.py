@@ -1,12 +1,13 @@
 """Tables of results: columns and rows, as data frames where pandas is installed."""
 
-import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from ..archive.file import load
+from ..exports import tables
+from ..exports.run_file import RunFile
+from ..exports.table import Ragged
 from ..optional import require
 
 
@@ -73,18 +74,14 @@ def lineage(data: bytes) -> Columns:
 
     Raise `ValueError` if the file holds no archive.
     """
-    tree, attributes = load(data)
-    if "lineage" not in tree:
-        raise ValueError("a run that fills an archive is needed for a lineage; got a table")
-    rows = tree["lineage"]
-    operators = json.loads(attributes["operators"])
-    axes = [axis["name"] for axis in json.loads(attributes["spec"])["archive"]["descriptors"]]
-    found = {
-        "creature": [bytes(row).hex() for row in rows["creature"]],
-        "parents": _objects(
-            [[bytes(p).hex() for p in row if p.any()] for row in rows["parents"]]
-        ),
-        "operator": [operators[number] for number in rows["operator"]],
-    }
-    found |= {name: rows[name] for name in ("generation", "cell", "fitness")}
-    return Columns(found | {axis: rows["descriptors"][:, i] for i, axis in enumerate(axes)})
+    found = tables.lineage(RunFile("run", data))
+    return Columns({name: listed(column.values) for name, column in found.items()})
+
+
+def listed(values: Any) -> Any:
+    """Return lists of different lengths as an array of objects."""
+    if not isinstance(values, Ragged):
+        return values
+    ends = np.cumsum(values.counts)
+    starts = ends - values.counts
+    return _objects([values.items[i:j] for i, j in zip(starts, ends, strict=True)])

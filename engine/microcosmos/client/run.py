@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, Self
 from uuid import uuid4
 
-from . import files, polling
+from . import exporting, files, polling
 from .archive import Archive
 from .columns import Columns, Table, lineage
 from .creature import Creature
@@ -200,6 +200,11 @@ class Run(Record):
         to = to / f"{self.experiment}-{self.id[:8]}.h5" if to.is_dir() else to
         with files.progress_bar(to.name, quiet) as tell:
             return files.fetch(self._connection, f"{self._path}/archive.h5", to, tell)
+
+    def export(self, form: str, to: str | Path | None = None, **options: Any) -> list[Path]:
+        """Write its last checkpoint in a format that other programs read; see
+        `microcosmos.export`, which takes several runs, for `form`, `to` and the options."""
+        return exporting.export(self, form, to, **options)
 
     def share(self, *, generation: int | None = None, **options: Any) -> Share:
         """Publish its archive under a link; `title`, `credit`, `licence`, `days`, `listed`."""

@@ -47,6 +47,8 @@ function follow(url: string, name: string): void {
 }
 
 export const archiveUrl = (id: string, kind: "h5" | "csv") => `${ROOT}/runs/${id}/archive.${kind}`;
+export type ExportFormat = "parquet" | "arrow" | "alife" | "newick" | "netcdf" | "ro-crate";
+export const exportUrl = (id: string, format: ExportFormat) => `${ROOT}/runs/${id}/export/${format}`;
 export const resultsUrl = (id: string) => `${ROOT}/runs/${id}/results.csv`;
 /** With the spec, all that repeats a run with chosen creatures. */
 export const choicesUrl = (id: string) => `${ROOT}/runs/${id}/choices.json`;

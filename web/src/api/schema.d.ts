@@ -970,6 +970,27 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/runs/{run_id}/export/{form}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Export Run
+         * @description Return the last checkpoint of a run as `parquet`, `arrow` or `ro-crate` (a ZIP of
+         *     several files), `netcdf`, `alife` or `newick`.
+         */
+        get: operations["export_run_api_v1_runs__run_id__export__form__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/runs/{run_id}/extend": {
         parameters: {
             query?: never;
@@ -2274,6 +2295,12 @@ export interface components {
             run: string | null;
         };
         /**
+         * Format
+         * @description What other programs read.
+         * @enum {string}
+         */
+        Format: "parquet" | "arrow" | "alife" | "newick" | "netcdf" | "ro-crate";
+        /**
          * GpuRead
          * @description The state of a GPU; None where it does not tell.
          */
@@ -3105,6 +3132,8 @@ export interface components {
             queued_at: string;
             /** Requested State */
             requested_state: ("paused" | "cancelled" | "queued") | null;
+            /** Sinks */
+            sinks: string[] | null;
             /** Sparkline */
             sparkline: number[];
             /** Spec */
@@ -5653,6 +5682,52 @@ export interface operations {
                 content: {
                     "application/json": unknown;
                 };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    export_run_api_v1_runs__run_id__export__form__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+                form: components["schemas"]["Format"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/zip": unknown;
+                };
+            };
+            /** @description Not Modified */
+            304: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description A problem (RFC 9457) */
             default: {

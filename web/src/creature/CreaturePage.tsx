@@ -102,6 +102,7 @@ export function CreatureView({ creature, query, audit, title, address = null }: 
   }, [replay]);
   return (
     <>
+      <KeyFacts creature={creature} />
       <div class="creature-columns">
         <div class="motion stack">
           <section class="card" aria-label={text.replay}>
@@ -141,6 +142,17 @@ const othersOf = (sha: string): Others => ({
     </>
   ),
 });
+
+/** What it reached and where it comes from, in one line. */
+function KeyFacts({ creature: { measured, provenance, identity } }: { creature: Creature }) {
+  const facts = [
+    ...(measured ? [text.reached(number(measured.fitness, 3), identity.task.fitness)] : []),
+    ...(provenance && identity.genome.encoding !== "gait"
+      ? [text.born(provenance.generation, provenance.operator)]
+      : []),
+  ];
+  return facts.length > 0 ? <p class="quiet key-facts">{facts.join(" · ")}</p> : null;
+}
 
 function ReplayFitness({ replay, task }: { replay: Replay; task: Spec }) {
   const { recorded, replayed, difference } = replay.header.fitness;

@@ -39,6 +39,9 @@ export const text = {
   replay: "Replay",
   recording: "Simulating this creature to record the fluid around it …",
   swimming: "The creature swims its last two strokes",
+  reached: (fitness: string, measured: unknown) =>
+    measured === "speed" ? `Swims ${fitness} body lengths in 1,000 steps` : `Fitness ${fitness}`,
+  born: (generation: number, operator: string) => `born in generation ${generation} by ${operator}`,
   replayFitness: (fitness: string | null, measured: unknown) => {
     if (fitness === null) return "The replay has no fitness: the plug-in of the task was not loaded";
     if (measured === "speed") return `Speed in this replay: ${fitness} body lengths in 1,000 steps`;

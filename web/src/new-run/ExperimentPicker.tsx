@@ -29,7 +29,7 @@ export function ExperimentPicker({
         {experiments.map((one) => {
           const [name, sentence] = one.title.split(": ") as [string, string?];
           return (
-            <label key={one.experiment} class="experiment">
+            <label key={one.experiment} class="experiment" title={words(sentence ?? "")}>
               <input
                 type="radio"
                 name="experiment"
@@ -37,7 +37,7 @@ export function ExperimentPicker({
                 onChange={() => onExperiment(one)}
               />
               <b>{name}</b>
-              <span>{words(sentence ?? "")}</span>
+              <span class={one === selected ? "" : "unseen"}>{words(sentence ?? "")}</span>
             </label>
           );
         })}
@@ -53,12 +53,15 @@ export function ExperimentPicker({
             onClick={() => onPreset(each, selected)}
           >
             <b>{words(each.name)}</b>
-            <span>{each.title}</span>
+            <span class="preset-title" title={each.title}>
+              {each.title}
+            </span>
             <span class="preset-cost">{costOf(estimates.get(each))}</span>
           </button>
         ))}
         {selected.presets.length === 0 && <p class="quiet needs-creature">{text.needsCreature}</p>}
       </fieldset>
+      {preset && <p class="quiet small preset-about">{preset.title}.</p>}
     </>
   );
 }

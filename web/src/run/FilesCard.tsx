@@ -1,11 +1,13 @@
 /** Files of a run. */
 
+import { sharedSlug } from "../api/address";
 import { archiveUrl, choicesUrl, resultsUrl } from "../api/files";
 import type { Run } from "../api/types";
 import { useKnownChoices } from "../store/choices";
 import { hasArchive } from "../store/fetch";
 import { FileLink } from "../ui/links";
 import { Card } from "../ui/Page";
+import { ExportMenu } from "./exports/ExportMenu";
 import { text } from "./text";
 
 export function FilesCard({ run, about }: { run: Run; about: string }) {
@@ -15,11 +17,12 @@ export function FilesCard({ run, about }: { run: Run; about: string }) {
     : ["results", resultsUrl(run.id)];
   return (
     <Card id="files" title={text.files}>
-      <p class="links">
+      <div class="links">
         <FileLink url={archiveUrl(run.id, "h5")} name={`${name}.h5`} />
         <FileLink url={csv} name={`${name}.csv`} />
         {chosen && <FileLink url={choicesUrl(run.id)} name="choices.json" title={text.choicesAbout} />}
-      </p>
+        {!sharedSlug && <ExportMenu run={run} />}
+      </div>
       <p class="quiet">{about}</p>
     </Card>
   );

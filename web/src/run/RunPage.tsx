@@ -15,7 +15,6 @@ import { count, dateTime, number, shortId, titleOf } from "../ui/format";
 import { NotFound, Page, useTitle } from "../ui/Page";
 import { NameField } from "./NameField";
 import { ArchiveRun } from "./ArchiveRun";
-import { FilesCard } from "./FilesCard";
 import { ForkLink } from "../ui/links";
 import { ForkedFrom, BinNotice, LifecycleButtons } from "./Lifecycle";
 import { LogCard } from "./LogCard";
@@ -26,6 +25,7 @@ import { text } from "./text";
 import { Term } from "../ui/Term";
 import "./run.css";
 
+const FilesCard = lazy(async () => (await import("./FilesCard")).FilesCard, "section");
 const GaitsRun = lazy(async () => (await import("./gaits/GaitsRun")).GaitsRun, "section");
 const LearningRun = lazy(async () => (await import("./learning/LearningRun")).LearningRun, "section");
 const PopulationCards = lazy(

@@ -102,7 +102,7 @@ def _runs() -> None:
         sa.Column("id", sa.Uuid(), primary_key=True),
         *required(sa.String(length=64), "experiment", "version"),
         sa.Column("spec", JSON_OR_NULL, nullable=False),
-        *optional(JSON_OR_NULL, "plugin_versions", "summary"),
+        *optional(JSON_OR_NULL, "plugin_versions", "summary", "sinks"),
         *required(sa.Boolean(), "demonstration", "interrupted", "may_yield"),
         sa.Column("name", sa.String(length=200)),
         *required(sa.JSON(), "tags", "labels"),

@@ -1,0 +1,1 @@
+"""Exports of runs for other programs: tables, datasets, phylogenies, RO-Crates; JAX-free."""

@@ -1,0 +1,139 @@
+"""Arrow tables of runs, and their Parquet and Arrow files."""
+
+import json
+from collections.abc import Callable, Sequence
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+
+from ..archive.export import Source, source_bytes
+from ..optional import require
+from . import tables
+from .run_file import RunFile
+from .table import Column, Columns, Ragged
+
+FORMAT = "microcosmos-table/1"
+EXTRA = "microcosmos[exports]"
+ITEM = "element"
+"""Name of the items of lists in Parquet."""
+
+
+def to_arrow(archive: Source, table: str = "archive", run: str = "run") -> Any:
+    """Return a table of a run's file as a `pyarrow.Table`.
+
+    `table` is `archive`, `curves`, `lineage`, `genomes` or `poses`, or `result` for a run
+    without an archive; `docs/formats.md` describes the columns. `run` fills the first one.
+    Titles and units are metadata of the fields, the spec is metadata of the schema. Raises
+    `ValueError` for a table that the run lacks, and `ImportError` without pyarrow.
+    """
+    return of_runs([RunFile(run, source_bytes(archive))], table)
+
+
+def of_runs(runs: Sequence[RunFile], table: str) -> Any:
+    """Return a table of several runs, one after another; the first column names the run.
+
+    A column that one run lacks is null in its rows.
+    """
+    pa = require("pyarrow", EXTRA)
+    parts = [of_columns(_of(run, table), run.name) for run in runs if table in _have(run)]
+    if not parts:
+        known = ", ".join(tables.names(list(runs)))
+        raise ValueError(f"`table` must be one of {known}, got {table!r}")
+    whole = pa.concat_tables(parts, promote_options="default").unify_dictionaries()
+    about = {
+        "format": FORMAT,
+        "table": table,
+        "runs": json.dumps({run.name: run.facts() for run in runs}, ensure_ascii=False),
+    }
+    return whole.replace_schema_metadata(about)
+
+
+def _have(run: RunFile) -> Sequence[str]:
+    return list(tables.makers(run))
+
+
+def _of(run: RunFile, table: str) -> Columns:
+    return tables.makers(run)[table](run)
+
+
+def of_columns(columns: Columns, run: str) -> Any:
+    """Return columns as a `pyarrow.Table` behind a column with the name of the run."""
+    pa = require("pyarrow", EXTRA)
+    count = next((_rows(one) for one in columns.values()), 0)
+    named = Column([run] * count, "Run", "", repeated=True)
+    whole = {"run": named, **columns}
+    arrays = {name: _array(pa, column) for name, column in whole.items()}
+    fields = [
+        pa.field(name, arrays[name].type, metadata=_about(column))
+        for name, column in whole.items()
+    ]
+    return pa.table(list(arrays.values()), schema=pa.schema(fields))
+
+
+def _rows(column: Column) -> int:
+    values = column.values
+    return len(values.counts if isinstance(values, Ragged) else values)
+
+
+def _about(column: Column) -> dict[str, str]:
+    found = {"title": column.title}
+    found |= {"unit": column.unit} if column.unit else {}
+    if column.axis is not None:
+        names = ("low", "high", "bins", "scale")
+        found["axis"] = json.dumps({name: column.axis[name] for name in names})
+    return found
+
+
+def _array(pa: Any, column: Column) -> Any:
+    if column.repeated:
+        return pa.array(column.values, pa.string()).dictionary_encode()
+    return _values(pa, column.values)
+
+
+def _values(pa: Any, values: Any) -> Any:
+    """Return values without a change of a bit; NaN stays NaN."""
+    if isinstance(values, Ragged):
+        offsets = np.concatenate([[0], np.cumsum(values.counts)]).astype(np.int32)
+        items = _values(pa, values.items)
+        kind = pa.list_(pa.field(ITEM, items.type))
+        return pa.ListArray.from_arrays(pa.array(offsets), items, type=kind)
+    if not isinstance(values, np.ndarray):
+        return pa.array(values, pa.string())
+    if values.ndim == 2:
+        flat = pa.array(np.ascontiguousarray(values).ravel())
+        kind = pa.list_(pa.field(ITEM, flat.type), values.shape[1])
+        return pa.FixedSizeListArray.from_arrays(flat, type=kind)
+    return pa.array(np.ascontiguousarray(values))
+
+
+def parquet(table: Any) -> bytes:
+    """Return a Parquet file, compressed by Zstandard.
+
+    Bytes of floats are split by place, which halves poses.
+    """
+    pa, file = require("pyarrow", EXTRA), BytesIO()
+    words = [one.name for one in table.schema if pa.types.is_dictionary(one.type)]
+    leaves = [_leaf(pa, one.name, one.type) for one in table.schema]
+    split = [path for path, kind in leaves if pa.types.is_floating(kind)]
+    options = {"use_dictionary": words, "use_byte_stream_split": split, "compression": "zstd"}
+    require("pyarrow.parquet", EXTRA).write_table(table, file, **options)
+    return file.getvalue()
+
+
+def _leaf(pa: Any, path: str, kind: Any) -> tuple[str, Any]:
+    """Return the path and type of what a column's lists hold, as Parquet names it."""
+    if pa.types.is_list(kind) or pa.types.is_fixed_size_list(kind):
+        return _leaf(pa, f"{path}.list.{ITEM}", kind.value_type)
+    return path, kind
+
+
+def arrow(table: Any) -> bytes:
+    """Return an Arrow IPC file, which is not compressed, so that it can be mapped."""
+    ipc, file = require("pyarrow.ipc", EXTRA), BytesIO()
+    with ipc.new_file(file, table.schema) as writer:
+        writer.write_table(table)
+    return file.getvalue()
+
+
+WRITERS: dict[str, Callable[[Any], bytes]] = {"parquet": parquet, "arrow": arrow}

@@ -1,0 +1,1 @@
+"""Exports of runs: tables, datasets, phylogenies and RO-Crates for other programs."""

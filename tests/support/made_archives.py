@@ -1,0 +1,84 @@
+"""Archives that tests of exports make up."""
+
+import json
+
+import numpy as np
+
+from microcosmos.archive import file, poses
+from microcosmos.spec.measures import MEASURES
+
+AXES = [
+    {"name": "bending_effort", "low": 1e-4, "high": 100.0, "bins": 4, "scale": "log10"},
+    {"name": "straightness", "low": 0.0, "high": 1.0, "bins": 3, "scale": "linear"},
+]
+AROUND = np.random.default_rng(0).random((12, 2)).astype(np.float32)
+CELLS = np.array([1, 6, 11], np.int32)
+
+
+def stream(nodes, creature):
+    draw = np.random.default_rng(nodes)
+    places, origin, scale = poses.quantised(draw.random((64, nodes, 2)) * 9)
+    edges = np.stack([np.arange(nodes - 1), np.arange(1, nodes)], 1)
+    path = draw.random((65, 2)).astype(np.float32)
+    return poses.PoseStream(
+        places, path, origin, scale, edges, 40, 100, 2, 100, (24, 24), 7.5, creature
+    )
+
+
+def elites(kind, sizes, generations):
+    """Return the group `archive` of the elites, whose bodies have so many nodes."""
+    names, draw = np.arange(96, dtype=np.uint8).reshape(3, 32), np.random.default_rng(1)
+    streams = [stream(n, bytes(name).hex()) for n, name in zip(sizes, names, strict=True)]
+    found = {
+        "cell": CELLS,
+        "fitness": np.array([1.5, 2.5, np.pi], np.float32),
+        "measures": draw.random((3, len(MEASURES))).astype(np.float32),
+        "generation": np.array(generations, np.int32),
+        "curiosity": np.ones(3, np.float32),
+        "operator": np.array([0, 1, 1], np.int32),
+        "device": np.zeros(3, np.int32),
+        "creature": names,
+        "genomes": {"weight": draw.random((3, 4)).astype(np.float32)},
+        "poses": poses.columns(streams),
+    }
+    return found | ({"centroids": AROUND} if kind == "cvt" else {})
+
+
+def made(kind="grid", sizes=(3, 5, 4), parents=None, generations=(1, 2, 2), **arrays):
+    """Return the bytes of an archive whose elites lie in cells 1, 6 and 11."""
+    container = {"kind": "novelty", "size": 12} if kind == "pool" else None
+    described = {"descriptors": AXES, "container": container}
+    described |= {"centroids": 12 if kind == "cvt" else None}
+    archive = elites(kind, sizes, generations)
+    copied = ("creature", "operator", "generation", "cell", "fitness")
+    lineage = {
+        **{name: archive[name] for name in copied},
+        "parents": np.zeros((3, 2, 32), np.uint8) if parents is None else parents,
+        "descriptors": archive["measures"][:, :2],
+    }
+    curves = ("qd_score", "coverage", "best", "mean", "evaluations")
+    tree = {
+        "archive": archive,
+        "curves": {name: np.full(3, 3.0) for name in curves},
+        "emitters": {"children": np.full((3, 1), 8)},
+        "lineage": lineage,
+        "loop": {"generation": np.int64(3)},
+        **arrays,
+    }
+    document = {
+        "experiment": "quality-diversity",
+        "archive": described,
+        "seed": 0,
+        "task": {"fitness": "speed", "steps": 100},
+        "world": {"width": 24, "height": 24},
+        "search": {"generations": 3},
+    }
+    attributes = {
+        "format": file.FORMAT,
+        "version": "0.1.0",
+        "device": '["cpu"]',
+        "spec": json.dumps(document),
+        "measures": json.dumps(list(MEASURES)),
+        "operators": '["random", "neat"]',
+    }
+    return file.dump(tree, attributes)
