@@ -40,7 +40,7 @@ export function PhysicalUnits({ creature }: { creature: Creature }) {
     <label class="compact">
       {title}
       <input
-        size={8}
+        size={6}
         value={typed[name]}
         placeholder={such}
         aria-invalid={typed[name] !== "" && value === null}
