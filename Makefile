@@ -14,7 +14,7 @@ WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist 
 # Tests start hundreds of processes, which need not read all sources anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: run install web wheels simulator style-python style-page test test-all test-long mutants check peers \
+.PHONY: run install web wheels simulator style-python style-page test test-all test-long mutants check peers lab \
 	bench acceptance fuzz validate pictures docs texts release-check lock
 
 run: install web
@@ -98,6 +98,10 @@ mutants: install web
 peers: install
 	@$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements-peers.lock
 
+# JupyterLab, in which a test opens a notebook.
+lab: install
+	@$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements-lab.lock
+
 bench: peers web
 	$(BIN)/python engine/benchmarks/physics.py
 	$(BIN)/python engine/benchmarks/accelerator.py
@@ -161,7 +165,7 @@ simulator: $(INSTALLED)
 	@$(BIN)/python engine/kernels/wasm.py web/src/simulate/kernel.wasm
 
 # Install the wheel into an empty environment, with the newest versions of its dependencies.
-release-check: install
+release-check: install web
 	rm -f dist/microcosmos-* && $(BIN)/python -m pip wheel -q --disable-pip-version-check --no-build-isolation --no-deps -w dist .
 	folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && $(PYTHON) -m venv $$folder/venv \
 	&& $$folder/venv/bin/pip install -q --disable-pip-version-check dist/microcosmos-*.whl && cd $$folder \
@@ -187,9 +191,10 @@ SINKS := --extra exports --extra tensorboard --extra mlflow --extra wandb
 lock:
 	@$(BIN)/python -m pip install -q --disable-pip-version-check uv
 	$(eval COMPILE := $(BIN)/uv pip compile -q --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header --no-annotate)
-	$(COMPILE) pyproject.toml --group dev --group server --group build --extra figures --extra studies --extra shapes --extra cluster $(SINKS) -o requirements.lock
-	$(COMPILE) pyproject.toml --group dev --group server --group build --extra figures --extra studies --extra shapes --extra cluster $(SINKS) --extra cuda -c requirements.lock -o requirements-cuda.lock
+	$(COMPILE) pyproject.toml --group dev --group server --group build --extra figures --extra studies --extra notebook --extra shapes --extra cluster $(SINKS) -o requirements.lock
+	$(COMPILE) pyproject.toml --group dev --group server --group build --extra figures --extra studies --extra notebook --extra shapes --extra cluster $(SINKS) --extra cuda -c requirements.lock -o requirements-cuda.lock
 	$(COMPILE) --group pyproject.toml:server -c requirements.lock -o requirements-server.lock
+	$(COMPILE) --group pyproject.toml:lab -c requirements.lock -o requirements-lab.lock
 	$(COMPILE) --group pyproject.toml:docs -c requirements.lock -o requirements-docs.lock
 	$(COMPILE) --group pyproject.toml:peers -c requirements.lock -o requirements-peers.lock
 	$(COMPILE) --group pyproject.toml:node -o requirements-node.lock

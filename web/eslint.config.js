@@ -15,7 +15,7 @@ const LAYERS = [
   ["archive", "creature"],
   ["run"],
   ["sweeps", "tank"],
-  ["compare", "new-run", "runs", "saved", "settings", "shares", "tree", "workers"],
+  ["compare", "new-run", "runs", "saved", "settings", "shares", "tree", "widget", "workers"],
   ["app"],
 ];
 

@@ -53,6 +53,23 @@ class Scales:
         cell = length / cells
         return cls(cell, viscosity * cell**2 / fluid)
 
+    @classmethod
+    def of_stroke(cls, length: float, cells: float, period: float, steps: float) -> "Scales":
+        """Scale a body of `cells` cells to `length` metres, a stroke of `steps` to `period` s.
+
+        The lattice's viscosity then stands for a fluid: `viscosity` says which.
+        """
+        if min(length, cells, period, steps) <= 0:
+            raise ValueError(
+                "`length`, `cells`, `period` and `steps` must be above 0, got "
+                f"{length:g}, {cells:g}, {period:g} and {steps:g}"
+            )
+        return cls(length / cells, period / steps)
+
+    def viscosity(self, lattice: float) -> float:
+        """Convert a kinematic viscosity in cells²/step to m²/s."""
+        return lattice * self.cell**2 / self.step
+
     def metres(self, cells: float) -> float:
         return cells * self.cell
 

@@ -209,3 +209,20 @@ def walk_to_a_parent_and_back(page: Page, sha: str, parent: str) -> None:
     back.press("Enter")
     page.wait_for_url(re.compile(f"/creatures/{sha}"))
     expect(stage(page)).to_be_visible(timeout=SLOW)
+
+
+def test_a_real_length_and_period_give_physical_units_and_are_remembered(shared, page):
+    sha, _ = child_and_parent(shared.product, shared.finished("voronoi"))
+    page.goto(f"{shared.product.url}/creatures/{sha}")
+    units = page.locator(".physical")
+    expect(units).to_contain_text("Give a body length", timeout=SLOW)
+    length, period = units.get_by_label("Body length"), units.get_by_label("Stroke")
+    length.fill("1 mile")
+    expect(length).to_have_attribute("aria-invalid", "true")
+    length.fill("1 mm")
+    period.fill("0.5 s")
+    viscosity = units.locator("dl > div", has_text="Kinematic viscosity")
+    expect(viscosity).to_contain_text(re.compile(r"\d mm²/s, \S"))
+    page.reload()
+    expect(viscosity).to_be_visible(timeout=SLOW)
+    expect(length).to_have_value("1 mm")

@@ -141,6 +141,21 @@ def batch(streams: Iterable[bytes | None]) -> bytes:
     return b"".join(_LENGTH.pack(len(one)) + one for one in streams if one)
 
 
+def unbatched(data: bytes) -> list[bytes]:
+    """Return the pose streams of a batch. Raise `ValueError` if it ends within one."""
+    found, start = [], 0
+    while start < len(data):
+        begin = start + _LENGTH.size
+        stop = begin + (_LENGTH.unpack_from(data, start)[0] if begin <= len(data) else 0)
+        if not begin <= stop <= len(data):
+            raise ValueError(
+                f"a batch of pose streams must have {stop:,} bytes or more, got {len(data):,}"
+            )
+        found.append(data[begin:stop])
+        start = stop
+    return found
+
+
 def quantised(positions: np.ndarray) -> tuple[np.ndarray, tuple[float, float], float]:
     """Return positions (frame, node, 2) as `PoseStream.positions`, its origin and its scale."""
     low, high = positions.min((0, 1)), positions.max((0, 1))

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import jax.numpy as jnp
 
-from .. import bodies, device, filaments, spec, units, world
+from .. import bodies, device, filaments, spec, world
+from ..archive.physical import sperm
 from ..archive.report import Row
-from ..bodies import extent
 from ..experiments import gaits, scaling
 from ..experiments.table_file import TableRun
 from ..spec.scaling import SPACING
@@ -65,7 +65,6 @@ def _stroke(chosen: spec.Gaits, form: str, swimmer: str) -> gaits.Stroke:
     scenes = [chosen.scene(form, swimmer, viscosity) for viscosity in chosen.viscosities]
     body = spec.shape(scenes[0].body)
     spacing = float(body.rest_length.max())
-    joints = max(1, round(extent(body) / spacing) - 1)
     return gaits.Stroke(
         form=form,
         swimmer=swimmer,
@@ -73,19 +72,10 @@ def _stroke(chosen: spec.Gaits, form: str, swimmer: str) -> gaits.Stroke:
         program=build_stroke_block(scenes[0]),
         conditions=gaits.stack([build_point(scene) for scene in scenes]),
         viscosities=chosen.viscosities,
-        sperm=tuple(_sperm(scene, joints, float(body.bend.min())) for scene in scenes),
+        sperm=tuple(map(sperm, scenes)),
         spacing=spacing,
         identities=tuple(identity_template(scene) for scene in scenes),
     )
-
-
-def _sperm(scene: spec.Scene, joints: int, bend: float) -> float:
-    coupling = scene.coupling
-    assert isinstance(scene.control, spec.Gait)
-    if coupling.nu_c is not None:
-        bend = bend / (1 + scene.world.viscosity / coupling.nu_c)
-    slowest = units.relaxation(joints, bend, coupling.constraint_iterations)
-    return units.sperm(scene.control.period, slowest)
 
 
 def _json(chosen: spec.Spec) -> str:

@@ -12,6 +12,7 @@ from . import (
     manage,
     modules,
     monitor,
+    physical,
     pictures,
     reproject,
     run,

@@ -1,7 +1,7 @@
 """The command-line application, shared options, and how commands report errors."""
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from functools import wraps
 from inspect import Signature, signature
@@ -60,13 +60,15 @@ def main(
 
 
 def with_options(
-    make: Callable[..., AbstractContextManager[Any]], omit: str = "", **defaults: Any
+    make: Callable[..., AbstractContextManager[Any]],
+    omit: Collection[str] = (),
+    **defaults: Any,
 ) -> Callable[[Callable[..., Any]], Callable[..., None]]:
     """Add the options of `make` to a command; its result becomes the first argument."""
     added = [
         one.replace(default=defaults.get(one.name, one.default))
         for one in signature(make).parameters.values()
-        if one.name != omit
+        if one.name not in omit
     ]
 
     def decorate(command: Callable[..., Any]) -> Callable[..., None]:

@@ -51,6 +51,10 @@ Axes = Annotated[
 ]
 
 
+REAL = ("length", "period")
+"""Options of those figures alone whose captions state physical units."""
+
+
 @contextmanager
 def printed(
     width: Annotated[
@@ -64,9 +68,18 @@ def printed(
         bool, Option("--latex", help="Write the caption for LaTeX to OUT.caption.tex.")
     ] = False,
     palette: Annotated[str, Option(help="viridis, cividis or magma.")] = "viridis",
+    length: Annotated[
+        str | None, Option(help="Real length of a body, such as 1mm, for units in the caption.")
+    ] = None,
+    period: Annotated[
+        str | None, Option(help="Real period of a stroke, such as 0.5s; with --length.")
+    ] = None,
 ) -> Iterator[drawing.Print]:
     with failing():
-        yield drawing.Print(width, dpi, caption, latex, palette)
+        if (length is None) != (period is None):
+            raise ValueError("`--length` and `--period` must be given together")
+        real = None if length is None or period is None else (length, period)
+        yield drawing.Print(width, dpi, caption, latex, palette, real)
 
 
 @figures.command(DEFAULT_COMMAND)
@@ -145,7 +158,7 @@ def sheet(
 
 
 @figures.command()
-@with_options(printed, width="double")
+@with_options(printed, omit=REAL, width="double")
 def kinds(
     options: drawing.Print,
     files: Files,
@@ -158,7 +171,7 @@ def kinds(
 
 
 @figures.command()
-@with_options(printed, width="double")
+@with_options(printed, omit=REAL, width="double")
 def lineage(
     options: drawing.Print,
     file: File,

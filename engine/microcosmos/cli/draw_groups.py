@@ -9,7 +9,7 @@ from typer import Argument, Option
 from ..viz.figures import drawing
 from ..viz.figures.groups import Group, grouped
 from .app import fail, with_options
-from .draw import figures, names_in, printed, show_paths, split
+from .draw import REAL, figures, names_in, printed, show_paths, split
 from .groups import Measures, Resamples, Seed, read_groups
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ GroupsAndOut = Annotated[
 
 
 @figures.command()
-@with_options(printed, omit="palette", width="double")
+@with_options(printed, omit=("palette", *REAL), width="double")
 def curves(
     options: drawing.Print,
     files: Annotated[
@@ -48,7 +48,7 @@ def curves(
 
 
 @figures.command()
-@with_options(printed, omit="palette", width="double")
+@with_options(printed, omit=("palette", *REAL), width="double")
 def box(
     options: drawing.Print,
     groups: GroupsAndOut,
@@ -62,7 +62,7 @@ def box(
 
 
 @figures.command()
-@with_options(printed, omit="palette", width="double")
+@with_options(printed, omit=("palette", *REAL), width="double")
 def parameter(
     options: drawing.Print,
     field: Annotated[str, Argument(help="A field of the spec, such as world.viscosity.")],
@@ -77,7 +77,7 @@ def parameter(
 
 
 @figures.command()
-@with_options(printed, omit="palette")
+@with_options(printed, omit=("palette", *REAL))
 def profile(
     options: drawing.Print,
     groups: GroupsAndOut,

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from ..archive import poses
 from ..archive.axes import Axis, cells
 from ..archive.export import scaled, unit
 from ..exports import arrow, dataset
@@ -14,12 +15,16 @@ from . import columns, drawing
 from .connection import Connection
 from .creature import Creature
 
+POSE_CELLS = 500
+"""Cells of a request: some 5 MB, and an address of at most 4 kB."""
+
 
 class Archive:
     """Columns with an entry for each filled cell, after a generation."""
 
     def __init__(self, connection: Connection, run: str, document: Mapping[str, Any]):
         self._connection = connection
+        self._columns = document
         self.run = run
         self.generation: int = document["generation"]
         self.kind: str = document["kind"]
@@ -79,6 +84,25 @@ class Archive:
         if not len(found):
             raise KeyError(f"cell {cell} is empty; {len(self)} of {self.cells} are filled")
         return self._nth(int(found[0]))
+
+    def document(self) -> dict[str, Any]:
+        """Return the columns as the server sent them, and the `centroids` of Voronoi cells."""
+        centroids = None
+        if self.kind == "cvt":
+            found = self._connection.read(f"runs/{self.run}/archive/centroids")
+            centroids = found["centroids"]
+        return {**self._columns, "centroids": centroids}
+
+    def pose_streams(self, cells: Sequence[int]) -> dict[str, bytes]:
+        """Return the stored pose streams of the elites of some cells, by creature."""
+        path = f"runs/{self.run}/archive/poses"
+        found: dict[str, bytes] = {}
+        for first in range(0, len(cells), POSE_CELLS):
+            some = ",".join(map(str, cells[first : first + POSE_CELLS]))
+            given = {"cells": some, "generation": self.generation}
+            data = self._connection.ask("GET", path, params=given).content
+            found |= {poses.decode(one).creature: one for one in poses.unbatched(data)}
+        return found
 
     def to_pandas(self) -> Any:
         """Return a data frame with pyribs' columns, as `archive.csv` has them, without genes.

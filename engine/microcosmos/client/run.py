@@ -57,6 +57,17 @@ class Run(Record):
         self.refresh()
         return status
 
+    def live(self, **options: Any) -> Any:
+        """Return a map of its archive for a notebook, which fills while the run goes on.
+
+        `options` are those of `microcosmos.widgets.ArchiveMap`. The notebook stays free: a
+        thread follows the run until it ends. Raise `ImportError` without
+        `microcosmos[notebook]`, and `ValueError` for a run without an archive.
+        """
+        from .live import live
+
+        return live(self, self._connection, **options)
+
     def extend(self, generations: int) -> Self:
         """Add generations."""
         return self._ask("extend", {"generations": generations})

@@ -24,6 +24,8 @@ interface Props extends ArchiveViewProps {
   onFocus: (elite: Elite | null) => void;
   /** Shown beside the focused cell. */
   inset: ComponentChildren;
+  /** Shown while no cell is focused, if not the hint of the page. */
+  hint?: string;
 }
 
 /** Cells belong to the archive, bins to the map; a bin shows its best elite. */
@@ -38,7 +40,7 @@ export function ArchiveMap(props: Props) {
       <MapPlot {...props} focus={focus} />
       <AxisLabels axis={axes[0]} side="x" />
       <ColourLegend colouring={props.colouring} />
-      <EliteMeasures {...props} tile={tile} hint={text.mapHint(props.onSelect !== null)} />
+      <EliteMeasures {...props} tile={tile} hint={props.hint ?? text.mapHint(props.onSelect !== null)} />
     </div>
   );
 }

@@ -4,6 +4,7 @@ import type { Creature } from "../api/types";
 import { Card } from "../ui/Page";
 import { Term } from "../ui/Term";
 import { type Group, couplingRows, groupsOf, originOf } from "./facts";
+import { PhysicalUnits } from "./PhysicalUnits";
 import { text } from "./text";
 
 export function FactsCard({ creature }: { creature: Creature }) {
@@ -30,6 +31,7 @@ export function FactsCard({ creature }: { creature: Creature }) {
             </dl>
           </div>
         ))}
+        <PhysicalUnits creature={creature} />
       </div>
     </Card>
   );

@@ -1,6 +1,21 @@
 /** Texts of the page of a creature. */
 
 export const text = {
+  physical: "Real length and time",
+  realLength: "Body length",
+  realPeriod: "Stroke",
+  physicalHint:
+    "Give a body length and the period of a stroke to see speeds and the fluid in physical units.",
+  realSpeed: "Speed",
+  nodeSpeed: "Speed of the nodes",
+  realViscosity: "Kinematic viscosity",
+  realCell: "Cell",
+  realStep: "Step",
+  asFluid: (name: string) => `as ${name}`,
+  timesFluid: (times: string, name: string) => `${times} times that of ${name}`,
+  belowFluids: (times: string, name: string) =>
+    `less than common liquids: that of ${name} is ${times} times as high`,
+  betweenFluids: (one: string, other: string) => `between ${one} and ${other}`,
   audit: "Physics audit",
   auditFigures: "Figures of the audit",
   runAudit: "Run audit",

@@ -2,6 +2,7 @@
 
 import type { RefObject } from "preact";
 import { useEffect, useState } from "preact/hooks";
+import { darkScheme } from "./scheme";
 
 export interface Size {
   width: number;
@@ -46,8 +47,6 @@ export function prepare(canvas: HTMLCanvasElement, size: Size): CanvasRenderingC
   context.clearRect(0, 0, size.width, size.height);
   return context;
 }
-
-const darkScheme = () => window.matchMedia("(prefers-color-scheme: dark)");
 
 export type Theme = "light" | "dark";
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...archive.physical import of_archive, shown
 from . import caption, curves, groups, lineage, maps, saving, sheet, strips
 from .lineage import family
 from .reading import Archive, Described, read
@@ -27,6 +28,23 @@ class Print:
     tex: bool = False
     """Also write the caption for LaTeX."""
     palette: str = "viridis"
+    real: tuple[str, str] | None = None
+    """Real length of a body and period of a stroke, which captions convert units by."""
+
+    def physical(self, data: bytes) -> str:
+        """Return a sentence on physical units of an archive file's fittest elite, if asked for.
+
+        Raises `ValueError` for a run without a fluid or a stroke.
+        """
+        if self.real is None:
+            return ""
+        scales, table = of_archive(data, *self.real)
+        speeds = table.get("speed_m_per_s")
+        fastest = 0 if speeds is None else int(speeds.argmax())
+        reached = (
+            "" if speeds is None else f" The fastest swim {shown(speeds[fastest], 'm/s')}."
+        )
+        return f" {scales[fastest].sentence()}{reached}"
 
     def publish(self, figure, out: Path, text: str) -> list[Path]:
         """Write a figure with its caption; return the paths."""
@@ -42,7 +60,8 @@ def archive(
     with styled():
         width, palette = millimetres(options.width), options.palette
         figure = maps.archive(found, axes=axes, colour=colour, colours=palette, width=width)
-        return options.publish(figure, out, caption.of_archive(found, axes))
+        text = caption.of_archive(found, axes) + options.physical(file.read_bytes())
+        return options.publish(figure, out, text)
 
 
 def progress(
@@ -117,7 +136,8 @@ def contact(
     with styled():
         width, palette = millimetres(options.width), options.palette
         figure = sheet.sheet(found, plan, moved, moments=moments, colours=palette, width=width)
-        return options.publish(figure, out, caption.of_sheet(found, plan, moved, moments))
+        text = caption.of_sheet(found, plan, moved, moments)
+        return options.publish(figure, out, text + options.physical(file.read_bytes()))
 
 
 def kinds(

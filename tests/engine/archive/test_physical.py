@@ -1,0 +1,145 @@
+"""Physical units of creatures, archives and captions, against closed forms."""
+
+import csv
+import json
+from io import StringIO
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import microcosmos as mc
+from microcosmos import units
+from microcosmos.archive import physical
+from microcosmos.cli import app
+
+SPEC = {
+    "experiment": "quality-diversity",
+    "world": {"width": 32, "height": 32, "viscosity": 0.1},
+    "body": {"nodes": 11},
+    "control": {"period": 20},
+    "task": {"steps": 40},
+    "archive": {"descriptors": [{"name": "symmetry", "bins": 4}, {"name": "curvature_mean"}]},
+    "search": {"generations": 1, "batch": 8, "block": 8, "feasible": False},
+}
+FOUND = physical.Physical(length=1e-3, cells=10.0, period=0.5, steps=20.0, viscosity=0.1)
+"""A cell is 0.1 mm, a step 25 ms."""
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    path = tmp_path_factory.mktemp("run") / "run.h5"
+    mc.evolve(mc.parse(SPEC), path)
+    return path
+
+
+@pytest.mark.fast
+def test_a_length_and_a_period_fix_cell_step_viscosity_and_speed():
+    assert FOUND.scales.cell == pytest.approx(1e-4, rel=1e-12)
+    assert FOUND.scales.step == pytest.approx(0.025, rel=1e-12)
+    assert FOUND.fluid == pytest.approx(0.1 * 1e-8 / 0.025, rel=1e-12)
+    # 0.5 lengths in 1,000 steps, which take 25 s: 0.5 mm in 25 s.
+    assert FOUND.swimming(0.5) == pytest.approx(0.5e-3 / 25, rel=1e-12)
+
+
+@pytest.mark.fast
+def test_both_ways_to_scale_agree_on_the_fluid():
+    """Scaled by its own fluid, a body has the period that gives this fluid."""
+    scales = units.Scales.of(FOUND.length, FOUND.cells, FOUND.viscosity, FOUND.fluid)
+    assert scales.cell == pytest.approx(FOUND.scales.cell, rel=1e-12)
+    assert scales.seconds(FOUND.steps) == pytest.approx(FOUND.period, rel=1e-12)
+
+
+@pytest.mark.fast
+def test_the_reynolds_number_is_the_same_in_metres_and_seconds():
+    """A sperm cell: 50 µm, 100 µm/s in water is Re 0.005."""
+    speed = FOUND.node_speed(0.3)
+    assert units.reynolds(speed, FOUND.length, FOUND.fluid) == pytest.approx(0.3, rel=1e-12)
+    assert units.reynolds(100e-6, 50e-6, physical.FLUIDS["water"]) == pytest.approx(5e-3)
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize(
+    ("text", "expected"), [("1mm", 1e-3), ("50 um", 5e-5), ("50µm", 5e-5), ("1.5e-2 m", 0.015)]
+)
+def test_lengths_are_read(text, expected):
+    assert physical.length(text) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize(
+    "text", ["1", "mm", "-1mm", "0mm", "1s", "1..2mm", "1 parsec", "1e999m"]
+)
+def test_other_lengths_are_refused(text):
+    with pytest.raises(ValueError, match="`length` must be a number above 0 with a unit"):
+        physical.length(text)
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize(
+    ("viscosity", "expected"),
+    [
+        (1.0e-6, "as water"),
+        (1.0e-3, "as glycerol"),
+        (5e-6, "between ethanol and air"),
+        (0.07, "10 times that of honey"),
+        (3.9e-8, "less than common liquids: that of acetone is 10 times as high"),
+    ],
+)
+def test_a_viscosity_is_named_by_a_fluid(viscosity, expected):
+    assert physical.like(viscosity) == expected
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [(2.7e-4, "270 µm/s"), (0.0, "0 m/s"), (1.0, "1 m/s"), (0.02, "20 mm/s")],
+)
+def test_quantities_have_a_prefix(value, expected):
+    assert physical.shown(value, "m/s") == expected
+
+
+def test_a_creature_and_its_row_of_the_archive_agree(run):
+    best = json.loads(run.with_suffix(".best.json").read_bytes())
+    alone, table = mc.physical(best, "1mm", "0.5s"), mc.physical(run, "1mm", "0.5s")
+    row = list(table["creature"]).index(best["sha256"])
+    measures = best["measured"]["measures"]
+    for name in ("viscosity_m2_per_s", "speed_m_per_s", "reynolds", "strouhal", "mach"):
+        assert table[name][row] == pytest.approx(alone[name], rel=1e-6)
+    assert alone["viscosity_m2_per_s"] == pytest.approx(0.1 * 1e-8 / 0.025, rel=1e-6)
+    assert alone["speed_m_per_s"] == pytest.approx(measures["speed"] * 1e-3 / 25, rel=1e-6)
+    assert alone["mach"] == measures["mach"]
+    # A chain of 9 joints at full strength, ten sweeps a step.
+    assert alone["sperm"] == pytest.approx(units.sperm(20, units.relaxation(9, 1.0, 10)))
+
+
+def test_the_command_prints_a_creature_and_writes_an_archive(run, tmp_path):
+    given = ["--length", "1mm", "--period", "0.5s"]
+    shown = CliRunner().invoke(app, ["units", str(run.with_suffix(".best.json")), *given])
+    assert "a cell is 100 µm, a step 25 ms, the kinematic viscosity 0.04 mm²/s" in shown.output
+    assert "sperm number" in shown.output
+    out = tmp_path / "units.csv"
+    CliRunner().invoke(app, ["units", str(run), *given, "--out", str(out)])
+    rows = list(csv.DictReader(StringIO(out.read_text())))
+    table = mc.physical(run, "1mm", "0.5s")
+    np.testing.assert_array_equal([float(row["reynolds"]) for row in rows], table["reynolds"])
+
+
+def test_captions_state_units_if_asked_and_need_both_options(run, tmp_path):
+    out = tmp_path / "map.png"
+    command = ["figure", "archive", str(run), str(out), "--length", "1mm"]
+    assert "must be given together" in CliRunner().invoke(app, command).output
+    done = CliRunner().invoke(app, [*command, "--period", "0.5s"])
+    assert done.exit_code == 0, done.output
+    caption = out.with_suffix(".caption.txt").read_text()
+    assert "With a body of 1 mm and a stroke of 500 ms, a cell is 100 µm" in caption
+    assert "The fastest swim" in caption
+
+
+def test_wrong_periods_and_worlds_without_a_fluid_are_refused(run):
+    best = json.loads(run.with_suffix(".best.json").read_bytes())
+    with pytest.raises(ValueError, match=r"`period` must be a number above 0 with a unit"):
+        mc.physical(best, "1mm", "fast")
+    dry = mc.parse(SPEC | {"world": {"width": 32, "height": 32, "fluid": False}}).scene
+    with pytest.raises(ValueError, match=r"`world.fluid` must be true for physical units"):
+        physical._scaled(dry, 10.0, "1mm", "0.5s")
