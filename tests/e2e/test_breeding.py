@@ -60,6 +60,7 @@ def test_breed_by_eye(page, idle, attempt):
     expect(chosen.get_by_role("button", name="Take back")).to_have_count(0)
     expect(page.get_by_text("Vertical lines mark the generations")).to_be_visible()
     page.set_viewport_size({"width": 390, "height": 844})
+    page.wait_for_function("() => document.documentElement.scrollWidth <= innerWidth")
     assert faults(page) + violations(page) == []
 
     chosen.get_by_role("link").press("Enter")
