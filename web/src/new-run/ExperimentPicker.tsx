@@ -72,6 +72,7 @@ function Presets({ selected, preset, estimates, onPreset }: PresetsProps) {
             onBlur={() => setPointed(null)}
           >
             <b>{words(each.name)}</b>
+            <span class="unseen">{each.title}</span>
             <span class="preset-cost">{costOf(estimates.get(each))}</span>
           </button>
         ))}
