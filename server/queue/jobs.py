@@ -2,7 +2,7 @@
 
 import re
 from contextlib import suppress
-from typing import Any
+from typing import Any, cast
 
 from redis import Redis
 from redis.backoff import ExponentialBackoff
@@ -88,7 +88,7 @@ class Jobs:
 
     def first(self, name: str) -> bytes | None:
         """Return the inputs of the evaluation of a first creature; None if none are kept."""
-        return self.redis.get(self._first_key(name))  # type: ignore[return-value]
+        return cast(bytes | None, self.redis.get(self._first_key(name)))
 
     def _first_key(self, name: str) -> str:
         return f"{self.slug}{FIRST}:{name}"

@@ -122,6 +122,6 @@ def test_captions_name_seeds_and_runs(finished):
 
 
 def test_a_folder_has_one_study_at_a_time(tmp_path):
-    with alone(tmp_path), pytest.raises(ValueError, match="another process carries out"):  # noqa: SIM117
-        with alone(tmp_path):
-            pass
+    refused = pytest.raises(ValueError, match="another process carries out")
+    with alone(tmp_path), refused, alone(tmp_path):
+        pass

@@ -5,9 +5,9 @@ import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Spec } from "../api/types";
 import { LiveStage } from "../creature/live/LiveStage";
-import type { Wishes } from "../creature/live/touch";
+import { noWishes } from "../creature/live/touch";
 import { useLive } from "../creature/live/useLive";
-import { usePolled } from "../store/polling";
+import { useDebounced, usePolled } from "../store/polling";
 import { text } from "./text";
 
 /** Milliseconds without a change of the spec until the creature is asked for anew. */
@@ -15,11 +15,13 @@ const CALM_MS = 1200;
 
 export function FirstCreature({ spec }: { spec: Spec }) {
   const [number, setNumber] = useState(0);
-  const calm = useCalm(spec);
-  const { value: inputs, error } = usePolled(() => api.readFirstCreature(calm, number), [calm, number]);
+  const [calm, setCalm] = useState(JSON.stringify(spec));
+  useDebounced(JSON.stringify(spec), CALM_MS, setCalm);
+  const ask = () => api.readFirstCreature(JSON.parse(calm) as Spec, number);
+  const { value: inputs, error } = usePolled(ask, [calm, number]);
   const [failed, setFailed] = useState<string | null>(null);
   const live = useLive(inputs, (reason) => setFailed(messageOf(reason)));
-  const [wishes] = useState<Wishes>(() => ({ pushes: [], pull: null, joining: [] }));
+  const [wishes] = useState(noWishes);
   useEffect(() => setFailed(null), [inputs]);
   const problem = error ?? failed;
   return (
@@ -48,16 +50,4 @@ export function FirstCreature({ spec }: { spec: Spec }) {
       </div>
     </div>
   );
-}
-
-/** A spec once it has not changed for a while. */
-function useCalm(spec: Spec): Spec {
-  const [calm, setCalm] = useState(spec);
-  const written = JSON.stringify(spec);
-  useEffect(() => {
-    if (written === JSON.stringify(calm)) return;
-    const timer = setTimeout(() => setCalm(spec), CALM_MS);
-    return () => clearTimeout(timer);
-  }, [written]);
-  return calm;
 }

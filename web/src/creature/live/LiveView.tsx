@@ -11,7 +11,7 @@ import { Segments } from "../../ui/Select";
 import { LiveStage } from "./LiveStage";
 import { Slider } from "./Slider";
 import { text } from "./text";
-import type { Wishes } from "./touch";
+import { type Wishes, noWishes } from "./touch";
 
 const FIELDS = [
   ["vorticity", replayText.fields.vorticity],
@@ -46,7 +46,7 @@ export function LiveView({ live, others, onFail }: Props) {
   const [viscosity, setViscosity] = useState(live.stage.viscosity);
   const [speed, setSpeed] = useState(1);
   const [field, setField] = useState<FieldName | "dye">("vorticity");
-  const wishes = useMemo<Wishes>(() => ({ pushes: [], pull: null, joining: [] }), [live]);
+  const wishes = useMemo(noWishes, [live]);
   const { note, pick, refuse } = useJoining(others, wishes);
   return (
     <>

@@ -17,6 +17,8 @@ export interface Wishes {
   joining: ArrayBuffer[];
 }
 
+export const noWishes = (): Wishes => ({ pushes: [], pull: null, joining: [] });
+
 /** The view of the water: the first creature is in its middle. */
 export interface View {
   replay: Replay;
