@@ -49,9 +49,9 @@ from .shares import page as share_page
 from .shares import routes as shares
 from .shares.access import open_share
 from .specs import routes as experiments
+from .statistics import routes as statistics
 from .storage import mark
 from .sweeps import routes as sweeps
-from .sweeps import statistics_routes as sweep_statistics
 from .tables import migrations
 from .tank import routes as tank
 from .workers import routes as workers
@@ -64,7 +64,7 @@ ROUTES = (
         forks,
         deletion,
         sweeps,
-        sweep_statistics,
+        statistics,
         details,
         archives,
         phylogenies,

@@ -11,7 +11,7 @@ const LAYERS = [
   ["ui"],
   ["charts"],
   ["replay", "publish", "simulate"],
-  ["breeding", "offline"],
+  ["breeding", "offline", "statistics"],
   ["archive", "creature"],
   ["run"],
   ["sweeps", "tank"],

@@ -35,7 +35,7 @@ _HOME = {
     "to_arrow": "exports.arrow",
     "to_xarray": "exports.dataset",
     "learned_axes": "archive.learned",
-    "physical": "archive.physical",
+    "physical": "viz.physical",
     "pose_streams": "archive.export",
     "to_pandas": "archive.export",
     "to_ribs": "archive.export",

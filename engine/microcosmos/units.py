@@ -5,7 +5,7 @@ viscosity of its fluid fix the physical units.
 """
 
 from dataclasses import dataclass
-from math import cos, log, pi
+from math import pi
 from typing import Any
 
 WATER = 1.0e-6
@@ -91,32 +91,12 @@ def mach(speed: Any) -> Any:
     return speed / SOUND_SPEED
 
 
-def relaxation(joints: int, bend: float, sweeps: int) -> float:
-    """Return the steps in which the slowest bend of a chain of joints relaxes to 1/e.
-
-    A sweep with stiffness k changes the errors C of a chain of J joints by
-    k/2 (C₋ − 2 C + C₊), red joints before black ones, with no error beyond the ends. The
-    slowest mode, a half wave over J + 1, is multiplied in a sweep by g where, for a half
-    sweep each and c = cos(π/(J + 1)), g = ((s + √(s² + 4 (1 − k))) / 2)² and s = k c
-    (successive over-relaxation: Young, Trans. Am. Math. Soc. 76, 92, 1954).
-    """
-    if joints < 1 or not 0 < bend <= 1:
-        raise ValueError(
-            f"`joints` must be at least 1 and `bend` above 0, at most 1, got {joints}, {bend:g}"
-        )
-    s = bend * cos(pi / (joints + 1))
-    root = (s + (s * s + 4 * (1 - bend)) ** 0.5) / 2
-    if root == 0:
-        return 0.0
-    return -1 / (2 * sweeps * log(root))
-
-
 def sperm(period: float, relaxation: float) -> float:
-    """Return the effective sperm number (ω t)^(1/4), with the relaxation time t of bending.
+    """Return the effective sperm number (ω t)^(1/4), with the relaxation time t of the shape.
 
     For an elastic filament it is L (ζ ω / B)^(1/4) (Machin, J. Exp. Biol. 35, 796, 1958):
-    the fourth root of frequency times relaxation time up to a constant. Constraint
-    projection has no modulus B; the relaxation rate of a bend replaces it.
+    the fourth root of frequency times relaxation time up to a constant. Bodies here have no
+    modulus B; the rate at which a shape follows what is commanded replaces it.
     """
     return (2 * pi * relaxation / period) ** 0.25
 

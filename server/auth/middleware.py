@@ -12,7 +12,7 @@ from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from ..core.errors import ProblemError, problem_response
-from ..core.security_headers import SHARED_FILE
+from ..core.security_headers import SHARED_FILES
 from ..settings import LOOPBACK
 from . import cookies
 from .authenticate import Authenticator
@@ -56,7 +56,7 @@ class PrincipalMiddleware:
         if not self.needs_token:
             _refuse_foreign_host(request.headers)
         path, method = request.scope["path"], request.scope["method"]
-        public = method in SAFE and SHARED_FILE.fullmatch(path)
+        public = method in SAFE and SHARED_FILES.fullmatch(path)
         if not self.needs_token and not public:
             _refuse_foreign_origin(request.headers)
         request.state.principal = request.state.share = None

@@ -7,8 +7,8 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 SHARE_PATH = re.compile(r"(/s/|/api/v1/shares/).+")
-SHARED_FILE = re.compile(r"/api/v1/shares/[^/]+/creature\.json")
-"""The one answer that scripts of any page may read: who asks must know the share's slug."""
+SHARED_FILES = re.compile(r"/api/v1/shares/[^/]+/creatures?\.json")
+"""The answers that scripts of any page may read: who asks must know the share's slug."""
 POLICY = (
     "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; img-src 'self' data: blob:; "
     "style-src 'self' 'unsafe-inline'; object-src 'none'; base-uri 'none'; form-action 'self'; "
@@ -47,7 +47,7 @@ class SecurityHeaders:
                 headers["Cross-Origin-Resource-Policy"] = (
                     "cross-origin" if shared else "same-origin"
                 )
-                if SHARED_FILE.fullmatch(path):
+                if SHARED_FILES.fullmatch(path):
                     headers["Access-Control-Allow-Origin"] = "*"
                 if path.startswith("/api/"):
                     headers.add_vary_header(self.header)

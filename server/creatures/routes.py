@@ -12,6 +12,7 @@ from microcosmos.archive import creature, creature_h5
 from microcosmos.spec.creature import PlanDrawing
 from microcosmos.version import VERSION
 from microcosmos.viz.networks import NetworkPositions
+from microcosmos.viz.physical import Stroke
 
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, MAY_WRITE, ShareAccessDep
 from ..core.answers import respond, tag_of
@@ -21,7 +22,7 @@ from ..core.schemas import Wire
 from ..core.static_files import IMMUTABLE
 from ..services.services import ServicesDep, SessionDep
 from ..tables import Creature
-from . import lineage, networks, plans
+from . import lineage, networks, plans, strokes
 from . import storage as creatures
 from .deps import CreatureDep, IdentityDep, Sha
 from .lineage import Ancestors, Children
@@ -137,6 +138,19 @@ def read_plan(identity: IdentityDep, response: Response) -> PlanDrawing:
     """Return the body plan: nodes at rest, edges, and the genes of every segment."""
     response.headers.update(IMMUTABLE)
     return plans.drawing(identity)
+
+
+@router.get(
+    "/{sha}/stroke.json",
+    responses={200: {"model": Stroke}, 404: {}},
+    dependencies=[MAY_READ_SHARED],
+)
+async def read_stroke(request: Request, sha: Sha, identity: IdentityDep) -> Response:
+    """Return the reach of the body in cells, the steps of a stroke, and the effective sperm
+    number; 404 for a creature without a stroke."""
+    kept, tag = request.app.state.network_answers, tag_of(VERSION, sha, strokes.FORM)
+    make = partial(sandbox().stroke, identity)
+    return await respond(request, kept, tag, make, "application/json", dict(IMMUTABLE))
 
 
 def _network_reader(

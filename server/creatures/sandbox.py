@@ -12,6 +12,7 @@ from threading import Lock
 from typing import Any
 
 from ..core.errors import RETRY_AFTER, Problem, ProblemError
+from . import strokes
 from .sandbox_process import CPU_SECONDS, LENGTH, PROBLEM, RESULT
 
 START_SECONDS = 30.0
@@ -41,6 +42,11 @@ class Sandbox:
     def network(self, identity: bytes, form: str) -> bytes:
         """Return a creature's network in a form; raise `ProblemError` if that fails."""
         return self._result(form.encode() + b"\n" + identity, "Writing the network")
+
+    def stroke(self, identity: bytes) -> bytes:
+        """Return a creature's length, stroke and sperm number as JSON; raise `ProblemError` for
+        one without a stroke."""
+        return self._result(strokes.FORM.encode() + b"\n" + identity, "Growing the body")
 
     def _result(self, request: bytes, action: str) -> bytes:
         status, _, content = self._read(request).partition(b"\n")

@@ -1,9 +1,9 @@
 """The sandbox process: handle each request in a child that can open, write and keep nothing.
 
 `python -m server.creatures.sandbox_process` waits for connections on its standard input and
-forks for each. A request names a task: `creature` to read a file, or a form in which to write a
-network. The child may use `MEMORY` beyond its initial memory, `CPU_SECONDS` of time, and no
-file.
+forks for each. A request names a task: `creature` to read a file, `stroke` for its numbers, or
+a form in which to write a network. The child may use `MEMORY` beyond its initial memory,
+`CPU_SECONDS` of time, and no file.
 """
 
 import json
@@ -28,7 +28,7 @@ from microcosmos.spec.creature import CreatureError
 
 from ..core import json_body
 from ..core.errors import Problem, ProblemError, problem_of
-from . import networks
+from . import networks, strokes
 
 MEMORY = 256 << 20
 CPU_SECONDS = 1.5
@@ -67,7 +67,7 @@ def warm_up() -> None:
     written, forms = creature.canonical(identity), [form.encode() for form in networks.FORMS]
     requests = [(b"creature", body, RESULT) for body in read]
     requests += [(b"creature", body, PROBLEM) for body in refused]
-    requests += [(form, written, RESULT) for form in forms]
+    requests += [(form, written, RESULT) for form in (*forms, strokes.FORM.encode())]
     for task, body, expected in requests:
         found = answer(task + b"\n" + body)
         if not found.startswith(expected):
@@ -123,6 +123,8 @@ def answer(request: bytes) -> bytes:
     try:
         if task == b"creature":
             return RESULT + b"\n" + json.dumps(creature_file(body)).encode()
+        if task == strokes.FORM.encode():
+            return RESULT + b"\n" + strokes.write(body)
         return RESULT + b"\n" + networks.write(body, task.decode())
     except (ProblemError, CreatureError, ValidationError) as error:
         problem = problem_of(error)

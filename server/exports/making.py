@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from sqlalchemy.orm import Session
 
 from microcosmos.archive import choices as choices_file
+from microcosmos.archive.quantities import Real
 from microcosmos.exports import births as file_births
 from microcosmos.exports.citation import Publication
 from microcosmos.exports.crate import Extra, File
@@ -31,19 +32,22 @@ def name_of(run: Run) -> str:
     return f"{run.experiment}-{str(run.id)[:8]}"
 
 
-def make(services: Services, run: Run, path: str, form: Format) -> bytes:
+def make(
+    services: Services, run: Run, path: str, form: Format, real: Real | None = None
+) -> bytes:
     """Return the one file of a run in a format, or a ZIP of several.
 
-    Raises `ValueError` for a run that lacks what the format needs.
+    `real` quantities add columns in SI units. Raises `ValueError` for a run that lacks what the
+    format needs.
     """
     data = services.artifacts.read(path)
     with services.sessions.read() as session:
         file = RunFile(name_of(run), data, _trees(session, run, TREES.get(form, ())))
         extra = _extra(session, run, file) if form is Format.ro_crate else {}
     if form in ENDINGS:
-        return single(file, form)
+        return single(file, form, real)
     publication = Publication(title=run.name or "")
-    found = files([file], form, publication, {file.name: extra})
+    found = files([file], form, publication, {file.name: extra}, real=real)
     return zipped(found, f"{file.name}-{form}")
 
 

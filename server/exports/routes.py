@@ -5,11 +5,12 @@ from functools import partial
 from typing import Annotated
 from uuid import UUID
 
-from fastapi import APIRouter, Depends, Request
+from fastapi import APIRouter, Depends, Query, Request
 from fastapi.responses import Response
 
+from microcosmos.archive.quantities import Real
 from microcosmos.exports.arrow import WRITERS
-from microcosmos.exports.formats import ENDINGS, MEDIA_TYPES, Format
+from microcosmos.exports.formats import ENDINGS, MEDIA_TYPES, Format, refuse_without_columns
 from microcosmos.sizes import size
 from microcosmos.version import VERSION
 
@@ -38,6 +39,8 @@ class Exported:
     run: Run
     checkpoint: Artifact
     form: Format
+    real: Real | None
+    """Real quantities, for columns in SI units."""
 
     @property
     def headers(self) -> dict[str, str]:
@@ -46,7 +49,28 @@ class Exported:
         return {"Content-Disposition": f'attachment; filename="{name}"'}
 
 
-def _exported(run_id: UUID, form: Format, services: ServicesDep) -> Exported:
+def _real(
+    form: Format,
+    length: Annotated[str | None, Query(max_length=50)] = None,
+    period: Annotated[str | None, Query(max_length=50)] = None,
+) -> Real | None:
+    """Read the real length of a body, such as `1mm`, and the period of a stroke, such as
+    `0.5s`; raise `ProblemError` for others, and for a format without columns."""
+    try:
+        real = Real.of(length, period)
+        if real is not None:
+            refuse_without_columns(form)
+    except ValueError as error:
+        raise ProblemError(422, "Cannot be exported", f"{error}.") from error
+    return real
+
+
+def _exported(
+    run_id: UUID,
+    form: Format,
+    real: Annotated[Real | None, Depends(_real)],
+    services: ServicesDep,
+) -> Exported:
     """Find a run over a connection that is closed again: answers may take seconds."""
     with services.sessions.read() as session:
         run = find_run(session, run_id)
@@ -63,7 +87,7 @@ def _exported(run_id: UUID, form: Format, services: ServicesDep) -> Exported:
                 f"export {run.id} --as {form}"
             )
             raise ProblemError(422, "Run too large", detail)
-        return Exported(run, found, form)
+        return Exported(run, found, form, real)
 
 
 @router.get("/export/{form}", **sends(ZIP, {304: {}, 404: {}}), dependencies=[MAY_READ])
@@ -73,11 +97,13 @@ async def export_run(
     services: ServicesDep,
 ) -> Response:
     """Return the last checkpoint of a run as `parquet`, `arrow` or `ro-crate` (a ZIP of
-    several files), `netcdf`, `alife` or `newick`."""
+    several files), `netcdf`, `alife` or `newick`.
+
+    With the real `length` of a body and the `period` of a stroke, tables and `netcdf` have
+    columns in SI units too."""
     run, checkpoint, form = found.run, found.checkpoint, found.form
-    tag = tag_of(
-        VERSION, form, run.id, run.name, checkpoint.sha256, run.rewinds, run.generation
-    )
+    state = run.id, run.name, checkpoint.sha256, run.rewinds, run.generation
+    tag = tag_of(VERSION, form, *state, found.real)
     make = partial(_make, services, found)
     kept = request.app.state.archive_answers
     return await respond(request, kept, tag, make, MEDIA_TYPES.get(form, ZIP), found.headers)
@@ -85,6 +111,6 @@ async def export_run(
 
 def _make(services: Services, found: Exported) -> bytes:
     try:
-        return making.make(services, found.run, found.checkpoint.path, found.form)
+        return making.make(services, found.run, found.checkpoint.path, found.form, found.real)
     except ValueError as error:
         raise ProblemError(422, "Cannot be exported", f"{error}.") from error

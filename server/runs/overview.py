@@ -5,13 +5,13 @@ from collections.abc import Sequence
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import and_, or_, select
+from sqlalchemy import and_, func, or_, select
 from sqlalchemy.orm import Session
 
 from ..auth import tokens
 from ..estimates import position
 from ..services.services import Services
-from ..tables import FAILED, RUNNING, Elite, Generation, Run
+from ..tables import FAILED, RUNNING, Elite, Generation, Result, Run
 from ..workers.registry import progress
 from .curves import thinned
 from .schemas import ForkedFrom, RunRead
@@ -61,16 +61,23 @@ def _curves(session: Session, runs: Sequence[Run]) -> dict[UUID, list[Generation
 
 
 def faces_of(session: Session, runs: Sequence[Run]) -> dict[UUID, str]:
-    """Return the best creature of each run that has one."""
+    """Return a creature of each run that has one: its best elite, or its newest result's."""
     best = (
         select(Elite.creature)
         .where(Elite.run_id == Run.id, Elite.fitness.is_not(None))
         .order_by(Elite.fitness.desc(), Elite.cell.desc())
         .limit(1)
-        .scalar_subquery()
     )
-    evolved = Run.id.in_([run.id for run in runs if run.best is not None])
-    return {run: face for run, face in session.execute(select(Run.id, best).where(evolved))}
+    newest = (
+        select(Result.creature)
+        .where(Result.run_id == Run.id, Result.creature.is_not(None))
+        .order_by(Result.number.desc())
+        .limit(1)
+    )
+    face = func.coalesce(best.scalar_subquery(), newest.scalar_subquery())
+    begun = Run.id.in_([run.id for run in runs if run.generation])
+    found = session.execute(select(Run.id, face).where(begun))
+    return {run: creature for run, creature in found if creature}
 
 
 def _read(run: Run, curve: list[Generation], **more: Any) -> RunRead:

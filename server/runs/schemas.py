@@ -148,7 +148,8 @@ class RunRead(RunBrief):
     coverage: float | None
     best: float | None
     face: str | None
-    """The best creature that ever was an elite of the run; None before the first."""
+    """The best creature that ever was an elite of the run, or that of its newest result; None
+    before the first."""
     corrected_qd_score: float | None
     """After reevaluation of the elites, the last time; None without."""
     corrected_coverage: float | None

@@ -8,6 +8,7 @@ from uuid import UUID
 from sqlalchemy import Select, exists, select
 from sqlalchemy.orm import Session
 
+from ..archives import elites
 from ..core.errors import ProblemError
 from ..runs.curves import corrected_at
 from ..services.services import Services
@@ -97,11 +98,21 @@ class LiveShare:
         held = creature == share.creature
         if share.run_id:
             mine = (Elite.run_id == share.run_id) & (Elite.generation <= share.generation)
-            elites = select(Elite.cell).where(mine, Elite.creature == creature).limit(1)
-            held = session.scalars(elites).first() is not None
+            entries = select(Elite.cell).where(mine, Elite.creature == creature).limit(1)
+            held = session.scalars(entries).first() is not None
         if not held:
             detail = f"This share holds no creature of the name {creature}."
             raise ProblemError(404, "Not found", detail)
+
+    def names(self, session: Session) -> list[str]:
+        """Return the names of the creature, or of the elites, the best first."""
+        share = self.share
+        if share.run_id is None:
+            return [share.cover]
+        run = session.get_one(Run, share.run_id)
+        there = elites.as_of(run, share.generation or 0).order_by(None)
+        found = session.execute(there.order_by(Elite.fitness.desc(), Elite.creature))
+        return list(dict.fromkeys(row.creature for row in found))
 
     def licensed(self, file: dict[str, Any]) -> dict[str, Any]:
         """Return a creature file under the share's licence, with the credit of both."""

@@ -34,15 +34,16 @@ router = APIRouter(include_in_schema=False)
 
 @router.get("/import")
 def read_import_page(share: str = "") -> Response:
-    """Return the page that imports from an address; it may request that share's file alone."""
+    """Return the page that imports from an address; it may request that share's files alone."""
     index = static_files.BUILT / "index.html"
     if not index.is_file():
         return HTMLResponse(static_files.MISSING, 503)
     found = ADDRESS.fullmatch(share)
     headers = dict(static_files.FRESH)
     if found:
-        file = f"{found['server']}/api/v1/shares/{found['slug']}/creature.json"
-        headers["Content-Security-Policy"] = f"{POLICY}; connect-src 'self' {file}"
+        under = f"{found['server']}/api/v1/shares/{found['slug']}"
+        files = f"{under}/creature.json {under}/creatures.json"
+        headers["Content-Security-Policy"] = f"{POLICY}; connect-src 'self' {files}"
     return HTMLResponse(index.read_text(), headers=headers)
 
 

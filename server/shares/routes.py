@@ -24,7 +24,7 @@ from ..storage.garbage import discard
 from ..tables import LOOP, PREVIEW, Share
 from . import access, archive_files, previews, publishing
 from .page import public_address
-from .schemas import Digest, ShareCreate, SharePage, ShareRead
+from .schemas import Digest, ShareCreate, SharedCreatures, SharePage, ShareRead
 
 BODY_BYTES = 1 << 16
 Limit = Annotated[int, Query(ge=1, le=200)]
@@ -73,15 +73,31 @@ def read_share(request: Request, share: ShareDep, session: SessionDep) -> ShareR
 
 @router.get("/shares/{slug}/creature.json", dependencies=[PUBLIC])
 def read_shared_creature(
-    share: ShareDep, session: SessionDep, creature: Digest | None = None
+    share: ShareDep,
+    session: SessionDep,
+    creature: Digest | None = None,
+    ancestors: bool = True,
 ) -> dict[str, Any]:
-    """Return the file of a creature with its ancestors, for import; of an archive the best.
+    """Return the file of a creature, with its ancestors unless told otherwise, for import; of
+    an archive the best.
 
     Pages of other installations may read it.
     """
     live, name = access.LiveShare(share), creature or share.cover
     live.refuse_unless_holds(session, name)
-    return live.licensed(creatures.with_ancestors(session, find_creature(session, name)))
+    row = find_creature(session, name)
+    file = creatures.with_ancestors(session, row) if ancestors else creatures.document(row)
+    return live.licensed(file)
+
+
+@router.get("/shares/{slug}/creatures.json", dependencies=[PUBLIC])
+def read_shared_creatures(share: ShareDep, session: SessionDep) -> SharedCreatures:
+    """Return the names of a share's creatures, for import: of an archive its elites, the best
+    first.
+
+    Pages of other installations may read it.
+    """
+    return SharedCreatures(creatures=access.LiveShare(share).names(session))
 
 
 def _preview_reader(kind: str, noun: str) -> Callable[..., Response]:

@@ -73,6 +73,12 @@ class ShareRead(Wire):
     state: ShareState
 
 
+class SharedCreatures(Wire):
+    """Names of creatures, the best first."""
+
+    creatures: list[Digest]
+
+
 class SharePage(Wire):
     items: list[ShareRead]
     next: str | None

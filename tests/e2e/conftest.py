@@ -2,11 +2,11 @@
 
 Starting a product and compiling its programs take longer than most tests. So tests share:
 `shared` has small runs of each kind, and computes what else is submitted there; at `idle`
-nobody computes. A test that needs a list of runs of its own, or ends the server, takes
-`product` before `page`, and is in own_product/: two processes share the folders.
+nobody computes: files whose tests need no more are in without_workers/. A test that needs a
+list of runs of its own, or ends the server, takes `product` before `page`, and is in
+own_product/. A process takes one of the three folders.
 """
 
-from pathlib import Path
 from typing import NamedTuple
 
 import pytest
@@ -19,7 +19,6 @@ from small_runs import submit_small_runs
 from server.services.services import Services, connect
 from server.settings import Settings
 
-HERE = Path(__file__).parent
 WINDOW = {"width": 1280, "height": 900}
 ACTION_MS = 120_000
 LONGEST = ("test_walk.py", "test_resume.py")
@@ -46,21 +45,8 @@ class Idle(NamedTuple):
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Run the longest tests first, then those without workers, while the shared runs are
-    computed."""
-    items.sort(key=rank)
-
-
-def rank(item: pytest.Item) -> int:
-    if item.path.name in LONGEST:
-        return -1
-    if HERE not in item.path.parents:
-        return 0
-    return 2 if needs(item, "shared") else 1 if needs(item, "idle") else 3
-
-
-def needs(item: pytest.Item, fixture: str) -> bool:
-    return fixture in getattr(item, "fixturenames", ())
+    """Run the longest tests first."""
+    items.sort(key=lambda item: item.path.name not in LONGEST)
 
 
 @pytest.fixture(scope="package")
@@ -93,10 +79,8 @@ def shared(product_settings, tmp_path_factory):
 
 
 @pytest.fixture(scope="package")
-def idle(request, product_settings, tmp_path_factory):
+def idle(product_settings, tmp_path_factory):
     """One product without workers, whose Redis the tests use too."""
-    if any(needs(item, "shared") for item in request.session.items):
-        request.getfixturevalue("shared")  # It computes meanwhile.
     folder = tmp_path_factory.mktemp("idle")
     with own_redis(folder) as url:
         environment = {"WORKERS": "0", "MICROCOSMOS_REDIS_URL": url}

@@ -6,13 +6,15 @@ from collections.abc import Collection, Iterator
 from typing import Any, NamedTuple
 
 import httpx
-from drive import Installation
+from drive import Installation, wait_until
 from playwright.sync_api import Locator, Page, expect
 
 NOWHERE = "Page not found"
 UNREST = ".loading, .rendering, [aria-busy=true], .waiting:has-text('…')"
 """Elements that stand for something that is loading."""
 CALM_S = 0.3
+CHANGED_S = 30.0
+STILL_MS = 600
 SCRUBBER = "input[aria-label='Time in the replay']"
 TOUR_TAKEN = "localStorage.setItem('microcosmos:tour-taken', '1')"
 """Keeps the tour from opening by itself."""
@@ -138,16 +140,48 @@ def settle(page: Page, seconds: float) -> None:
     page.evaluate("document.fonts.ready")
 
 
-def pixels(page: Page) -> str:
-    return page.evaluate("document.querySelector('.stage canvas').toDataURL()")
+def expect_in_url(page: Page, text: str, there: bool = True) -> None:
+    """Wait until a part of the address is there, or is not."""
+    part = re.compile(re.escape(text))
+    if there:
+        expect(page).to_have_url(part)
+    else:
+        expect(page).not_to_have_url(part)
+
+
+def picture(canvas: Locator) -> str:
+    return canvas.evaluate("canvas => canvas.toDataURL()")
+
+
+def film(page: Page) -> Locator:
+    """The canvas of a replay."""
+    return page.locator(".stage canvas").first
+
+
+def wait_until_changed(canvas: Locator, before: str) -> None:
+    wait_until(lambda: picture(canvas) != before, CHANGED_S, "another picture is drawn")
+
+
+def wait_until_still(canvas: Locator) -> None:
+    """What was asked for may still be drawn; what moves without end fails."""
+
+    def is_still() -> bool:
+        before = picture(canvas)
+        canvas.page.wait_for_timeout(STILL_MS)
+        return picture(canvas) == before
+
+    wait_until(is_still, CHANGED_S, "the picture is still")
+
+
+def see_it_move(canvas: Locator) -> None:
+    """Not once, as when it is first drawn, but again and again."""
+    for _ in range(5):
+        wait_until_changed(canvas, picture(canvas))
 
 
 def see_it_swim(page: Page, seconds: float) -> None:
     expect(stage(page)).to_be_visible(timeout=1000 * seconds)
-    page.wait_for_timeout(300)
-    before = pixels(page)
-    page.wait_for_timeout(600)
-    assert pixels(page) != before
+    see_it_move(film(page))
 
 
 def hold_still(page: Page) -> None:

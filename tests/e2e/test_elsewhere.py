@@ -36,6 +36,21 @@ def test_a_share_is_imported_by_pasting_its_address(shared, share, page):
     page.wait_for_url(f"{other}/creatures/{share['creature']}")
 
 
+def test_all_creatures_of_an_archive_are_imported(shared, page):
+    run = shared.finished("voronoi")
+    address = f"{shared.product.url}/api/v1/shares"
+    sent = {"run": run, "title": "Swimmers"}
+    archive = httpx.post(address, json=sent).raise_for_status().json()
+    names = httpx.get(f"{address}/{archive['slug']}/creatures.json").json()["creatures"]
+    assert len(names) > 1
+    other = shared.product.url.replace("127.0.0.1", "localhost")
+    page.goto(f"{other}/import?share={archive['url']}")
+    page.get_by_role("button", name="Import all", exact=True).click()
+    expect(page.get_by_text(f"Imported all {len(names)} creatures.")).to_be_visible()
+    page.get_by_role("link", name=names[0][:8]).click()
+    page.wait_for_url(f"{other}/creatures/{names[0]}")
+
+
 def test_the_page_of_an_import_requests_one_file_of_another_site(shared, share, anonymous_page):
     other = shared.product.url.replace("127.0.0.1", "localhost")
     anonymous_page.goto(f"{other}/import?share={share['url']}")

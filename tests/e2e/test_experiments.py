@@ -3,7 +3,16 @@
 import re
 
 import pages
-from pages import ALL_SETTINGS, stage, start_run, the_map
+from pages import (
+    ALL_SETTINGS,
+    elites,
+    expect_in_url,
+    picture,
+    stage,
+    start_run,
+    the_map,
+    wait_until_changed,
+)
 from playwright.sync_api import Page, expect
 
 SLOW = 300_000
@@ -44,7 +53,7 @@ def watch_it_end(page: Page) -> None:
 def look_along_other_axes(page: Page) -> None:
     page.get_by_role("combobox", name="Across", exact=True).select_option("path_length")
     page.get_by_role("combobox", name="Up", exact=True).select_option(label="Fitness")
-    assert "x=path_length&y=fitness" in page.url
+    expect_in_url(page, "x=path_length&y=fitness")
     expect(page.get_by_text("Path length (cells)")).to_be_visible()
     with page.expect_response(re.compile("measures=path_length")):
         page.reload()
@@ -52,8 +61,8 @@ def look_along_other_axes(page: Page) -> None:
 
 
 def open_the_best(page: Page) -> None:
+    expect(elites(page)).to_be_visible()
     the_map(page).focus()
-    page.wait_for_timeout(300)  # What was fetched is drawn.
     page.keyboard.press("ArrowRight")
     expect(page.locator("#elite-measures")).to_contain_text("Path length")
     page.keyboard.press("Enter")
@@ -171,7 +180,7 @@ def test_a_filament_folds_and_is_watched(shared, page):
     rows.first.get_by_role("link").click()
     page.wait_for_url(re.compile("/creatures/[0-9a-f]{64}"))
     expect(page.get_by_role("button", name="Refine")).to_have_count(0)
-    see_it_move(page, 1)
+    see_replays_move(page, 1)
 
 
 def test_an_elite_is_refined_and_compared(shared, page):
@@ -185,25 +194,21 @@ def test_an_elite_is_refined_and_compared(shared, page):
     expect(page.get_by_text("21 / 21")).to_be_visible(timeout=SLOW)
     expect(page.get_by_role("group", name="Fitness against steps")).to_be_visible()
     expect(page.get_by_role("heading", name="Before and after")).to_be_visible()
-    see_it_move(page, 2)
+    see_replays_move(page, 2)
     expect(page.locator(".stages figcaption")).to_have_count(2)
     first, last = (one.inner_text() for one in page.locator(".stages figcaption").all())
     assert (first.split()[0], last.split()[0]) == ("Before", "After")
     assert fitness(last) > fitness(first)
 
 
-def see_it_move(page: Page, films: int) -> None:
+def see_replays_move(page: Page, films: int) -> None:
     expect(stage(page)).to_have_count(films, timeout=SLOW)
-    before = all_pixels(page)
+    canvases = page.locator(".stage canvas").all()
+    before = [picture(canvas) for canvas in canvases]
     page.get_by_label("Time in the replay").focus()
     page.keyboard.press("End")
-    page.wait_for_timeout(300)
-    assert all(one != other for one, other in zip(before, all_pixels(page), strict=True))
-
-
-def all_pixels(page: Page) -> list[str]:
-    script = "[...document.querySelectorAll('.stage canvas')].map((one) => one.toDataURL())"
-    return page.evaluate(script)
+    for canvas, first in zip(canvases, before, strict=True):
+        wait_until_changed(canvas, first)
 
 
 def fitness(caption: str) -> float:

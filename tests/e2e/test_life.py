@@ -3,7 +3,7 @@
 import re
 
 from layout import violations
-from pages import TOUR_TAKEN, the_map
+from pages import TOUR_TAKEN, expect_in_url, the_map
 from playwright.sync_api import Locator, Page, expect
 from small_runs import TINY
 
@@ -55,7 +55,7 @@ def choose_by_keyboard(page: Page) -> None:
     the_map(page).focus()
     page.keyboard.press("Escape")
     expect(chosen(page)).to_be_empty()
-    assert "cells=" not in page.url
+    expect_in_url(page, "cells=", False)
 
 
 def choose_by_mouse(page: Page) -> None:
@@ -80,7 +80,7 @@ def fork_the_chosen(page: Page, address: str, run: str) -> None:
     page.locator(".selection-bar").get_by_role("link", name="Fork").click()
     beginning = page.locator(".base-bar")
     expect(beginning).to_contain_text(f"Starts from {text} of run {run[:8]}.")
-    assert "cells=" in page.url
+    expect_in_url(page, "cells=")
     expect(page.get_by_label("Estimate", exact=True)).to_be_visible()
     beginning.get_by_role("link", name=text).click()
     expect(chosen(page)).to_have_text(f"{text} selected")

@@ -4,7 +4,7 @@ import re
 from io import BytesIO
 
 import pytest
-from pages import TOUR_TAKEN
+from pages import TOUR_TAKEN, see_it_move
 from PIL import Image
 from playwright.sync_api import expect
 
@@ -25,9 +25,7 @@ def test_three_creatures_of_an_archive_swim_side_by_side(page, three):
     page.get_by_role("link", name="Side by side").click()
     race = page.get_by_role("img", name="3 creatures that swim to the right, in lanes")
     expect(race).to_be_visible()
-    first = race.evaluate("canvas => canvas.toDataURL()")
-    page.wait_for_timeout(700)
-    assert race.evaluate("canvas => canvas.toDataURL()") != first
+    see_it_move(race)
     for creature in creatures:
         link = page.get_by_role("link", name=creature[:8])
         expect(link).to_have_attribute("href", f"/creatures/{creature}")
@@ -62,9 +60,9 @@ def test_the_comparison_is_saved_as_a_picture_and_as_a_film(page, three, shared,
     page.get_by_label("Pace").select_option("4 ×")
     with page.expect_download() as download:
         page.get_by_role("button", name="Picture (PNG)").click()
-    picture = Image.open(BytesIO(download.value.path().read_bytes()))
+    saved = Image.open(BytesIO(download.value.path().read_bytes()))
     size = race.evaluate("({ width, height }) => [width, height]")
-    assert list(picture.size) == size
+    assert list(saved.size) == size
     with page.expect_download() as download:
         page.get_by_role("button", name="GIF", exact=True).click()
     gif = Image.open(BytesIO(download.value.path().read_bytes()))

@@ -3,11 +3,10 @@
 import re
 
 import pytest
-from pages import stage
+from pages import see_it_move, stage, wait_until_still
 from playwright.sync_api import Locator, Page, expect
 
 NAMED = re.compile(r"^fitness .+generation \d+ of ")
-MOVES_MS = 700
 COLOURFUL = """
 (canvas) => {
   const { width, height } = canvas;
@@ -44,8 +43,8 @@ def water(page: Page):
     )
 
 
-def pixels(page: Page) -> str:
-    return page.evaluate("document.querySelector('.water canvas:last-of-type').toDataURL()")
+def swimmers(page: Page) -> Locator:
+    return page.locator(".water canvas").last
 
 
 def wait_until_drawn(page: Page) -> None:
@@ -60,26 +59,20 @@ def point_at_a_creature(page: Page) -> Locator:
     for k in range(400):
         x, y = (k % 40 + 0.5) / 40, (k // 40 + 0.5) / 10
         page.mouse.move(box["x"] + x * box["width"], box["y"] + y * 0.8 * box["height"])
+        page.evaluate("() => new Promise(requestAnimationFrame)")  # In which it is drawn.
         if named.is_visible():
             break
     return named
 
 
-def moves(page: Page) -> bool:
-    before = pixels(page)
-    page.wait_for_timeout(MOVES_MS)
-    return pixels(page) != before
-
-
 def test_creatures_swim_until_they_are_paused(home):
     wait_until_drawn(home)
-    assert moves(home)
+    see_it_move(swimmers(home))
     home.get_by_role("button", name="Pause the creatures").click()
     home.mouse.move(5, 5)
-    home.wait_for_timeout(200)
-    assert not moves(home)
+    wait_until_still(swimmers(home))
     home.get_by_role("button", name="Let the creatures swim").click()
-    assert moves(home)
+    see_it_move(swimmers(home))
 
 
 def test_a_creature_is_named_when_pointed_at_and_opens_with_a_click(home, shared):
@@ -131,7 +124,7 @@ def test_the_tank_is_still_where_motion_is_reduced(page, settled):
     page.emulate_media(reduced_motion="reduce")
     page.goto(settled.product.url)
     wait_until_drawn(page)
-    assert not moves(page)
+    wait_until_still(swimmers(page))
 
 
 def test_a_run_has_its_best_creature_beside_its_name(home, shared):

@@ -7,9 +7,17 @@ import xml.etree.ElementTree as ET
 
 import newick
 import pytest
-from drive import Installation
+from drive import Installation, wait_until
 from layout import THEMES, faults, violations
-from pages import best_of, settle
+from pages import (
+    best_of,
+    expect_in_url,
+    picture,
+    see_it_move,
+    settle,
+    wait_until_changed,
+    wait_until_still,
+)
 from playwright.sync_api import Locator, Page, expect
 from small_runs import TINY
 
@@ -32,8 +40,9 @@ def painted(page: Page) -> None:
     page.wait_for_timeout(SETTLED_MS)
 
 
-def overlay(page: Page) -> str:
-    return page.evaluate("document.querySelector('.tree-overlay').toDataURL()")
+def overlay(page: Page) -> Locator:
+    """The canvas of the bodies, above that of the lines."""
+    return page.locator(".tree-overlay")
 
 
 def picture_scale(page: Page) -> str:
@@ -78,7 +87,7 @@ def walk_by_keyboard(page: Page, rows: list[dict[str, str]]) -> None:
         row = rows[int(row["ancestor_list"].strip("[]").split(",")[0])]
         window(page).press("ArrowLeft")
         expect(name).to_have_text(re.compile(row["taxon_label"][:8]))
-    assert f"creature={row['taxon_label']}" in page.url
+    expect_in_url(page, f"creature={row['taxon_label']}")
     window(page).press("Escape")
     expect(name).to_have_count(0)
 
@@ -98,7 +107,7 @@ def zoom_and_drag(page: Page) -> None:
     page.mouse.down()
     page.mouse.move(x + 30, y + 60, steps=5)
     page.mouse.up()
-    assert picture_scale(page) != before
+    wait_until(lambda: picture_scale(page) != before, 10, "the tree has moved")
     assert "/tree" in page.url, "a drag opens nothing"
     page.get_by_role("button", name="Zoom in").press("Enter")
     whole.press("Enter")
@@ -106,12 +115,13 @@ def zoom_and_drag(page: Page) -> None:
 
 
 def move_through_time(page: Page) -> None:
-    slider = page.get_by_role("slider", name="Generation shown")
-    now = overlay(page)
-    slider.fill("1")
-    page.wait_for_timeout(SETTLED_MS)
-    assert overlay(page) != now
+    page.emulate_media(reduced_motion="reduce")
+    wait_until_still(overlay(page))
+    now = picture(overlay(page))
+    page.get_by_role("slider", name="Generation shown").fill("1")
+    wait_until_changed(overlay(page), now)
     page.get_by_role("button", name="Newest").click()
+    page.emulate_media(reduced_motion="no-preference")
 
 
 def choose(page: Page) -> None:
@@ -122,7 +132,7 @@ def choose(page: Page) -> None:
     page.get_by_role("combobox", name="Show").select_option("Lines of the elites now")
     page.get_by_role("checkbox", name="Collapse single lines").uncheck()
     for part in ("colour=operator", "show=survivors", "lines=all"):
-        assert part in page.url
+        expect_in_url(page, part)
     painted(page)
     window(page).press("ArrowDown")
 
@@ -203,15 +213,9 @@ def test_the_page_of_a_tree_fits_and_axe_finds_nothing(shared, page, width):
 def test_bodies_move_unless_less_motion_is_wished(shared, page):
     page.goto(f"{shared.product.url}/runs/{shared.finished('search')}/tree")
     painted(page)
-    page.wait_for_timeout(2000)  # The pose streams are there.
-    first = overlay(page)
-    page.wait_for_timeout(SETTLED_MS)
-    assert overlay(page) != first
+    see_it_move(overlay(page))
     page.emulate_media(reduced_motion="reduce")
-    page.wait_for_timeout(SETTLED_MS)
-    first = overlay(page)
-    page.wait_for_timeout(SETTLED_MS)
-    assert overlay(page) == first
+    wait_until_still(overlay(page))
 
 
 def test_fingers_select_first_and_pinch(shared, browser):

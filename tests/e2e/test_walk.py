@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 from drive import Installation
-from pages import elites, pixels, see_it_swim, start_run, the_map
+from pages import elites, film, see_it_swim, start_run, the_map, wait_until_still
 from playwright.sync_api import Page, expect
 
 SLOW = 120_000
@@ -15,7 +15,7 @@ def test_a_run_is_submitted_watched_and_its_creature_swims(product, page, tmp_pa
     run = submit_a_short_run(page, product.url)
     watch_it_live(page)
     sha = open_an_elite(page, product, run)
-    see_it_move(page)
+    see_it_swim_and_pause(page)
     file = download_it(page, sha, tmp_path)
     drop_it_back_in(page, file, sha)
 
@@ -63,14 +63,11 @@ def open_an_elite(page: Page, product: Installation, run: str) -> str:
     return sha
 
 
-def see_it_move(page: Page) -> None:
+def see_it_swim_and_pause(page: Page) -> None:
     see_it_swim(page, SLOW / 1000)
     page.keyboard.press("Space")
     expect(page.get_by_role("button", name="Play")).to_be_visible()
-    page.wait_for_timeout(200)  # What was about to be drawn is drawn.
-    still = pixels(page)
-    page.wait_for_timeout(300)
-    assert pixels(page) == still
+    wait_until_still(film(page))
     expect(page.get_by_role("group", name=re.compile("^Network:"))).to_be_visible()
 
 

@@ -41,10 +41,12 @@ def report(generation: int, seed: int) -> Any:
 class WrittenRun:
     """A run of neuroevolution, written generation by generation."""
 
-    def __init__(self, services: Services, seed: int):
+    def __init__(self, services: Services, seed: int, viscosity: float | None = None):
         presets = EXPERIMENTS["neuroevolution"].presets
         document = presets[0].spec.model_dump(mode="json") | {"seed": seed}
         document["search"]["generations"] = GENERATIONS
+        if viscosity:
+            document["world"]["viscosity"] = viscosity
         self.spec, self.seed, self.services = parse(document), seed, services
         self.id: UUID = submit(services, self.spec)[0].id
         self.attempt: Attempt

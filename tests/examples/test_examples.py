@@ -103,6 +103,7 @@ def test_a_rest_shape_is_designed_for_a_viscosity():
     assert after > before
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore")
 def test_a_plugin_task_evolves_and_its_file_names_the_version(tmp_path):
     module = example("plugin_task")

@@ -7,12 +7,14 @@ killed, stopped, paused and resumed, whose archive has to be byte for byte the u
 one, as has that of a second installation, on PostgreSQL and a Redis server; creatures that
 sense and collect energy; searches with derivatives and without; a page that is left open for
 half an hour, or for as many minutes as `MINUTES` says; thousands of malformed files; and a
-search on an emulated older processor; deaths of jobs and hosts; and twenty hosts with 500
-runs in a bad night.
+search on an emulated older processor; deaths of jobs and hosts; twenty hosts with 500 runs
+in a bad night; and the native kernel beside JAX in 200 random specs.
 Names of parts choose some.
 """
 
+import os
 import random
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -22,7 +24,15 @@ import malformed_hdf5
 import rich
 from cluster import cluster
 from databases import Missing, service_settings
-from drive import Installation, interrupt, kill_job, pause_and_resume, running, stop_worker
+from drive import (
+    ROOT,
+    Installation,
+    interrupt,
+    kill_job,
+    pause_and_resume,
+    running,
+    stop_worker,
+)
 from group import group
 from left_open import leave_open
 from processors import processors
@@ -126,6 +136,14 @@ def uploads(product: Installation) -> bool:
     return found.refused >= 1000 and in_time and little and not found.wrong and not readings
 
 
+def specs(_: Installation) -> bool:
+    """Tell whether the native kernel finds in every random spec what JAX finds."""
+    file = "tests/engine/search/test_native_specs.py"
+    command = [sys.executable, "-m", "pytest", "-n", "auto", "--dist", "worksteal", file]
+    environment = os.environ | {"MICROCOSMOS_TEST_ALL_SPECS": "1"}
+    return subprocess.run(command, env=environment, cwd=ROOT).returncode == 0
+
+
 PARTS = {
     "swimming": swimming,
     "bodies": bodies,
@@ -139,6 +157,7 @@ PARTS = {
     "page": leave_open,
     "uploads": uploads,
     "processors": processors,
+    "specs": specs,
 }
 
 

@@ -15,20 +15,21 @@ AROUND = np.random.default_rng(0).random((12, 2)).astype(np.float32)
 CELLS = np.array([1, 6, 11], np.int32)
 
 
-def stream(nodes, creature):
+def stream(nodes, length, creature):
     draw = np.random.default_rng(nodes)
     places, origin, scale = poses.quantised(draw.random((64, nodes, 2)) * 9)
     edges = np.stack([np.arange(nodes - 1), np.arange(1, nodes)], 1)
     path = draw.random((65, 2)).astype(np.float32)
     return poses.PoseStream(
-        places, path, origin, scale, edges, 40, 100, 2, 100, (24, 24), 7.5, creature
+        places, path, origin, scale, edges, 40, 100, 2, 100, (24, 24), length, creature
     )
 
 
-def elites(kind, sizes, generations):
+def elites(kind, sizes, generations, lengths):
     """Return the group `archive` of the elites, whose bodies have so many nodes."""
     names, draw = np.arange(96, dtype=np.uint8).reshape(3, 32), np.random.default_rng(1)
-    streams = [stream(n, bytes(name).hex()) for n, name in zip(sizes, names, strict=True)]
+    bodies = zip(sizes, lengths, names, strict=True)
+    streams = [stream(n, length, bytes(name).hex()) for n, length, name in bodies]
     found = {
         "cell": CELLS,
         "fitness": np.array([1.5, 2.5, np.pi], np.float32),
@@ -44,12 +45,20 @@ def elites(kind, sizes, generations):
     return found | ({"centroids": AROUND} if kind == "cvt" else {})
 
 
-def made(kind="grid", sizes=(3, 5, 4), parents=None, generations=(1, 2, 2), **arrays):
+def made(
+    kind="grid",
+    sizes=(3, 5, 4),
+    parents=None,
+    generations=(1, 2, 2),
+    lengths=(7.5, 7.5, 7.5),
+    spec=None,
+    **arrays,
+):
     """Return the bytes of an archive whose elites lie in cells 1, 6 and 11."""
     container = {"kind": "novelty", "size": 12} if kind == "pool" else None
     described = {"descriptors": AXES, "container": container}
     described |= {"centroids": 12 if kind == "cvt" else None}
-    archive = elites(kind, sizes, generations)
+    archive = elites(kind, sizes, generations, lengths)
     copied = ("creature", "operator", "generation", "cell", "fitness")
     lineage = {
         **{name: archive[name] for name in copied},
@@ -71,7 +80,9 @@ def made(kind="grid", sizes=(3, 5, 4), parents=None, generations=(1, 2, 2), **ar
         "seed": 0,
         "task": {"fitness": "speed", "steps": 100},
         "world": {"width": 24, "height": 24},
+        "body": {"nodes": 12},
         "search": {"generations": 3},
+        **(spec or {}),
     }
     attributes = {
         "format": file.FORMAT,

@@ -175,7 +175,7 @@ CASES: dict[str, dict[str, Any]] = {
 }
 """Documents of scenes. The plug-ins are those of `movers.py`."""
 
-QUICK = ("a network", "a network that senses", "layers", "a grown body", "plug-ins", "a gait")
+QUICK = ("a network that senses", "a gait")
 """Cases of the quick tests."""
 
 ANOTHER = object()

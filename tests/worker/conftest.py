@@ -1,4 +1,4 @@
-"""A worker's services: a database, a Redis of its own, a queued run."""
+"""A worker's services (a database, a Redis of its own, a queued run) and its supervisor."""
 
 from contextlib import ExitStack
 
@@ -8,8 +8,13 @@ from databases import own_redis
 from installation import Installation
 
 from server.runs.submission import submit
+from server.schedule.take import take
 from server.settings import Settings
 from server.tables import Run
+from worker.device import Device
+from worker.heartbeats import Heartbeats
+from worker.readiness import Readiness
+from worker.supervisor import Supervisor
 
 
 @pytest.fixture(scope="session")
@@ -48,3 +53,28 @@ def row(services, run_id):
             return session.get_one(Run, run_id)
 
     return read
+
+
+@pytest.fixture
+def heartbeat(services):
+    return Heartbeats(
+        services.sessions, "worker", Device("some device", 8 << 30, {}, "0"), lease=20
+    )
+
+
+@pytest.fixture
+def busy(services, heartbeat, monkeypatch, tmp_path):
+    """A supervisor that computes on the processor, and that has taken the run."""
+    monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", str(tmp_path))
+    environment = {}
+    readiness = Readiness(services, Device("a processor", 8 << 30, environment))
+    return Supervisor(services, "worker", environment, heartbeat, readiness)
+
+
+@pytest.fixture
+def next_run(services, heartbeat):
+    def next_run():
+        heartbeat.beat()
+        return take(services, "worker")
+
+    return next_run

@@ -71,6 +71,7 @@ def counted(services, run_id):
         )
 
 
+@pytest.mark.long
 def test_a_choice_counts_from_the_first_generation_that_no_worker_began(
     services, run_id, row, attempt, tmp_path
 ):

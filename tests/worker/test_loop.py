@@ -17,15 +17,11 @@ from server.attempts.leases import Progress
 from server.local import process_tree
 from server.renderings.storage import RenderingFailed, enqueue
 from server.runs.lifecycle import MAX_ATTEMPTS
-from server.schedule.take import take
 from server.tables import CANCELLED, Run, Worker
 from server.workers import registry
-from worker import loop, process_setup, readiness, supervisor
-from worker.device import Device
-from worker.heartbeats import HEARTBEATS_AFTER_END, Heartbeats
-from worker.readiness import Problem, Readiness
+from worker import loop, process_setup, supervisor
+from worker.heartbeats import HEARTBEATS_AFTER_END
 from worker.renderer import retry_interrupted
-from worker.supervisor import Supervisor
 from worker.usage import Usage
 
 CREATURE = "ab" * 32
@@ -112,31 +108,6 @@ def test_the_supervisor_never_loads_jax_and_starts_in_any_folder(tmp_path):
     assert subprocess.run([sys.executable, "-c", check], cwd=tmp_path).returncode == 0
 
 
-@pytest.fixture
-def heartbeat(services):
-    return Heartbeats(
-        services.sessions, "worker", Device("some device", 8 << 30, {}, "0"), lease=20
-    )
-
-
-@pytest.fixture
-def busy(services, heartbeat, monkeypatch, tmp_path):
-    """A supervisor that computes on the processor, and that has taken the run."""
-    monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", str(tmp_path))
-    environment = {}
-    readiness = Readiness(services, Device("a processor", 8 << 30, environment))
-    return Supervisor(services, "worker", environment, heartbeat, readiness)
-
-
-@pytest.fixture
-def next_run(services, heartbeat):
-    def next_run():
-        heartbeat.beat()
-        return take(services, "worker")
-
-    return next_run
-
-
 def test_a_job_that_ignores_the_stop_is_killed_at_no_cost(
     services, run_id, row, busy, next_run, monkeypatch
 ):
@@ -158,6 +129,7 @@ def test_a_job_that_ignores_the_stop_is_killed_at_no_cost(
     assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
 
 
+@pytest.mark.long
 def test_a_job_that_dies_before_its_claim_is_counted_with_its_last_words(
     run_id, row, busy, next_run, capfd
 ):
@@ -169,46 +141,6 @@ def test_a_job_that_dies_before_its_claim_is_counted_with_its_last_words(
     assert "its process ended with status 1" in row().error
     assert "Could not parse SQLAlchemy URL" in row().error
     assert "Traceback" in capfd.readouterr().err, "the worker's log has all of it"
-
-
-def test_a_host_that_fails_its_self_test_blames_no_run_and_takes_none(
-    run_id, row, busy, next_run, monkeypatch
-):
-    busy.environment["JAX_PLATFORMS"] = "cuda"  # There is none.
-    busy.carry_out(next_run())
-    assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
-    assert row().worker is None, "others may take it"
-    assert busy.readiness.problem.kind == "device"
-    assert not busy.readiness.check()
-    busy.environment["JAX_PLATFORMS"] = "cpu"  # The driver is back.
-    assert not busy.readiness.check(), "it is tested again in a while"
-    monkeypatch.setattr(readiness.time, "monotonic", lambda now=time.monotonic: now() + 61)
-    assert busy.readiness.check()
-    assert busy.readiness.problem is None
-    assert busy.readiness.device_kinds[0].startswith("cpu, microcosmos ")
-
-
-def test_a_self_test_is_believed_until_something_has_changed(services, busy, monkeypatch):
-    ready = busy.readiness
-    assert ready.check()
-    monkeypatch.setattr(readiness, "_self_test", lambda _: ([], Problem("device", "again")))
-    same = Readiness(services, Device("a processor", 8 << 30, {}))
-    assert same.check()
-    assert same.device_kinds == ready.device_kinds
-    changed = {"JAX_PLATFORMS": "cuda"}, {"MICROCOSMOS_KERNEL": "jax"}
-    for environment in changed:
-        assert not Readiness(services, Device("a processor", 8 << 30, environment)).check()
-    assert not Readiness(services, Device("another", 8 << 30, {})).check()
-    assert not ready.test_device()
-    assert not Readiness(services, Device("a processor", 8 << 30, {})).check()
-
-
-def test_a_self_test_ends_when_its_worker_has_to_stop(busy, monkeypatch):
-    monkeypatch.setattr(process_setup, "_stop_requested", True)
-    began = time.monotonic()
-    assert not busy.readiness.test_device()
-    assert busy.readiness.problem == ("untested", "Its self-test fails: the worker has to stop")
-    assert time.monotonic() - began < readiness.TEST_SECONDS / 10
 
 
 @pytest.mark.parametrize(

@@ -20,6 +20,7 @@ def self_tested(needed):
     return done.stderr.strip()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("needed", "said"), [("cpu", ""), ("gpu", "JAX sees no GPU, and ")])
 def test_a_good_device_passes_and_a_missing_gpu_is_named(needed, said):
     found = self_tested(needed)

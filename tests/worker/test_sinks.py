@@ -37,6 +37,7 @@ def run_id(services):
     return submit(services, SPEC)[0].id
 
 
+@pytest.mark.long
 def test_a_run_whose_worker_died_continues_its_record(services, run_id, row, folder):
     found = claim(services, run_id, "worker")
 

@@ -9,14 +9,12 @@ import numpy as np
 
 from .. import search
 from ..archive import columns, creature
-from ..build import build_task
+from ..build import build_point, build_task
 from ..device import compiler_options
 from ..search.summary import SUMMARISED
 from ..spec import Gait, Scene, Task
 from ..viz.replay import actuator_of
 
-GAIT = "the measures of a gait"
-"""What the kernel lacks of a creature without a genome."""
 GOAL = ("displacement", "energy", "measure", "sign")
 Arrays = dict[bytes, tuple[str, np.ndarray]]
 """Arrays by their bytes: calls share most of theirs, and a file has each one once."""
@@ -39,6 +37,7 @@ def evaluation_inputs(file: Mapping[str, Any]) -> bytes:
     header |= {
         "goal": goal if scene.task.plugin is None else None,
         "measures": SUMMARISED,
+        "cycle": scene.control.period if isinstance(scene.control, Gait) else None,
         "copies": 1 if scene.world.copies is None else scene.world.copies.count,
         "numbers": {"develop": dict(found.development), "rollout": dict(found.simulation)},
         "trials": [
@@ -57,24 +56,30 @@ def _inputs(file: Mapping[str, Any], scene: Scene) -> tuple[dict[str, Any], sear
 
     Measures of plug-ins are left out: no kernel computes them.
     """
-    if isinstance(scene.control, Gait):
-        raise search.NotCovered(GAIT)
     task = scene.task
     if task.plugin is not None:
         task = Task(steps=task.steps, trials=task.trials)
     bare = scene.model_copy(update={"task": task, "plugins": {}})
     goal, program = _program(bare.model_dump_json())
-    return goal, jax.device_get(program(actuator_of(file, scene)))
+    actuator = actuator_of(file, scene)
+    if isinstance(scene.control, Gait):
+        return goal, jax.device_get(program(actuator, build_point(scene)))
+    return goal, jax.device_get(program(actuator))
 
 
 @lru_cache(maxsize=16)
-def _program(scene_json: str) -> tuple[dict[str, Any], Callable[[Any], search.Inputs]]:
-    """Return a goal, and the program from a genotype to its inputs.
+def _program(scene_json: str) -> tuple[dict[str, Any], Callable[..., search.Inputs]]:
+    """Return a goal, and the program from a genotype, or rest shapes and the conditions of a
+    point, to the inputs.
 
     Its compiler options are those of evaluations, for the same bits.
     """
     task = build_task(Scene.model_validate_json(scene_json))
-    program = jax.jit(lambda one: search.inputs(task, one), compiler_options=compiler_options())
+
+    def found(actuator: search.Actuator, *point: search.Conditions) -> search.Inputs:
+        return search.inputs(search.in_conditions(task, *point) if point else task, actuator)
+
+    program = jax.jit(found, compiler_options=compiler_options())
     return {name: getattr(task.goal, name) for name in GOAL}, program
 
 

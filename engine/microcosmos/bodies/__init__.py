@@ -7,6 +7,6 @@ from .checks import MIN_GAP
 from .colouring import Colour, colour
 from .curve import polyline, svg
 from .graph import Body, combined, placed
-from .layout import Layout, layout, pieces
+from .layout import Layout, is_exact, layout, pieces
 from .resolution import Refined, subdivided, thinned
 from .shape import extent, from_edges

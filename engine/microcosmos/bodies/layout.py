@@ -1,6 +1,7 @@
 """Layout of bodies: directions of edges and positions of nodes by rest angles and lengths."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -47,6 +48,17 @@ def layout(body: Body) -> Layout:
         placed=_inverse(body.edges, nodes),
         piece=pieces(body.edges, nodes),
     )
+
+
+def is_exact(body: Body, theta_feedback: float | int, nu_c: Any) -> bool:
+    """Return whether the rest shape is the shape, so that no constraint needs a sweep.
+
+    So it is at full stiffness and strength, where edge angles follow the geometry, for a body
+    that can be laid out.
+    """
+    stiff = all(np.all(one == 1) for one in (body.stretch, body.shear, body.bend))
+    small = len(body.positions) <= MAX_NODES
+    return bool(stiff and small and nu_c is None and theta_feedback == 1)
 
 
 def _inverse(pairs: np.ndarray, count: int) -> np.ndarray:

@@ -19,8 +19,7 @@ from .. import (
     spec,
     world,
 )
-from ..bodies import extent
-from ..bodies.layout import MAX_NODES
+from ..bodies import extent, is_exact
 from ..device import array
 from ..naming import FORMS
 from ..spec.search import MEASURED
@@ -174,15 +173,8 @@ def build_world(
 def build_matching(
     body: bodies.Body, theta_feedback: float, nu_c: Any, dtype: Any = jnp.float32
 ) -> filaments.Layout | None:
-    """Build what meets constraints in closed form; None where they are swept.
-
-    The rest shape is the shape at full stiffness and strength, where edge angles follow the
-    geometry; the layout has at most `MAX_NODES` nodes.
-    """
-    stiff = all(np.all(one == 1) for one in (body.stretch, body.shear, body.bend))
-    small = len(body.positions) <= MAX_NODES
-    matched = stiff and small and nu_c is None and theta_feedback == 1
-    return build_layout(body, dtype) if matched else None
+    """Build what meets constraints in closed form; None where they are swept."""
+    return build_layout(body, dtype) if is_exact(body, theta_feedback, nu_c) else None
 
 
 def build_soft_matching(

@@ -7,8 +7,8 @@ from dataclasses import replace
 import jax.numpy as jnp
 
 from .. import bodies, device, filaments, spec, world
-from ..archive.physical import sperm
 from ..archive.report import Row
+from ..archive.sperm import sperm
 from ..experiments import gaits, scaling
 from ..experiments.table_file import TableRun
 from ..spec.scaling import SPACING
@@ -72,10 +72,17 @@ def _stroke(chosen: spec.Gaits, form: str, swimmer: str) -> gaits.Stroke:
         program=build_stroke_block(scenes[0]),
         conditions=gaits.stack([build_point(scene) for scene in scenes]),
         viscosities=chosen.viscosities,
-        sperm=tuple(map(sperm, scenes)),
+        sperm=tuple(_sperm(scene, body) for scene in scenes),
         spacing=spacing,
         identities=tuple(identity_template(scene) for scene in scenes),
     )
+
+
+def _sperm(scene: spec.Scene, body: bodies.Body) -> float:
+    found = sperm(scene, body)
+    if found is None:
+        raise ValueError(f"`swimmers` must have stiff joints, got {scene.body.builder!r}")
+    return found
 
 
 def _json(chosen: spec.Spec) -> str:

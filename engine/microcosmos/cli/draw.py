@@ -12,6 +12,7 @@ from typer.core import TyperGroup
 
 from ..archive.creature import parse
 from ..archive.file import HDF5, load
+from ..archive.quantities import Real
 from ..viz.figures import drawing, experiments
 from ..viz.figures.verdicts import WORDS, verdicts
 from ..viz.film import check, export
@@ -76,9 +77,7 @@ def printed(
     ] = None,
 ) -> Iterator[drawing.Print]:
     with failing():
-        if (length is None) != (period is None):
-            raise ValueError("`--length` and `--period` must be given together")
-        real = None if length is None or period is None else (length, period)
+        real = Real.of(length, period)
         yield drawing.Print(width, dpi, caption, latex, palette, real)
 
 

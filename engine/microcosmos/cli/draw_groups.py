@@ -25,7 +25,7 @@ GroupsAndOut = Annotated[
 
 
 @figures.command()
-@with_options(printed, omit=("palette", *REAL), width="double")
+@with_options(printed, omit=("palette",), width="double")
 def curves(
     options: drawing.Print,
     files: Annotated[
@@ -48,7 +48,7 @@ def curves(
 
 
 @figures.command()
-@with_options(printed, omit=("palette", *REAL), width="double")
+@with_options(printed, omit=("palette",), width="double")
 def box(
     options: drawing.Print,
     groups: GroupsAndOut,
@@ -62,7 +62,7 @@ def box(
 
 
 @figures.command()
-@with_options(printed, omit=("palette", *REAL), width="double")
+@with_options(printed, omit=("palette",), width="double")
 def parameter(
     options: drawing.Print,
     field: Annotated[str, Argument(help="A field of the spec, such as world.viscosity.")],

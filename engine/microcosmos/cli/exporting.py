@@ -9,12 +9,13 @@ from typing import Annotated
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from typer import Argument, Option
 
+from ..archive.quantities import Real
 from ..client import Client
 from ..client.exporting import extra, opened
 from ..exports import local
 from ..exports.citation import Publication
 from ..exports.crate import File
-from ..exports.formats import Format, Tell
+from ..exports.formats import Format, Tell, refuse_without_columns
 from ..exports.run_file import RunFile
 from ..naming import LICENCE
 from ..sizes import size
@@ -43,17 +44,26 @@ def export_runs(
         Option(metavar='"FAMILY, GIVEN"', help="Author of a RO-Crate; repeatable."),
     ] = None,
     licence: Annotated[str, Option(help="Licence of a RO-Crate, by SPDX.")] = LICENCE,
+    length: Annotated[
+        str | None,
+        Option(help="Real length of a body, such as 1mm, for columns in SI units."),
+    ] = None,
+    period: Annotated[
+        str | None, Option(help="Real period of a stroke, such as 0.5s; with --length.")
+    ] = None,
 ) -> None:
     """Export runs: as Parquet, Arrow, ALife standard, Newick, netCDF or RO-Crate."""
     publication = Publication(title, author or (), licence)
     with failing(), _progress(len(runs)) as tell:
+        if Real.of(length, period) is not None:
+            refuse_without_columns(form)  # Before anything is read.
         found = {one.name: (one, more) for one, more in (_open(client, r, form) for r in runs)}
         if len(found) < len(runs):
             raise ValueError(f"RUN... needs different names; got {', '.join(runs)}")
         files = [one for one, _ in found.values()]
         more = {name: extra for name, (_, extra) in found.items()}
         options = {"publication": publication, "extra": more, "zip": zip, "tell": tell}
-        written = local.export(files, form, to, **options)
+        written = local.export(files, form, to, length=length, period=period, **options)
     for path in written:
         print(f"{path}  {size(path.stat().st_size)}")
     if form is Format.ro_crate and not author:

@@ -8,9 +8,9 @@ from typing import Annotated, Any
 
 from typer import Argument, Option
 
-from ..archive import physical
 from ..archive.atomic import write_whole
 from ..archive.file import HDF5
+from ..archive.quantities import shown
 from .app import app, failing
 from .remote import Json, show
 
@@ -38,6 +38,8 @@ def units(
     json: Json = False,
 ) -> None:
     """Print physical units, given the real length of a body and the period of its stroke."""
+    from ..viz import physical  # Loads SciPy.
+
     with failing(file):
         data = file.read_bytes()
         if data.startswith(HDF5) and file.suffix == ".h5":
@@ -54,7 +56,7 @@ def units(
         ("speed of the nodes", "node_speed_m_per_s"),
     ):
         if value in numbers:
-            print(f"{name:>20}  {physical.shown(numbers[value], 'm/s')}")
+            print(f"{name:>20}  {shown(numbers[value], 'm/s')}")
     for name, title in TITLES.items():
         if name in numbers:
             print(f"{title:>20}  {numbers[name]:.3g}")

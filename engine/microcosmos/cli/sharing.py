@@ -24,10 +24,15 @@ def import_(
         list[str],
         Argument(metavar="FILE|URL...", help="Creature files, or addresses of shares."),
     ],
+    every: Annotated[
+        bool,
+        Option("--all", help="Import all creatures of shared archives, without ancestors."),
+    ] = False,
 ) -> None:
     """Import creatures from files or shares into a server, which verifies their hashes."""
     for file in files:
-        print(client.import_creature(file).sha)
+        for one in client.import_all(file) if every else [client.import_creature(file)]:
+            print(one.sha, flush=True)
 
 
 @server_command(SHARING)

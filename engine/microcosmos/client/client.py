@@ -186,6 +186,20 @@ class Client:
             document = shared.creature(address)
         else:
             document = dict(file) if isinstance(file, Mapping) else creature_file(Path(file))
+        return self._imported(document)
+
+    def import_all(self, address: str) -> Iterator[Creature]:
+        """Import all creatures of the share at an address, the best first, one at a time,
+        without their ancestors.
+
+        Raises `ValueError` for another text, which is no address of a share.
+        """
+        at = shared.address(address)
+        if at is None:
+            raise ValueError(f"`address` must be that of a share, got {address!r:.200}")
+        yield from map(self._imported, shared.creatures(at))
+
+    def _imported(self, document: Mapping[str, Any]) -> Creature:
         made = self.connection.send("POST", "creatures", document, key=str(uuid4()))
         return Creature(self.connection, made["creature"])
 

@@ -1,7 +1,7 @@
 """Read shares of any installation by their address: a verified creature, the spec of a run."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from ..archive import pedigree
@@ -37,16 +37,27 @@ def address(text: str) -> Address | None:
     return Address(**found.groupdict()) if found else None
 
 
-def creature(at: Address) -> dict[str, Any]:
+def creature(at: Address, *, with_ancestors: bool = True) -> dict[str, Any]:
     """Return the file of the shared creature, or of the best of an archive, with its ancestors.
 
     Each is verified by its hash. Raise `ServerError` or `CreatureError`.
     """
-    document = at.read(f"shares/{at.slug}/creature.json", creature=at.creature)
+    wanted = {"creature": at.creature, "ancestors": with_ancestors}
+    document = at.read(f"shares/{at.slug}/creature.json", **wanted)
     file, ancestors = pedigree.split(document)
     if at.creature not in (None, file["sha256"]):
         raise ServerError(f"{at.server} sent {file['sha256']} instead of {at.creature}.")
     return pedigree.document(file, ancestors)
+
+
+def creatures(at: Address) -> Iterator[dict[str, Any]]:
+    """Yield the files of all creatures of a share, the best first, without their ancestors.
+
+    Raises as `creature` does.
+    """
+    named = [at.creature] if at.creature else None
+    for name in named or at.read(f"shares/{at.slug}/creatures.json")["creatures"]:
+        yield creature(at._replace(creature=name), with_ancestors=False)
 
 
 def spec(at: Address) -> dict[str, Any]:

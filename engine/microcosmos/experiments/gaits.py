@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from math import atan2, hypot
 from typing import Any
 
 import jax
@@ -44,6 +45,7 @@ def stroke_rows(
 def _row(stroke: Stroke, point: int, found: search.Evaluation, block: int, device: str) -> Row:
     names, values = search.STROKE_MEASURES, found.measures[point].tolist()
     measures: dict[str, float] = dict(zip(names, values, strict=True))
+    cycle = measures["cycle_x"], measures["cycle_y"]
     status = search.STATUSES[int(found.status[point])]
     ok = status != "non-finite"
     warnings = units.warnings(
@@ -53,8 +55,8 @@ def _row(stroke: Stroke, point: int, found: search.Evaluation, block: int, devic
         "form": stroke.form,
         "swimmer": stroke.swimmer,
         "viscosity": stroke.viscosities[point],
-        "displacement": measures["cycle"] if ok else None,
-        "direction": measures["direction"] if ok else None,
+        "displacement": hypot(*cycle) if ok else None,
+        "direction": atan2(*reversed(cycle)) if ok else None,
         "reynolds": measures["reynolds"] if ok else None,
         "sperm": stroke.sperm[point],
         "mach": measures["mach"] if ok else None,

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from ..archive.export import Source, source_bytes
+from ..archive.quantities import Real
 from ..optional import require
-from . import tables
+from . import si, tables
 from .run_file import RunFile
 from .table import Column, Columns, Ragged
 
@@ -19,24 +20,35 @@ ITEM = "element"
 """Name of the items of lists in Parquet."""
 
 
-def to_arrow(archive: Source, table: str = "archive", run: str = "run") -> Any:
+def to_arrow(
+    archive: Source,
+    table: str = "archive",
+    run: str = "run",
+    *,
+    length: str | None = None,
+    period: str | None = None,
+) -> Any:
     """Return a table of a run's file as a `pyarrow.Table`.
 
     `table` is `archive`, `curves`, `lineage`, `genomes` or `poses`, or `result` for a run
     without an archive; `docs/formats.md` describes the columns. `run` fills the first one.
-    Titles and units are metadata of the fields, the spec is metadata of the schema. Raises
-    `ValueError` for a table that the run lacks, and `ImportError` without pyarrow.
+    Titles and units are metadata of the fields, the spec is metadata of the schema. With the
+    real `length` of a body, such as `1mm`, and `period` of a stroke, such as `0.5s`, columns
+    `NAME_si` in SI units follow. Raises `ValueError` for a table that the run lacks, and for a
+    length or period without a known unit, and `ImportError` without pyarrow.
     """
-    return of_runs([RunFile(run, source_bytes(archive))], table)
+    real = Real.of(length, period)
+    return of_runs([RunFile(run, source_bytes(archive))], table, real)
 
 
-def of_runs(runs: Sequence[RunFile], table: str) -> Any:
+def of_runs(runs: Sequence[RunFile], table: str, real: Real | None = None) -> Any:
     """Return a table of several runs, one after another; the first column names the run.
 
-    A column that one run lacks is null in its rows.
+    A column that one run lacks is null in its rows. With `real` quantities, columns in SI units
+    follow; every body then has that length.
     """
     pa = require("pyarrow", EXTRA)
-    parts = [of_columns(_of(run, table), run.name) for run in runs if table in _have(run)]
+    parts = [of_columns(_of(run, table, real), run.name) for run in runs if table in _have(run)]
     if not parts:
         known = ", ".join(tables.names(list(runs)))
         raise ValueError(f"`table` must be one of {known}, got {table!r}")
@@ -46,6 +58,8 @@ def of_runs(runs: Sequence[RunFile], table: str) -> Any:
         "table": table,
         "runs": json.dumps({run.name: run.facts() for run in runs}, ensure_ascii=False),
     }
+    if real is not None:
+        about["real"] = json.dumps(si.facts(real))
     return whole.replace_schema_metadata(about)
 
 
@@ -53,8 +67,9 @@ def _have(run: RunFile) -> Sequence[str]:
     return list(tables.makers(run))
 
 
-def _of(run: RunFile, table: str) -> Columns:
-    return tables.makers(run)[table](run)
+def _of(run: RunFile, table: str, real: Real | None) -> Columns:
+    columns = tables.makers(run)[table](run)
+    return columns if real is None else si.with_si(columns, run, table, real)
 
 
 def of_columns(columns: Columns, run: str) -> Any:

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 from ..archive import export
 from ..optional import require
 from ..version import VERSION
-from . import arrow, births, tables
+from . import arrow, births
 from .citation import NOBODY, Publication, citation, person
-from .dataset import netcdf, of_elites
+from .dataset import netcdf, of_run
 from .environment import environment, requirements
 from .readme import ENVIRONMENT, REQUIREMENTS, SPEC, command, readme, summary
 from .run_file import RunFile
@@ -93,7 +93,7 @@ def _results(run: RunFile) -> dict[str, File]:
         }.items()
     }
     return files | {
-        "archive.nc": File(netcdf(of_elites(tables.elites(run))), "the archive for xarray"),
+        "archive.nc": File(netcdf(of_run(run)), "the archive for xarray"),
         "archive.csv": File(
             export.csv(run.data).encode(), "the archive in the columns of pyribs"
         ),

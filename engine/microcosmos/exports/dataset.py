@@ -7,26 +7,36 @@ from typing import Any
 import numpy as np
 
 from ..archive.export import Source, source_bytes
+from ..archive.quantities import Real
 from ..optional import require
 from .arrow import EXTRA
 from .run_file import RunFile
+from .si import elites_with_si
 from .table import Column, Elites, Ragged, values_at
 from .tables import elites
 
 FORMAT = "microcosmos-dataset/1"
 
 
-def to_xarray(archive: Source) -> Any:
+def to_xarray(archive: Source, *, length: str | None = None, period: str | None = None) -> Any:
     """Return the elites of an archive file as an `xarray.Dataset`.
 
     A grid has a dimension for each descriptor, whose coordinates are the middles of bins, with
     their ends in `NAME_bounds`. Empty cells are NaN, and their creature is "". Other archives
     have one dimension, `cell` or `place`, with descriptors as coordinates along it: those of
     the centroids, or of the elites. The elites' own values of a descriptor are
-    `elite_NAME`. Raises `ValueError` for a run without an archive, and `ImportError` without
-    xarray.
+    `elite_NAME`. With the real `length` of a body, such as `1mm`, and `period` of a stroke,
+    such as `0.5s`, variables `NAME_si` have the elites' values in SI units. Raises `ValueError`
+    for a run without an archive, and for a length or period without a known unit, and
+    `ImportError` without xarray.
     """
-    return of_elites(elites(RunFile("run", source_bytes(archive))))
+    return of_run(RunFile("run", source_bytes(archive)), Real.of(length, period))
+
+
+def of_run(run: RunFile, real: Real | None = None) -> Any:
+    """Return the elites of a run as a dataset, with SI units if real quantities are given."""
+    found = elites(run)
+    return of_elites(found if real is None else elites_with_si(found, run, real))
 
 
 def of_elites(found: Elites) -> Any:
@@ -100,8 +110,9 @@ def _about(column: Column) -> dict[str, str]:
 def _attributes(found: Elites) -> dict[str, Any]:
     """Return attributes that netCDF can hold: texts and numbers."""
     whole = {"format": FORMAT, "source": "Microcosmos", "kind": found.kind, **found.attributes}
+    plain = (str, int, float)
     return {
-        name: value if isinstance(value, str | int) else json.dumps(value, ensure_ascii=False)
+        name: value if isinstance(value, plain) else json.dumps(value, ensure_ascii=False)
         for name, value in whole.items()
     }
 

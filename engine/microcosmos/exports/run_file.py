@@ -93,8 +93,6 @@ def described(name: str, plugins: Mapping[str, PluginVersion]) -> tuple[str, str
 def fitness_of(task: Mapping[str, Any], plugins: Mapping[str, PluginVersion]) -> str:
     """Return the unit of fitness by a spec's task."""
     name = task["fitness"]
-    if name == "displacement+energy":
-        return "cells"
     return described(MEASURED.get(name, (name,))[0], plugins)[1]
 
 

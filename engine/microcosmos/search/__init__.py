@@ -59,6 +59,6 @@ from .insertion import (
 from .measures import MEASURES, Measure, Motion, motion, observe
 from .simulation import drive, shift_energy, simulate, turned
 from .spaces import Networks, Space, Vectors
-from .strokes import STROKE_MEASURES, Conditions, swim
+from .strokes import STROKE_MEASURES, Conditions, in_conditions, swim
 from .task import Actuator, Goal, Task
 from .window import Poses

@@ -107,7 +107,7 @@ def _evaluate(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
     if task.encoding is None:
         raise ValueError("`task.encoding` must say what the genotype means; got None.")
     end, observed = simulate(driven)
-    values, shown, valid = _summary(task, driven, end, observed)
+    values, shown, valid = measured(task, driven, end, observed)
     values["crossing"] = crossing(shown, driven.start.positions)
     values["hidden_nodes"], values["connections"] = task.encoding.size(genotype)
     values |= form_of(task, driven)
@@ -124,7 +124,7 @@ def all_finite(tree: PyTree) -> Bool[Array, ""]:
     return jnp.all(jnp.stack([jnp.all(jnp.isfinite(one)) for one in numbers]))
 
 
-def _summary(
+def measured(
     task: Task, driven: Drive, end: State, observed: Measures
 ) -> tuple[dict[str, Any], Poses, Int[Array, ""]]:
     """Return measures by name, poses and status of a motion."""

@@ -9,13 +9,12 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
 from ..filaments import Rest
-from ..genomes import Genotype
 from ..world import native
 from .crossing import whole_units
 from .evaluation import form_of, in_trials, length_of
 from .school import schooled
 from .simulation import clock_of, drive, given_of, shift_energy, turned
-from .task import Task
+from .task import Actuator, Task
 
 Numbers = tuple[tuple[str, int], ...]
 
@@ -52,26 +51,25 @@ class Inputs(eqx.Module):
     """Numbers of the call `rollout`, which has those of `summarise`."""
 
 
-def inputs(task: Task, genotype: Genotype) -> Inputs:
-    """Return the inputs of all simulations in which `evaluate` measures a genotype.
+def inputs(task: Task, actuator: Actuator) -> Inputs:
+    """Return the inputs of all simulations in which `evaluate` measures an actuator.
 
     Raises `NotCovered` where JAX has to simulate.
     """
     if task.trials > 1:
-        return in_trials(task, lambda one: _placed(one, genotype))
-    return jax.tree.map(lambda x: x[None], _placed(task, genotype))
+        return in_trials(task, lambda one: _placed(one, actuator))
+    return jax.tree.map(lambda x: x[None], _placed(task, actuator))
 
 
-def _placed(task: Task, genotype: Genotype) -> Inputs:
+def _placed(task: Task, actuator: Actuator) -> Inputs:
     if task.placements is None:
-        return jax.tree.map(lambda x: x[None], _simulation(task, genotype, None))
-    return jax.lax.map(lambda shift: _simulation(task, genotype, shift), task.placements)
+        return jax.tree.map(lambda x: x[None], _simulation(task, actuator, None))
+    return jax.lax.map(lambda shift: _simulation(task, actuator, shift), task.placements)
 
 
-def _simulation(task: Task, genotype: Genotype, shift: Int[Array, "2"] | None) -> Inputs:
-    assert task.encoding is not None
+def _simulation(task: Task, actuator: Actuator, shift: Int[Array, "2"] | None) -> Inputs:
     # The controller and not what it commands: the other kernel develops that.
-    alone = drive(replace(task, turn=None, places=None), genotype, differentiable=True)
+    alone = drive(replace(task, turn=None, places=None), actuator, differentiable=True)
     controller = alone.controller
     develop, development = [], {}
     if controller is not None and not controller.senses:
@@ -91,7 +89,6 @@ def _simulation(task: Task, genotype: Genotype, shift: Int[Array, "2"] | None) -
         nothing = jnp.zeros((development["steps"], 0), jnp.float32)
         given = Rest(nothing, nothing)
     rollout, simulation = native.rollout_operands(driven.world, driven.start, given)
-    hidden, connections = task.encoding.size(genotype)
     scales = [driven.world.viscosity, length_of(task, alone), task.period or 0.0]
     return Inputs(
         develop=tuple(develop),
@@ -99,10 +96,18 @@ def _simulation(task: Task, genotype: Genotype, shift: Int[Array, "2"] | None) -
         clock=clock_of(driven, 0 if development else simulation["steps"]),
         scales=jnp.stack([jnp.asarray(one, jnp.float32) for one in scales]),
         whole=whole_units(driven.start.positions),
-        constant={"hidden_nodes": hidden, "connections": connections, **form_of(task, alone)},
+        constant={**size_of(task, actuator), **form_of(task, alone)},
         development=_fixed(development),
         simulation=_fixed(simulation),
     )
+
+
+def size_of(task: Task, actuator: Actuator) -> dict[str, Array]:
+    """Return the measures of a genome; rest shapes have none."""
+    if task.encoding is None or isinstance(actuator, Rest):
+        return {}
+    hidden, connections = task.encoding.size(actuator)
+    return {"hidden_nodes": hidden, "connections": connections}
 
 
 def _fixed(numbers: Mapping[str, int]) -> Numbers:

@@ -7,11 +7,10 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ..filaments import Rest
-from ..genomes import Drive
-from ..world import Limits, centre
-from .evaluation import Evaluation
-from .measures import MOTION, motion
-from .simulation import simulate
+from ..world import Limits
+from .evaluation import STATUSES, Evaluation, all_finite, fitness_of, measured
+from .measures import MOTION
+from .simulation import drive, simulate
 from .task import Task
 
 STROKE_MEASURES = (
@@ -20,8 +19,8 @@ STROKE_MEASURES = (
     "mach",
     "limited",
     "reynolds",
-    "cycle",
-    "direction",
+    "cycle_x",
+    "cycle_y",
     "impulse",
 )
 """Measures of every stroke, in this order; units in `docs/formats.md`."""
@@ -34,20 +33,21 @@ class Conditions(eqx.Module):
     limits: Limits
 
 
+def in_conditions(task: Task, conditions: Conditions) -> Task:
+    """Return the task of one body that is simulated once, in the conditions of a point."""
+    world = replace(task.world, viscosity=conditions.viscosity, limits=conditions.limits)
+    return replace(task, world=world, trials=1, placements=None, places=None)
+
+
 def swim(task: Task, rest: Rest, conditions: Conditions, period: int) -> Evaluation:
     """Carry out a stroke under its conditions and measure its last cycle."""
-    world = replace(task.world, viscosity=conditions.viscosity, limits=conditions.limits)
-    end, observed = simulate(Drive(world, task.start, rest))
-    values = motion(world, task.start, end, observed, task.length)
-    before = (
-        observed.centre[-1 - period]
-        if len(observed.node_speed) > period
-        else centre(world, task.start)
-    )
-    cycle = observed.centre[-1] - before
-    values["cycle"] = jnp.sqrt(jnp.sum(cycle * cycle))
-    values["direction"] = jnp.arctan2(cycle[1], cycle[0])
+    task = in_conditions(task, conditions)
+    driven = drive(task, rest)
+    end, observed = simulate(driven)
+    values, poses, valid = measured(task, driven, end, observed)
+    whole = len(observed.power) > period
+    before = observed.centre[-1 - period] if whole else poses.path[0]
+    values["cycle_x"], values["cycle_y"] = observed.centre[-1] - before
     measures = jnp.stack([values[name] for name in STROKE_MEASURES])
-    finite = jnp.all(jnp.isfinite(measures))
-    status = jnp.where(finite, jnp.where(values["mach"] < 1, 0, 2), 1)
-    return Evaluation(values["displacement"], measures, status)
+    valid = jnp.where(all_finite(measures), valid, STATUSES.index("non-finite"))
+    return Evaluation(fitness_of(task, values), measures, valid)

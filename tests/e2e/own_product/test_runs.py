@@ -4,6 +4,7 @@ import re
 
 import pytest
 from drive import Installation
+from pages import expect_in_url
 from playwright.sync_api import Page, expect
 from small_runs import TINY
 
@@ -13,7 +14,7 @@ SLOW = 300_000
 def test_runs_are_named_found_sorted_and_compared(product, page):
     page.goto(product.url)
     expect(page.get_by_role("link", name="Start the first run")).to_be_visible()
-    expect(page.get_by_role("heading", name="Nothing swims here yet")).to_be_visible()
+    expect(page.get_by_role("heading", name="Nothing of yours swims here yet")).to_be_visible()
     short, long = (submit(product, seed, generations) for seed, generations in ((1, 3), (2, 9)))
     page.goto(product.url)
     page.evaluate("window.neverReloaded = true")
@@ -57,7 +58,7 @@ def tag_and_filter_by_mouse(page: Page, tagged: str, other: str) -> None:
     row(page, tagged).get_by_role("button", name="keep me", exact=True).click()
     expect(row(page, other)).to_have_count(0)
     expect(row(page, tagged)).to_be_visible()
-    assert "tag=keep+me" in page.url
+    expect_in_url(page, "tag=keep+me")
     row(page, tagged).get_by_role("button", name=re.compile("^Remove the tag")).click()
     expect(page.get_by_role("heading", name="No matching runs")).to_be_visible()
     page.get_by_role("button", name="Undo").click()
@@ -98,7 +99,7 @@ def sort_by_keyboard(page: Page) -> None:
     expect(first).to_contain_text("Short one")
     page.keyboard.press("Enter")
     expect(heading).to_have_attribute("aria-sort", "none")
-    assert "sort" not in page.url
+    expect_in_url(page, "sort", False)
 
 
 def compare_by_keyboard(page: Page) -> None:

@@ -38,6 +38,7 @@ def rebuilt(softest):
     return scene, driven, np.asarray(seen.centre), body, rest
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("softest", [1.0, SOFT])
 def test_a_grown_body_that_is_built_again_moves_as_before(softest):
     scene, _, centre, body, rest = rebuilt(softest)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from microcosmos import device, naming, spec
+from microcosmos import device, naming, spec, world
 from microcosmos.archive import columns
 from microcosmos.audit import evaluation_inputs
 from microcosmos.build import build
@@ -57,6 +57,22 @@ CASES = {
 }
 
 
+GAITS = {
+    "experiment": "gaits",
+    "viscosities": [0.002, 0.05, 0.3, 2.0],
+    "forms": ["ours"],
+    "period": 60,
+    "cycles": 2,
+}
+QUICK_SWEEPS = {"actuators of finite strength": {}}
+SWEEPS = {
+    "one cycle": {"cycles": 1, "period": 100},
+    "actuators of constant strength": {"forms": ["strong"]},
+    "the paper's coupling": {"forms": ["paper"]},
+    "repulsion": {"steric": {}},
+}
+
+
 @pytest.fixture
 def evaluated(tmp_path):
     """A function that gives the answers of the page's worker to files of inputs."""
@@ -88,12 +104,24 @@ def creatures(parts):
     return list(found.values())[:CREATURES]
 
 
-def cases():
-    long = [pytest.param(one, id=name, marks=pytest.mark.long) for name, one in CASES.items()]
-    return [*(pytest.param(one, id=name) for name, one in QUICK.items()), *long]
+def swimmers(parts):
+    """Return the files of the five swimmers with their gaits, at every viscosity."""
+    experiment = build(spec.parse(GAITS | parts))
+    state = experiment.init()
+    while not experiment.done(state):
+        state, _ = experiment.advance(state)
+    return [
+        naming.document(json.loads(row.identity), row.measured, row.provenance)
+        for row in state.rows
+    ]
 
 
-@pytest.mark.parametrize("parts", cases())
+def cases(quick, others):
+    long = [pytest.param(one, id=name, marks=pytest.mark.long) for name, one in others.items()]
+    return [*(pytest.param(one, id=name) for name, one in quick.items()), *long]
+
+
+@pytest.mark.parametrize("parts", cases(QUICK, CASES))
 def test_the_page_finds_every_recorded_number_of_twenty_creatures(parts, evaluated):
     if not device.kernel_version():
         pytest.skip("microcosmos-kernels is not installed: no compiler?")
@@ -105,14 +133,42 @@ def test_the_page_finds_every_recorded_number_of_twenty_creatures(parts, evaluat
         assert figures == measured["measures"] | {"fitness": measured["fitness"]}
 
 
-def test_inputs_say_what_the_kernel_lacks():
-    gait = {"experiment": "gaits", "swimmers": ["worm"], "viscosities": [0.1], "period": 20}
-    experiment = build(spec.parse(gait | {"cycles": 1, "forms": ["ours"]}))
-    state, _ = experiment.advance(experiment.init())
-    (row,) = state.rows
-    file = naming.document(json.loads(row.identity), row.measured, row.provenance)
+def compare_gaits(files, evaluated):
+    """Compare all that is recorded of gaits with what the page finds of them."""
+    assert len(files) == CREATURES
+    answers = evaluated([evaluation_inputs(file) for file in files])
+    for file, answer in zip(files, answers, strict=True):
+        figures, measured = answer["found"]["figures"], file["measured"]
+        recorded = measured["measures"] | {"fitness": measured["fitness"]}
+        assert {name: figures[name] for name in recorded} == recorded
+
+
+@pytest.mark.parametrize("parts", cases(QUICK_SWEEPS, SWEEPS))
+def test_the_page_finds_every_recorded_number_of_the_five_swimmers(parts, evaluated):
+    if not device.kernel_version():
+        pytest.skip("microcosmos-kernels is not installed: no compiler?")
+    compare_gaits(swimmers(parts), evaluated)
+
+
+@pytest.mark.long
+def test_the_page_finds_every_recorded_number_of_swimmers_without_limits(
+    evaluated, monkeypatch
+):
+    if not device.kernel_version():
+        pytest.skip("microcosmos-kernels is not installed: no compiler?")
+    free = spec.Coupling(limits=False, kernel="peskin")
+    monkeypatch.setattr(spec.Gaits, "coupling", lambda *_: free)
+    # Cilia diverge without limits.
+    kept = {"swimmers": ["worm", "tadpole", "ray", "jellyfish"], "period": 240}
+    parts = kept | {"viscosities": [0.05, 0.1, 0.2, 0.5, 2.0]}
+    compare_gaits(swimmers(parts), evaluated)
+
+
+def test_inputs_say_what_the_kernel_lacks(monkeypatch):
+    (file, *_) = creatures({})
+    monkeypatch.setattr(world.native, "uncovered", lambda *_: "such a world")
     header, arrays = columns.load(evaluation_inputs(file))
-    assert header["uncovered"] == "the measures of a gait"
+    assert header["uncovered"] == "such a world"
     assert not arrays
 
 

@@ -116,6 +116,7 @@ def test_ten_iterations_leave_half_of_the_slip_that_equal_steps_leave(scene, mon
     assert found <= 0.6 * slip(scene, force(scene, 10))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("spacing", [0.1, 0.5, 1.0, 2.0])
 def test_iterations_converge_for_any_packing_of_nodes(spacing, scene):
     count = 40

@@ -9,7 +9,9 @@ from microcosmos import search
 from microcosmos.archive import file
 from microcosmos.experiments.offspring import divided, next_offspring
 
-RUNS = ["bandit", pytest.param("screened-bandit", marks=pytest.mark.long)]
+pytestmark = pytest.mark.long
+
+RUNS = ["bandit", "screened-bandit"]
 
 
 @pytest.fixture(scope="module", params=RUNS)

@@ -137,6 +137,7 @@ def test_a_run_with_choices_goes_on_from_any_file_with_the_same_bytes(experiment
         assert experiment.save(experiment.advance(restored)[0]) == after
 
 
+@pytest.mark.long
 def test_spec_and_exported_choices_repeat_the_run_whole_or_resumed(
     course, files, bred, tmp_path
 ):

@@ -13,7 +13,6 @@ from microcosmos.build import build
 from microcosmos.experiments import OtherDevice, Stopped
 from microcosmos.spec import parse
 
-LONG = ("lamarckian", "cma-me", "tensorneat", "screened-bandit")
 LEARNERS = ("cma-mae", "cma-mega", "lamarckian", "cma-me", "tensorneat")
 COMPUTED = (
     *("quality-diversity", "neuroevolution", "deciding", "folding", "refinement", "gaits"),
@@ -21,6 +20,8 @@ COMPUTED = (
 )
 DIVIDED = ("bandit", "screened-bandit")
 CONTAINERS = ("dominated-novelty", "fronts")
+LONG = ("deciding", "zoo", "screened", "learned", *LEARNERS, *DIVIDED, *CONTAINERS)
+"""`make test` leaves them to `make test-long`: the others keep every part of the contract."""
 OTHER = {
     "quality-diversity": {"task": {"steps": 61}},
     "neuroevolution": {"seed": 6},
@@ -66,7 +67,9 @@ def test_interrupted_after_any_generation_it_goes_on_with_the_same_bytes(compute
     assert finish(experiment, experiment.restore(files[1])) == files[-1]
 
 
-@pytest.mark.parametrize("name", marked(*COMPUTED, long=("neuroevolution", "refinement")))
+@pytest.mark.parametrize(
+    "name", marked(*COMPUTED, long=(*LONG, "neuroevolution", "refinement"))
+)
 def test_a_new_build_of_the_same_spec_gives_the_same_bytes(name, course_of, finish):
     states, _, experiment, spec = course_of(name)
     again = build(spec)
@@ -78,8 +81,8 @@ def test_a_new_build_of_the_same_spec_gives_the_same_bytes(name, course_of, fini
     [
         ("quality-diversity", 2),
         ("neuroevolution", 3),
-        ("deciding", 2),
-        ("learned", 2),
+        pytest.param("deciding", 2, marks=pytest.mark.long),
+        pytest.param("learned", 2, marks=pytest.mark.long),
         pytest.param("neuroevolution", 4, marks=pytest.mark.long),
     ],
 )

@@ -21,6 +21,8 @@ from microcosmos.genomes import Vector
 from microcosmos.search import Stopped
 from microcosmos.spec import Reevaluation, parse
 
+pytestmark = pytest.mark.long
+
 HERE = search.LocalDevices()
 DECIDES = {"decides": True, "samples": 4, "max_samples": 12, "max_error": 0.02}
 INFEASIBLE = 99.0

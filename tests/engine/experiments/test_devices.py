@@ -31,15 +31,10 @@ def files(specs, cache):
     return run
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name",
-    [
-        "bandit",
-        "dominated-novelty",
-        pytest.param("fronts", marks=pytest.mark.long),
-        pytest.param("learned", marks=pytest.mark.long),
-        *(pytest.param(f"screened{x}", marks=pytest.mark.long) for x in ("", "-bandit")),
-    ],
+    ["bandit", "dominated-novelty", "fronts", "learned", "screened", "screened-bandit"],
 )
 def test_the_number_of_devices_changes_no_byte(name, files):
     one, two = (files(name, devices) for devices in (1, 2))

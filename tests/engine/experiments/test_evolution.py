@@ -32,6 +32,7 @@ def test_the_archive_only_improves(course):
         assert values == sorted(values)
 
 
+@pytest.mark.long
 def test_a_large_archive_is_overwritten_and_ends_with_the_same_bytes(small, finish):
     axes = [{"name": name, "bins": 65} for name in ("symmetry", "curvature_mean")]
     large = build(small(archive={"descriptors": axes}))
@@ -68,6 +69,7 @@ def test_reported_elites_are_what_the_archive_holds(experiment, course):
         assert creature.parse(document)["provenance"]["parents"] == list(elite.parents)
 
 
+@pytest.mark.long
 def test_pose_streams_are_what_a_simulation_of_the_elites_gives(experiment, course):
     """Another program rounds differently, and these strokes are short."""
     state = course[0][-1]
@@ -116,6 +118,7 @@ def test_every_parent_was_an_elite_before_its_child(name, related, course_of):
     assert len(parents) >= related
 
 
+@pytest.mark.long
 def test_random_variation_has_no_parents(small, carry_out):
     spec = small(search={"emitters": [{"operator": "random"}], "generations": 2})
     for report in carry_out(build(spec))[1]:

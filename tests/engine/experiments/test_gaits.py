@@ -50,8 +50,11 @@ def test_rows_agree_with_what_was_measured_of_their_creature(course):
         measures = file["measured"]["measures"]
         assert file["sha256"] == row.creature
         assert file["identity"]["world"]["viscosity"] == values["viscosity"]
-        assert values["displacement"] == measures["cycle"]
-        assert measures["cycle"] <= measures["path_length"]
+        cycle = np.array([measures["cycle_x"], measures["cycle_y"]])
+        turn = values["direction"]
+        there = values["displacement"] * np.array([np.cos(turn), np.sin(turn)])
+        np.testing.assert_allclose(there, cycle, rtol=1e-12)
+        assert values["displacement"] <= measures["path_length"]
         assert values["mach"] == measures["mach"] < 1
         assert math.isfinite(values["sperm"])
 

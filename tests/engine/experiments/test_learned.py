@@ -7,6 +7,8 @@ import microcosmos
 from microcosmos.archive import file
 from microcosmos.spec import parse
 
+pytestmark = pytest.mark.long
+
 EXPERIMENT = "learned"
 
 

@@ -87,6 +87,7 @@ def test_rows_and_reports_hold_slopes_agreement_gradients_and_trials(course, row
     assert course[1][-1].best == course[0][-1].fitness
 
 
+@pytest.mark.long
 def test_the_function_refine_gives_the_creature_of_the_run(spec, rows):
     refined, values = microcosmos.refine(spec.creature, steps=2, block=4)
     assert values[-1]["fitness"] >= values[0]["fitness"]

@@ -48,6 +48,7 @@ def test_rows_tell_the_whole_and_its_parts(course_of):
     assert report.infeasible == 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kernel", ["native", "jax"])
 def test_the_chosen_kernel_is_measured(specs, monkeypatch, kernel):
     if kernel == "native" and device.kernel_version() is None:

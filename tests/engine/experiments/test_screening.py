@@ -17,6 +17,8 @@ from microcosmos.experiments.state import PREDICTIONS
 from microcosmos.search.screening import READY
 from microcosmos.spec import parse
 
+pytestmark = pytest.mark.long
+
 EXPERIMENT = "screened"
 FIRST = READY // 16
 """Generations before the first prediction."""

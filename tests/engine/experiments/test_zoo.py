@@ -15,6 +15,8 @@ from microcosmos.build import build, build_task
 from microcosmos.naming import decode, encode
 from microcosmos.spec import parse
 
+pytestmark = pytest.mark.long
+
 EXPERIMENT = "zoo"
 PLAN = ("identity", "genome", "plan")
 

@@ -84,6 +84,7 @@ def test_chunks_equal_all_bodies_at_once_and_displacements_of_each_sum_to_zero(f
     np.testing.assert_allclose(of_body, 0, atol=1e-13)
 
 
+@pytest.mark.long
 def test_chunks_have_the_gradient_of_all_bodies_at_once(float64, crowd):
     positions, angles, rods, rest = disturbed(crowd)
     stiffness = (rods.stretch, rods.shear, rods.bend)

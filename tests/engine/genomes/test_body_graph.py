@@ -76,6 +76,7 @@ def swum(population):
     return swim
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("softest", [1.0, 0.1])
 def test_grown_bodies_give_the_fluid_no_impulse(swum, softest):
     impulses = [np.hypot(*momentum.T).max() for *_, momentum, _ in swum(softest, True)]
@@ -94,6 +95,7 @@ def test_the_kernel_moves_grown_bodies_as_jax_does(swum, softest):
                 assert np.abs(ours - theirs)[:steps].max() <= most * unit, (name, steps)
 
 
+@pytest.mark.long
 def test_edges_keep_their_rest_length(swum):
     """But for those of bent rings, whose joints disagree: least squares gives these."""
     rings = 0
@@ -126,6 +128,7 @@ ROOTS = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("native", [False, True])
 @pytest.mark.parametrize("root", ROOTS)
 def test_soft_joints_relax_exponentially(root, native):
@@ -159,6 +162,7 @@ def test_soft_joints_relax_exponentially(root, native):
     np.testing.assert_allclose(error, expected, atol=2e-5)
 
 
+@pytest.mark.long
 def test_stiff_joints_have_no_error_to_keep(population):
     task, _ = task_of()
     assert task.encoding.softest == 1

@@ -123,6 +123,7 @@ def with_hidden(network, task, rng):
     return jax.tree.map(jnp.asarray, network)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", OPEN)
 def test_the_kernel_develops_the_rest_shapes_of_jax(name):
     task = task_of(OPEN[name])
@@ -173,6 +174,7 @@ def differing(controls):
     return rows | {name: values.astype(np.int32) for name, values in graph.items()}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["cppn", "recurrent"])
 def test_controls_may_differ_between_creatures_of_a_batch(name):
     task = task_of(OPEN[name], steps=60)
@@ -198,6 +200,7 @@ def test_controls_may_differ_between_creatures_of_a_batch(name):
             np.testing.assert_allclose(all_[number], one, rtol=0, atol=2e-5)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", CLOSED)
 def test_the_kernel_closes_the_loop_as_jax_does(name):
     consumed = {**ENERGY, "consume": True, "diffusion": 0.05}

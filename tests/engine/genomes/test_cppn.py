@@ -113,6 +113,7 @@ def network():
     return neat.minimal(jax.random.key(2), 5, 2, 8, 10)
 
 
+@pytest.mark.long
 def test_actuation_grows_from_the_rest_shape_over_the_ramp_and_repeats(network):
     rest = genomes.develop(network, controls(ramp=2))
     np.testing.assert_array_equal(rest.angle[0], BODY.rest_angle)
@@ -124,6 +125,7 @@ def test_actuation_grows_from_the_rest_shape_over_the_ramp_and_repeats(network):
     np.testing.assert_allclose(full.angle[:40], full.angle[40:80], atol=1e-5)
 
 
+@pytest.mark.long
 def test_angles_and_lengths_stay_within_their_scales():
     networks = [neat.minimal(jax.random.key(k), 5, 2, 8, 10) for k in range(20)]
     for network in networks:
@@ -195,6 +197,7 @@ def arms(values):
     return np.moveaxis(np.asarray(values).reshape(len(values), 5, -1), 1, 0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("anatomy", [False, True])
 def test_arms_of_a_star_are_told_apart_by_anatomy_alone(anatomy):
     found = build_controls(Control(period=40, ramp=0, anatomy=anatomy), STAR, STEPS)

@@ -183,6 +183,7 @@ def measured(task):
     return named
 
 
+@pytest.mark.long
 def test_energy_changes_the_motion_only_if_the_network_uses_it(foragers, network):
     opened, closed = measured(foragers(False))(network(3)), measured(foragers(True))
     elsewhere = foragers(True, seed=4).start.energy
@@ -210,6 +211,7 @@ def test_a_response_is_what_a_batch_develops(network, float64):
         np.testing.assert_allclose(rest.length, developed.length[t], rtol=1e-13)
 
 
+@pytest.mark.long
 def test_gradients_through_a_closed_loop_agree_with_finite_differences(
     foragers, network, require_slope
 ):

@@ -206,6 +206,7 @@ def test_representatives_of_extinct_species_do_not_matter(grown, advance, settin
     jax.tree.map(np.testing.assert_array_equal, *results)
 
 
+@pytest.mark.long
 def test_shared_fitness_allots_children_unless_a_species_does_not_improve(settings):
     species = _two_species(settings)
     fitness = jnp.array([2.0, 4.0, 1.0, 1.0, 0.5, 1.5])

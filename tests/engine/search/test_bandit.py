@@ -124,6 +124,7 @@ def same(one, other):
     return all(np.array_equal(x, y) for x, y in pairs)
 
 
+@pytest.mark.long
 def test_children_are_those_of_fixed_slots_and_one_program_serves_every_choice(several):
     chosen, archive = several
     counters, generation, key = neat.first_counters(3, 2), jnp.asarray(4), jax.random.key(1)

@@ -103,9 +103,8 @@ def test_a_batch_measures_what_one_creature_at_a_time_does(name, float64, monkey
     assert len({row.tobytes() for row in np.asarray(found.measures)}) == COUNT
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param("a network", marks=pytest.mark.long), "a network that senses"]
-)
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["a network", "a network that senses"])
 def test_a_batch_of_disturbed_creatures_measures_what_each_alone_does(
     name, float64, monkeypatch
 ):

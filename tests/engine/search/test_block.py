@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.long
+
 PROGRAM = Path(__file__).with_name("block_bits.py")
 
 
@@ -24,7 +26,7 @@ def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("cache")
 
 
-@pytest.fixture(scope="module", params=["chain", pytest.param("grown", marks=pytest.mark.long)])
+@pytest.fixture(scope="module", params=["chain", "grown"])
 def kind(request):
     return request.param
 
@@ -42,12 +44,10 @@ def test_all_creatures_differ(run):
     assert len(set(run["batch"])) == len(run["batch"])
 
 
-@pytest.mark.long
 def test_the_number_of_devices_makes_no_difference(run, kind, cache):
     # Of three devices one has two of the four blocks: they need not share evenly.
     assert bits(3, kind, cache) == run
 
 
-@pytest.mark.long
 def test_a_restart_makes_no_difference(run, kind, cache):
     assert bits(1, kind, cache) == run

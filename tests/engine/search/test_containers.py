@@ -57,6 +57,7 @@ def filled(container, kind=candidates, batches=6):
     return archive
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", [candidates, awkward])
 def test_the_order_of_candidates_makes_no_difference(container, kind):
     archive = filled(container, kind)

@@ -84,6 +84,7 @@ def test_children_of_a_line_lie_along_it(archive):
     np.testing.assert_allclose(values[:, 1:].std(), 0.001, rtol=0.06)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("crossover", [0.0, 0.5])
 def test_the_requested_share_of_children_has_two_parents(archive, crossover):
     networks = jax.jit(jax.vmap(network))(jax.random.split(jax.random.key(2), 4))

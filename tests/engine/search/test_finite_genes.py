@@ -16,6 +16,7 @@ ENCODINGS = ("cppn", "cppn-body", "weights", "direct")
 BAD = np.float32([np.nan, np.inf, -np.inf])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kernel", ["jax", "native"])
 @pytest.mark.parametrize("encoding", ENCODINGS)
 def test_every_gene_that_is_not_finite_is_reported(encoding, kernel, monkeypatch):

@@ -215,6 +215,7 @@ def search_for(second=2, least=False):
     return search.Search(SPACE, fronts, [emitter], seed=1)
 
 
+@pytest.mark.long
 def test_a_search_of_ones_own_fills_fronts_and_continues_from_its_file():
     loop, scores, file = search_for(), [], b""
     for number in range(12):

@@ -43,6 +43,7 @@ def creature(request, float64):
     return task, double(newcomer)
 
 
+@pytest.mark.long
 def test_derivatives_by_every_part_are_those_of_finite_differences(creature):
     task, genotype = creature
     values = gradients.parts(task, genotype)
@@ -65,6 +66,7 @@ def test_derivatives_by_every_part_are_those_of_finite_differences(creature):
             assert np.abs(slope[0]) > 1e-6, name
 
 
+@pytest.mark.long
 def test_measures_and_genes_without_derivatives_are_refused():
     task = build_task(spec.Scene())
     genotype = task.encoding.newcomer(key=jax.random.key(0))

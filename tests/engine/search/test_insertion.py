@@ -93,6 +93,7 @@ def test_the_order_of_arrival_makes_no_difference(cells, genotypes, kind, seed):
     assert np.array_equal(np.asarray(inserted.entered)[order], inserted_too.entered)
 
 
+@pytest.mark.long
 def test_the_same_creature_again_does_not_enter_and_donation_changes_nothing(cells, genotypes):
     rows = candidates(genotypes, 64, 7)
     archive, _ = insert(nothing(genotypes), rows, cells)

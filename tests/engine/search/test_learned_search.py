@@ -34,6 +34,7 @@ def advanced(loop, generations):
     return loop
 
 
+@pytest.mark.long
 def test_it_goes_on_bit_for_bit_from_a_file_before_and_after_new_axes():
     whole, files = new(), []
     for _ in range(7):
@@ -55,6 +56,7 @@ def test_a_restored_search_forgets_what_it_had_learned():
     assert advanced(loop, 4).save() == advanced(new(), 4).save()
 
 
+@pytest.mark.long
 def test_how_many_generations_a_call_takes_does_not_matter():
     whole, parts = new(), new()
     whole.run(evaluated, 13)

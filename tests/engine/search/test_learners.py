@@ -51,6 +51,7 @@ def test_children_of_cma_mega_are_theta_and_combinations_of_unit_slopes():
     assert (state.weights[:, 0] >= 0).all()
 
 
+@pytest.mark.long
 def test_cma_mega_begins_with_newcomers_and_then_at_an_elite(outcome_of):
     emitter = mega()
     nobody = archive(Vector(jnp.zeros(GENES)), False)

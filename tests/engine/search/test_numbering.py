@@ -10,6 +10,8 @@ import pytest
 from microcosmos import genomes, neat, search
 from microcosmos.search import emitters
 
+pytestmark = pytest.mark.long
+
 INPUTS, OUTPUTS, NODES, CONNECTIONS, SLOTS = 3, 2, 14, 40, 32
 GENERATIONS = 8
 PAPER = neat.PRESETS["paper"]

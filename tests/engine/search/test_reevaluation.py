@@ -100,6 +100,7 @@ def test_a_factor_of_viscosity_is_that_viscosity(disturbed, task, network):
     agree(disturbed(viscosity=1.05), measured(other, network))
 
 
+@pytest.mark.long
 def test_trials_differ_in_heading_and_phase(disturbed, task, network):
     """Results are means over the trials; of what makes a creature infeasible, the largest."""
     several = replace(task, trials=3)
@@ -263,6 +264,7 @@ def test_a_simulation_that_fails_in_one_world_fails(foraging, sensing):
     assert jax.jit(lambda: search.evaluate(foraging, broken).status)() == 1
 
 
+@pytest.mark.long
 def test_gradients_are_of_the_mean(foraging, sensing, float64):
     task, network = jax.tree.map(
         lambda x: x.astype(float64) if jnp.issubdtype(x.dtype, jnp.floating) else x,

@@ -74,6 +74,7 @@ def test_mirror_images_stay_mirror_images():
         assert np.abs(one - other - [0, -14]).max() > 0.01
 
 
+@pytest.mark.long
 def test_far_copies_swim_like_one():
     """Four copies in four boxes side by side have the images that one has in its box."""
     with jax.enable_x64(True):
@@ -93,6 +94,7 @@ def test_far_copies_swim_like_one():
             np.testing.assert_allclose(school[name], 4 * alone[name], rtol=1e-6)
 
 
+@pytest.mark.long
 def test_neighbours_change_how_a_creature_swims():
     _, _, end, _ = swum(gait(column(12)))
     _, _, alone, _ = swum(gait())
@@ -108,6 +110,7 @@ CASES = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", CASES)
 def test_the_kernel_simulates_a_school(name):
     pytest.importorskip("microcosmos_kernels")
@@ -126,6 +129,7 @@ CONTROLS = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", CONTROLS)
 def test_every_encoding_has_schools(name):
     """The kernel, where there is one, measures what JAX does."""

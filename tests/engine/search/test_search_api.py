@@ -38,6 +38,7 @@ def advanced(loop, generations):
     return loop
 
 
+@pytest.mark.long
 def test_the_archive_is_that_of_a_plain_loop_over_cells():
     loop, best = on_vectors(), {}
     for _ in range(12):

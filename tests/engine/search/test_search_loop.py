@@ -30,6 +30,7 @@ def learn_xor(loop, generations):
     return loop
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("emitter", "generations"),
     [
@@ -51,6 +52,7 @@ def test_neat_learns_xor_with_the_same_bytes_after_a_restart(emitter, generation
     assert learn_xor(again, generations - 4).save() == loop.save()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "changes",
     [

@@ -60,6 +60,7 @@ def instead(monkeypatch):
     return run
 
 
+@pytest.mark.long
 def test_the_archive_has_the_same_bytes_whatever_sinks_do(plain, instead, tmp_path, caplog):
     instead(PROCESS, patience=10.0)
     path = tmp_path / "run.h5"

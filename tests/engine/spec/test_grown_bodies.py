@@ -42,6 +42,7 @@ def test_a_refined_creature_is_drawn_as_it_has_grown():
     assert (body.nodes, len(body.edges)) == (26, 26)
 
 
+@pytest.mark.long
 def test_the_graph_of_a_creature_is_the_body_that_is_simulated():
     scene = grown_scene(softest=0.05)
     body = Identity.model_validate(grown_file(scene)["identity"]).shape

@@ -86,6 +86,7 @@ def test_text_of_the_study_is_escaped(finished):
     assert "Tests need at least 5 seeds in each group, got 1" in text
 
 
+@pytest.mark.long
 def test_a_study_that_is_finished_runs_nothing_and_has_the_same_bytes(finished, monkeypatch):
     found, paths = finished
     before = {path: path.read_bytes() for path in [*paths, *(run.path for run in found.runs)]}

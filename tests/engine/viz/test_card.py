@@ -31,6 +31,7 @@ def opened(data):
     return np.asarray(Image.open(io.BytesIO(data)))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("theme", list(THEMES))
 def test_a_preview_is_the_middle_of_a_frame_that_follows_the_creature(swimming, theme):
     picture = opened(preview(swimming, theme))
@@ -74,6 +75,7 @@ def test_a_replay_without_room_for_a_loop_is_shown_whole(swimming):
     assert loop_frames(swimming) == range(31)
 
 
+@pytest.mark.long
 def test_the_film_repeats_the_loop_for_some_seconds(beating):
     with av.open(io.BytesIO(loop(beating))) as container:
         stream = container.streams.video[0]

@@ -1,6 +1,7 @@
 """A replay of a body that a plan grew holds the nodes, edges and joints that have grown."""
 
 import numpy as np
+import pytest
 from grown_bodies import grown_file, grown_scene
 
 from microcosmos.spec.creature import Identity
@@ -9,6 +10,7 @@ from microcosmos.viz.replay import record
 from microcosmos.viz.replay_file import read_replay
 
 
+@pytest.mark.long
 def test_a_replay_holds_the_grown_body_and_its_rest_shapes():
     file = grown_file(grown_scene())
     body = Identity.model_validate(file["identity"]).shape

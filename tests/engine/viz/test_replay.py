@@ -107,6 +107,7 @@ def test_a_check_needs_a_measurement(best):
         check({**best, "measured": None})
 
 
+@pytest.mark.long
 def test_a_replay_holds_the_rest_shapes_as_they_were_applied(film, best):
     scene = creature.scene_of(best)
     encoding = build_encoding(scene, creature.room(best))

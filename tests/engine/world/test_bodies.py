@@ -33,6 +33,7 @@ def wild_and_calm(dtype):
     return body, type(rest)(array(angle), array(length))
 
 
+@pytest.mark.long
 def test_each_body_exerts_no_force_however_they_move(float64):
     body, options = scenes.parallel_chains(16, 3.0), {"form": world.Form(layers=2)}
     options |= {"steric": scenes.steric(4.0, float64), "limits": scenes.limits(0.1, float64)}
@@ -45,6 +46,7 @@ def test_each_body_exerts_no_force_however_they_move(float64):
     assert np.abs(np.asarray(end.positions) - start.positions).max() > 0.5
 
 
+@pytest.mark.long
 def test_another_body_is_moved_only_by_the_fluid(float64):
     body, rest = wild_and_calm(float64)
     options = {"size": (48, 48), "limits": scenes.limits(0.1, float64)}
@@ -75,6 +77,7 @@ def test_the_limit_of_force_is_each_bodys_own(float64):
     assert (one.held, two.held) == (0.5, 1)
 
 
+@pytest.mark.long
 def test_parallel_bodies_are_pushed_apart_and_not_the_fluid(float64):
     body, steric = scenes.parallel_chains(20, 1.0), scenes.steric(4.0, float64, fields.binomial)
     options = {"steric": steric, "limits": scenes.limits(0.3, float64)}
@@ -108,6 +111,7 @@ def cross(a, b):
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
+@pytest.mark.long
 @BOTH
 def test_bodies_that_do_not_touch_neither_move_nor_turn_each_other(gradient, dtype):
     bent = bodies.arc(20, 1.0, 0.25)
@@ -154,6 +158,7 @@ def test_contact_off_the_centre_turns_rods_by_the_torque_of_the_push(gradient, t
     assert abs(np.sum(cross(x - 32, drift))) <= 0.1 * abs(one)
 
 
+@pytest.mark.long
 @BOTH
 def test_rods_in_a_fluid_turn_each_other_and_not_the_fluid(gradient, float64):
     body, box, start = overlapping(0.0, 4.0, gradient, float64)
@@ -196,6 +201,7 @@ def driven_together(gradient, speed, dtype):
     return float(np.mean(end[20:, 1]) - np.mean(end[:20, 1]))
 
 
+@pytest.mark.long
 @BOTH
 def test_driven_filaments_cross_only_faster_than_the_limit(gradient, float64):
     for speed in (0.05, 0.095):
@@ -256,6 +262,7 @@ def test_nodes_collect_the_sum_over_steps_of_a_constant_field(forager):
     np.testing.assert_allclose(left, plane.sum(), rtol=1e-14)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("layers", "rate", "diffusion"), [(1, 0.1, None), (2, 1.0, None), (2, 0.3, 0.2)]
 )

@@ -29,6 +29,7 @@ def test_no_known_swimmer_gives_the_fluid_an_impulse():
     assert not swimmers.check_impulse(period=250).failed
 
 
+@pytest.mark.long
 def test_a_worm_without_limits_gives_the_fluid_no_impulse(dtype):
     assert not swimmers.check_impulse(("worm",), period=250, dtype=dtype, limits=False).failed
 

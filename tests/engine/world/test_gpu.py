@@ -40,6 +40,7 @@ def both(box, start, rest):
     return expected, found
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("float64")
 @pytest.mark.parametrize(
     ("steps", "present", "form"),
@@ -66,6 +67,7 @@ def test_the_kernel_takes_the_steps_of_jax(steps, present, form):
     assert held.min() < 1
 
 
+@pytest.mark.long
 def test_worlds_of_a_batch_do_not_depend_on_each_other():
     box, start, rest = scene(2)
     rests = jax.tree.map(lambda x: jnp.stack([x, 0.9 * x]), rest)
@@ -76,6 +78,7 @@ def test_worlds_of_a_batch_do_not_depend_on_each_other():
         np.testing.assert_array_equal(together[number], alone)
 
 
+@pytest.mark.long
 def test_positions_that_are_not_finite_stay_in_memory_and_spread():
     box, start, rest = scene(2)
     start = replace(start, positions=start.positions.at[0, 0].set(jnp.nan))

@@ -47,6 +47,7 @@ def test_gradients_of_200_coupled_steps_agree_with_finite_differences(
     require_slope(travelled, inputs, h=1e-5, directions=[by_weights, by_viscosity])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("limits", [True, False])
 def test_gradients_are_finite_in_float32(loss, limits):
     travelled, inputs = loss(jnp.dtype("float32"), limits=limits)
@@ -101,6 +102,7 @@ def both_fields():
     }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("options", [dict, lambda: {"layers": 2}, both_fields])
 def test_some_nodes_of_a_chain_swim_as_a_shorter_chain(pair, options):
     (short, start), (long, begun) = pair(**options())
@@ -123,6 +125,7 @@ def test_some_nodes_of_a_chain_swim_as_a_shorter_chain(pair, options):
     assert jnp.linalg.norm(whole.positions[0] - start.positions[0]) > 0.01
 
 
+@pytest.mark.long
 def test_gradients_of_a_part_are_those_of_a_shorter_chain(pair):
     @partial(jax.jit, static_argnums=2)
     def slope(box, start, nodes):

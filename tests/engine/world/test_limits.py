@@ -62,6 +62,7 @@ def test_without_limits_the_same_body_moves_further(wild, immerse):
     assert np.max(np.sum(np.asarray(motion.target) ** 2, 1)) > (2 * LIMIT) ** 2
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("viscosity", [0.001, 0.01, 0.05, 2.0])
 def test_random_control_stays_finite_and_slower_than_sound(immerse, viscosity):
     dtype, body = jnp.dtype("float32"), bodies.chain(32, 1.0)

@@ -40,6 +40,7 @@ def depth(positions, obstacles):
     return float(np.max(radii - np.hypot(*np.moveaxis(away, -1, 0))))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("body", [bodies.chain(16, 1.0), bodies.ring(20, 1.0)])
 def test_a_flow_does_not_carry_a_body_into_posts(body, dtype):
     box, start = among(POSTS, body, dtype, (14.0, 22.0), push=3e-5)
@@ -58,6 +59,7 @@ def test_without_contact_a_body_does_not_move(dtype):
     np.testing.assert_allclose(end.positions, start.positions, atol=1e-5)
 
 
+@pytest.mark.long
 def test_the_mirror_image_of_a_scene_has_the_mirror_image_of_its_motion():
     with jax.enable_x64(True):
         body, dtype = bodies.chain(12, 1.0), jnp.dtype("float64")

@@ -47,6 +47,17 @@ def test_a_table_has_a_run_and_curves(api, attempt, sweep, sweep_id, table):
     assert [item["id"] for item in api.get("runs").json()["items"]] == [run["id"]]
 
 
+def test_the_face_of_a_table_is_the_creature_of_its_newest_row_that_has_one(
+    api, attempt, sweep_id, table
+):
+    attempt.record(table(1, WORM), 1.0)
+    attempt.record(table(2, RAY, {"note": "no creature"}), 1.0)
+    ray = api.get(f"runs/{sweep_id}/results").json()["rows"][1]["creature"]
+    assert api.get(f"runs/{sweep_id}").json()["face"] == ray
+    (listed,) = api.get("runs").json()["items"]
+    assert listed["face"] == ray
+
+
 def test_tables_have_no_archive_and_archives_no_table(api, sweep_id, run_id):
     for path in ("archive", "archive.csv"):
         answer = api.get(f"runs/{sweep_id}/{path}")

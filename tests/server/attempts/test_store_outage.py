@@ -46,6 +46,7 @@ def test_a_run_waits_for_its_checkpoint(held, saved, object_store):
     assert object_store.failed > 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("failing", "status"), [("", "queued"), ("/runs/", "paused")], ids=["all", "one file"]
 )

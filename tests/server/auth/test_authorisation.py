@@ -47,6 +47,7 @@ OPEN = {
 OPEN_API = {
     "GET /shares/{slug}",
     "GET /shares/{slug}/creature.json",
+    "GET /shares/{slug}/creatures.json",
     "GET /shares/{slug}/loop.mp4",
     "GET /commons",
     "POST /session",

@@ -12,6 +12,7 @@ import xarray as xr
 from answers import detail
 from rocrate.rocrate import ROCrate
 
+from microcosmos.archive.quantities import Real
 from microcosmos.exports.formats import Format, files
 from microcosmos.exports.run_file import RunFile
 from microcosmos.spec import EXPERIMENTS
@@ -76,6 +77,37 @@ def test_a_crate_is_read_by_its_library(api, run_id, written, tmp_path):
     assert (folder / f"{name}.h5").read_bytes() == data
     tree = api.get(f"runs/{run_id}/phylogeny.csv").text
     assert (folder / "phylogeny.csv").read_text() == tree
+
+
+REAL = {"length": "1 mm", "period": "0.5s"}
+
+
+@pytest.mark.parametrize("form", ["parquet", "netcdf"])
+def test_a_real_length_and_period_add_si_units(api, run_id, written, form):
+    data, name = written
+    answer = api.get(f"runs/{run_id}/export/{form}", params=REAL)
+    assert answer.status_code == 200, answer.text
+    expected = files([RunFile(name, data)], Format(form), real=Real(1e-3, 0.5))
+    if form == "parquet":
+        whole = zipfile.ZipFile(io.BytesIO(answer.content))
+        assert {one: whole.read(f"{name}-{form}/{one}") for one in expected} == expected
+    else:
+        found = xr.load_dataset(io.BytesIO(answer.content), engine="h5netcdf")
+        assert found["speed_si"].attrs["units"] == "m/s"
+    assert answer.headers["etag"] != read(api, run_id, form).headers["etag"]
+
+
+@pytest.mark.parametrize(
+    ("given", "form", "reason"),
+    [
+        (REAL | {"length": "1"}, "parquet", "`length` must be a number above 0 with a unit"),
+        (REAL | {"period": "0.5m"}, "netcdf", "`period` must be a number above 0 with a unit"),
+        ({"length": "1mm"}, "arrow", "`length` and `period` must be given together"),
+        (REAL, "ro-crate", "need one of the formats parquet, arrow, netcdf; got 'ro-crate'"),
+    ],
+)
+def test_wrong_units_are_refused(api, run_id, written, given, form, reason):
+    assert reason in detail(api.get(f"runs/{run_id}/export/{form}", params=given), 422)
 
 
 def test_an_unchanged_export_is_not_sent_again(api, run_id, written):

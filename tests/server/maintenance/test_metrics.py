@@ -131,6 +131,7 @@ def test_the_age_of_checkpoints_is_that_of_running_runs(
     assert key not in scrape()
 
 
+@pytest.mark.long
 @pytest.mark.postgresql
 @pytest.mark.parametrize(
     ("columns", "missing"),
@@ -185,8 +186,7 @@ def test_the_servers_own_work_is_measured(serve, services, update_rows, eventual
             return dict(line.rsplit(" ", 1) for line in text.splitlines() if line[0] != "#")
 
         age = "microcosmos_reconciler_pass_age_seconds"
-        eventually(lambda: age in lines())
-        assert float(lines()[age]) < 20
+        eventually(lambda: float(lines().get(age, "inf")) < 20)  # Earlier tests had passes too.
         assert float(lines()["microcosmos_reconciler_pass_seconds"]) > 0
         with services.sessions.read() as session:
             then = ago(session, 600)

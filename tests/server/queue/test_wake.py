@@ -3,6 +3,7 @@
 import threading
 import time
 
+import pytest
 from redis import Redis
 
 from server.queue.wake import Wake
@@ -28,6 +29,7 @@ def test_a_waiting_worker_is_woken_by_one_message_of_its_installation(services):
     alarm.close()
 
 
+@pytest.mark.long
 def test_a_worker_looks_again_while_redis_is_away():
     wake = Wake(Redis(port=1), "test:")
     wake.send()

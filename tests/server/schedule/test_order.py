@@ -134,6 +134,7 @@ def by_the_rules(queued, running, used):
     return sorted(queued, key=key)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(3))
 def test_mixed_queues_are_in_the_order_that_the_rules_tell(ordered, seed):
     draw = random.Random(seed)

@@ -17,12 +17,15 @@ def share(api, known) -> dict:
     return api.post("shares", json={"creature": known, "licence": "CC0-1.0"}).json()
 
 
-def test_pages_of_other_sites_read_the_file_of_a_share_and_nothing_else(api, share, known):
+def test_pages_of_other_sites_read_the_files_of_a_share_and_nothing_else(api, share, known):
     file = f"shares/{share['slug']}/creature.json"
     answer = api.get(file, headers=FOREIGN)
     assert answer.headers["access-control-allow-origin"] == "*"
     assert pedigree.split(answer.json())[0]["sha256"] == known
     assert answer.json()["licence"] == "CC0-1.0"
+    names = api.get(f"shares/{share['slug']}/creatures.json", headers=FOREIGN)
+    assert names.headers["access-control-allow-origin"] == "*"
+    assert names.json() == {"creatures": [known]}
     for path in (f"shares/{share['slug']}", f"creatures/{known}", f"{file}/x"):
         refused = api.get(path, headers=FOREIGN)
         assert refused.status_code == 403, path
@@ -51,11 +54,12 @@ SHARE = "https://lab.example:8443/a/s/Ab-_9"
 
 
 @pytest.mark.parametrize("sent", [SHARE, f"{SHARE}/", f"{SHARE}/creatures/{'ab' * 32}"])
-def test_the_page_of_an_import_may_request_the_one_file(api, address, built, sent):
+def test_the_page_of_an_import_may_request_two_files(api, address, built, sent):
     at = api.get(f"{address}/import", params={"share": sent})
     policy = at.headers["content-security-policy"].split("; ")
     file = "https://lab.example:8443/a/api/v1/shares/Ab-_9/creature.json"
-    assert policy[-1] == f"connect-src 'self' {file}"
+    names = "https://lab.example:8443/a/api/v1/shares/Ab-_9/creatures.json"
+    assert policy[-1] == f"connect-src 'self' {file} {names}"
     assert policy[0] == "default-src 'self'"
 
 
@@ -83,6 +87,8 @@ def test_a_client_imports_a_share_by_its_address(address, share, known):
         assert client.import_creature(f"{share['url']}/creatures/{known}").sha == known
         with pytest.raises(NotFound):
             client.import_creature(f"{address}/s/none")
+        with pytest.raises(ValueError, match="`address` must be that of a share"):
+            list(client.import_all("x.json"))
         with pytest.raises(ValueError, match="shares a creature"):
             client.submit(share["url"])
 
@@ -102,6 +108,8 @@ def test_a_client_verifies_what_it_imports(monkeypatch, share, known, api):
 def test_the_command_imports_a_share(address, share, known, monkeypatch):
     monkeypatch.setenv("MICROCOSMOS_URL", address)
     done = CliRunner().invoke(app, ["import", share["url"]])
+    assert (done.exit_code, done.stdout.strip()) == (0, known)
+    done = CliRunner().invoke(app, ["import", share["url"], "--all"])
     assert (done.exit_code, done.stdout.strip()) == (0, known)
     made = CliRunner().invoke(app, ["share", known, "--title", "Another"])
     assert "Nobody else can open this link" in made.stderr

@@ -135,3 +135,33 @@ def test_the_address_of_an_archive_stands_for_its_best(archive):
     at = shared.address(archive["url"])
     assert at
     assert shared.creature(at)["sha256"] == archive["cover"]
+
+
+def test_all_creatures_of_an_archive_are_imported_the_best_first(
+    api, address, archive, attempt, report, monkeypatch
+):
+    attempt.record(report(3, {3: 9.0, 8: 9.0}), 1.0)  # Later than the share.
+    found = api.get(f"runs/{archive['run']}/archive", params={"generation": 2}).json()
+    (best, other) = found["creature"]
+    assert found["fitness"] == [2.0, 1.5]
+    names = api.get(f"shares/{archive['slug']}/creatures.json").json()["creatures"]
+    assert names == [best, other]
+    with Client(address) as client:
+        assert [one.sha for one in client.import_all(archive["url"])] == names
+        (one,) = client.import_all(f"{archive['url']}/creatures/{other}")
+        assert one.sha == other
+    at = shared.address(archive["url"])
+    assert at
+    assert [one["sha256"] for one in shared.creatures(at)] == names
+    assert all(one["ancestors"] == [] for one in shared.creatures(at))
+    whole = shared.Address.read
+
+    def forged(self, path, headers=None, **params):
+        document = whole(self, path, headers, **params)
+        if params.get("creature") == other:
+            document["identity"]["task"]["steps"] += 1
+        return document
+
+    monkeypatch.setattr(shared.Address, "read", forged)
+    with Client(address) as client, pytest.raises(ValueError, match="sha256"):
+        list(client.import_all(archive["url"]))

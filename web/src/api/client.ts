@@ -145,6 +145,8 @@ export const readLog = (id: string, limit: number, after?: number) =>
 export const readSpecies = (id: string) => success(client.GET("/runs/{run_id}/species", run(id)));
 export const readTargets = (id: string) => success(client.GET("/runs/{run_id}/targets", run(id)));
 
+export const readStatistics = (of: wire.ComparedRuns, measures: string) =>
+  typed<wire.Statistics>(client.GET("/statistics", { params: { query: { ...of, measures } } }));
 export const readSweeps = (limit: number) =>
   typed<wire.SweepPage>(client.GET("/sweeps", { params: { query: { limit } } }));
 export const readSweep = (id: string) => typed<wire.Sweep>(client.GET("/sweeps/{sweep_id}", sweep(id)));
@@ -152,8 +154,6 @@ export const readSweepSummary = (id: string, points: number) =>
   typed<wire.SweepSummary>(client.GET("/sweeps/{sweep_id}/summary", sweep(id, { points })));
 export const readSweepCurves = (id: string, points: number) =>
   success(client.GET("/sweeps/{sweep_id}/curves", sweep(id, { points })));
-export const readSweepStatistics = (id: string, measures: string) =>
-  typed<wire.SweepStatistics>(client.GET("/sweeps/{sweep_id}/statistics", sweep(id, { measures })));
 export const estimateSweep = (request: wire.SweepRequest) =>
   success(client.POST("/sweeps/estimate", { body: request as never }));
 export const createSweep = (request: wire.SweepRequest, key: string) =>
@@ -174,6 +174,10 @@ export const readCreature = (sha: string) =>
 /** Positions of the nodes of a creature's network. */
 export const readNetwork = (sha: string) =>
   typed<wire.NetworkPositions>(client.GET("/creatures/{sha}/network.json", creature(sha)));
+
+/** The length, stroke and sperm number of a creature. */
+export const readStroke = (sha: string) =>
+  typed<wire.Stroke>(client.GET("/creatures/{sha}/stroke.json", creature(sha)));
 
 /** The body plan of a creature, and the body at rest. */
 export const readPlan = (sha: string) =>

@@ -2,6 +2,7 @@
 
 import { shareHeaders, sharedSlug } from "./address";
 import { problemOf } from "./problem";
+import type { ComparedRuns } from "./types";
 import { noteStatus, ROOT } from "./http";
 
 /** True if a rendering exists, null while it is rendered; its content is not read. */
@@ -47,14 +48,12 @@ function follow(url: string, name: string): void {
 }
 
 export const archiveUrl = (id: string, kind: "h5" | "csv") => `${ROOT}/runs/${id}/archive.${kind}`;
-export type ExportFormat = "parquet" | "arrow" | "alife" | "newick" | "netcdf" | "ro-crate";
-export const exportUrl = (id: string, format: ExportFormat) => `${ROOT}/runs/${id}/export/${format}`;
 export const resultsUrl = (id: string) => `${ROOT}/runs/${id}/results.csv`;
 /** With the spec, all that repeats a run with chosen creatures. */
 export const choicesUrl = (id: string) => `${ROOT}/runs/${id}/choices.json`;
-/** The statistics of a sweep, compared by `measures`. */
-export const statisticsUrl = (id: string, kind: "csv" | "tex", measures: string) =>
-  `${ROOT}/sweeps/${id}/statistics.${kind}?${new URLSearchParams({ measures })}`;
+/** The statistics of runs, compared by `measures`. */
+export const statisticsUrl = (kind: "csv" | "tex", of: ComparedRuns, measures: string) =>
+  `${ROOT}/statistics.${kind}?${new URLSearchParams({ ...of, measures })}`;
 export type PhylogenyFile = "csv" | "nwk";
 /** `of` is the path of a run or a creature. */
 export const phylogenyUrl = (of: string, kind: PhylogenyFile) => `${ROOT}${of}/phylogeny.${kind}`;

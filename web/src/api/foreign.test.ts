@@ -2,8 +2,8 @@
 
 import { describe, expect, it } from "vitest";
 import { nameOf } from "../decode/identity";
-import { verified } from "./foreign";
-import { foreignFileUrl, importPage } from "./shareAddress";
+import { foreignFileOf, verified } from "./foreign";
+import { foreignFileUrl, foreignNamesUrl, importPage } from "./shareAddress";
 import type { Creature } from "./types";
 
 const SHA = "ab".repeat(32);
@@ -27,6 +27,21 @@ describe("the address of a share", () => {
       expect([foreignFileUrl(text), importPage(text)]).toEqual([null, null]);
     },
   );
+});
+
+describe("all creatures of a share", () => {
+  const names = "https://lab.example/a/api/v1/shares/x/creatures.json";
+
+  it("have their names at an address of their own, unless one is named", () => {
+    expect(foreignNamesUrl("https://lab.example/a/s/x/")).toBe(names);
+    expect(foreignNamesUrl(`https://lab.example/a/s/x/creatures/${SHA}`)).toBeNull();
+    expect(foreignNamesUrl("An eel")).toBeNull();
+  });
+
+  it("have files without ancestors", () => {
+    const file = "https://lab.example/a/api/v1/shares/x/creature.json";
+    expect(foreignFileOf(names, SHA)).toBe(`${file}?creature=${SHA}&ancestors=false`);
+  });
 });
 
 describe("a file", () => {

@@ -554,6 +554,27 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/creatures/{sha}/stroke.json": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Stroke
+         * @description Return the reach of the body in cells, the steps of a stroke, and the effective sperm
+         *     number; 404 for a creature without a stroke.
+         */
+        get: operations["read_stroke_api_v1_creatures__sha__stroke_json_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/creatures/{sha}/verdict": {
         parameters: {
             query?: never;
@@ -981,6 +1002,9 @@ export interface paths {
          * Export Run
          * @description Return the last checkpoint of a run as `parquet`, `arrow` or `ro-crate` (a ZIP of
          *     several files), `netcdf`, `alife` or `newick`.
+         *
+         *     With the real `length` of a body and the `period` of a stroke, tables and `netcdf` have
+         *     columns in SI units too.
          */
         get: operations["export_run_api_v1_runs__run_id__export__form__get"];
         put?: never;
@@ -1353,11 +1377,35 @@ export interface paths {
         };
         /**
          * Read Shared Creature
-         * @description Return the file of a creature with its ancestors, for import; of an archive the best.
+         * @description Return the file of a creature, with its ancestors unless told otherwise, for import; of
+         *     an archive the best.
          *
          *     Pages of other installations may read it.
          */
         get: operations["read_shared_creature_api_v1_shares__slug__creature_json_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/shares/{slug}/creatures.json": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Shared Creatures
+         * @description Return the names of a share's creatures, for import: of an archive its elites, the best
+         *     first.
+         *
+         *     Pages of other installations may read it.
+         */
+        get: operations["read_shared_creatures_api_v1_shares__slug__creatures_json_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1398,6 +1446,71 @@ export interface paths {
          * @description Return a picture of the creature, or of the best of the archive; 202 while it is made.
          */
         get: operations["read_share_preview_png_api_v1_shares__slug__preview_png_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/statistics": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Statistics
+         * @description Compare finished runs, grouped by what differs in their specs beside the seed: quartiles,
+         *     rank tests with Holm's correction, and effect sizes with bootstrap intervals.
+         *
+         *     `runs` are ids separated by commas; or give the id of a `sweep`. `measures` are curves
+         *     (`qd_score`), curves after evaluations (`qd_score@6400`) or the evaluations to a value
+         *     (`best>=0.5`), separated by commas.
+         */
+        get: operations["read_statistics_api_v1_statistics_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/statistics.csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Statistics Csv
+         * @description Return the same comparison as CSV.
+         */
+        get: operations["read_statistics_csv_api_v1_statistics_csv_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/statistics.tex": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Statistics Tex
+         * @description Return the same comparison as LaTeX.
+         */
+        get: operations["read_statistics_tex_api_v1_statistics_tex_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1569,70 +1682,6 @@ export interface paths {
          * @description Resume every paused run; `skipped` lists the others.
          */
         post: operations["resume_sweep_api_v1_sweeps__sweep_id__resume_post"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/sweeps/{sweep_id}/statistics": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * Read Statistics
-         * @description Compare the cases of a sweep whose runs are finished: quartiles, rank tests with Holm's
-         *     correction, and effect sizes with bootstrap intervals.
-         *
-         *     `measures` are curves (`qd_score`), curves after evaluations (`qd_score@6400`) or the
-         *     evaluations to a value (`best>=0.5`), separated by commas.
-         */
-        get: operations["read_statistics_api_v1_sweeps__sweep_id__statistics_get"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/sweeps/{sweep_id}/statistics.csv": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * Read Statistics Csv
-         * @description Return the same comparison as CSV.
-         */
-        get: operations["read_statistics_csv_api_v1_sweeps__sweep_id__statistics_csv_get"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/sweeps/{sweep_id}/statistics.tex": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * Read Statistics Tex
-         * @description Return the same comparison as LaTeX.
-         */
-        get: operations["read_statistics_tex_api_v1_sweeps__sweep_id__statistics_tex_get"];
-        put?: never;
-        post?: never;
         delete?: never;
         options?: never;
         head?: never;
@@ -2043,7 +2092,7 @@ export interface components {
         };
         /**
          * ComparedGroup
-         * @description The finished runs of a case.
+         * @description Finished runs that differ in the seed alone.
          */
         ComparedGroup: {
             /** N */
@@ -3239,6 +3288,14 @@ export interface components {
             /** Url */
             url: string;
         };
+        /**
+         * SharedCreatures
+         * @description Names of creatures, the best first.
+         */
+        SharedCreatures: {
+            /** Creatures */
+            creatures: string[];
+        };
         /** SignIn */
         SignIn: {
             /** Token */
@@ -3273,6 +3330,35 @@ export interface components {
             members: number[][];
             /** Number */
             number: number[][];
+        };
+        /** Statistics */
+        Statistics: {
+            /** Cautions */
+            cautions: string[];
+            /** Groups */
+            groups: components["schemas"]["ComparedGroup"][];
+            /** Groups In Words */
+            groups_in_words: string;
+            /** Measures */
+            measures: components["schemas"]["MeasureStatistics"][];
+            /** Method */
+            method: string;
+            /** Refusal */
+            refusal: string | null;
+            /** Tests */
+            tests: number;
+        };
+        /**
+         * Stroke
+         * @description What makes the numbers of a creature: its length, its stroke and how its body yields.
+         */
+        Stroke: {
+            /** Length */
+            length: number;
+            /** Period */
+            period: number;
+            /** Sperm */
+            sperm: number | null;
         };
         /**
          * SweepChange
@@ -3454,23 +3540,6 @@ export interface components {
              * @enum {string}
              */
             status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
-        };
-        /** SweepStatistics */
-        SweepStatistics: {
-            /** Cautions */
-            cautions: string[];
-            /** Groups */
-            groups: components["schemas"]["ComparedGroup"][];
-            /** Groups In Words */
-            groups_in_words: string;
-            /** Measures */
-            measures: components["schemas"]["MeasureStatistics"][];
-            /** Method */
-            method: string;
-            /** Refusal */
-            refusal: string | null;
-            /** Tests */
-            tests: number;
         };
         /** SweepSummary */
         SweepSummary: {
@@ -4841,6 +4910,44 @@ export interface operations {
             };
         };
     };
+    read_stroke_api_v1_creatures__sha__stroke_json_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Stroke"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     read_verdict_api_v1_creatures__sha__verdict_get: {
         parameters: {
             query?: never;
@@ -5696,7 +5803,10 @@ export interface operations {
     };
     export_run_api_v1_runs__run_id__export__form__get: {
         parameters: {
-            query?: never;
+            query?: {
+                length?: string | null;
+                period?: string | null;
+            };
             header?: never;
             path: {
                 run_id: string;
@@ -6442,6 +6552,7 @@ export interface operations {
         parameters: {
             query?: {
                 creature?: string | null;
+                ancestors?: boolean;
             };
             header?: never;
             path: {
@@ -6460,6 +6571,37 @@ export interface operations {
                     "application/json": {
                         [key: string]: unknown;
                     };
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_shared_creatures_api_v1_shares__slug__creatures_json_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                slug: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SharedCreatures"];
                 };
             };
             /** @description A problem (RFC 9457) */
@@ -6541,6 +6683,154 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["Rendering"];
                 };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_statistics_api_v1_statistics_get: {
+        parameters: {
+            query?: {
+                runs?: string | null;
+                sweep?: string | null;
+                measures?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Statistics"];
+                };
+            };
+            /** @description Unchanged */
+            304: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_statistics_csv_api_v1_statistics_csv_get: {
+        parameters: {
+            query?: {
+                runs?: string | null;
+                sweep?: string | null;
+                measures?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_statistics_tex_api_v1_statistics_tex_get: {
+        parameters: {
+            query?: {
+                runs?: string | null;
+                sweep?: string | null;
+                measures?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/x-tex": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description A problem (RFC 9457) */
             default: {
@@ -6910,154 +7200,6 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["SweepChanged"];
                 };
-            };
-            /** @description A problem (RFC 9457) */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    read_statistics_api_v1_sweeps__sweep_id__statistics_get: {
-        parameters: {
-            query?: {
-                measures?: string;
-            };
-            header?: never;
-            path: {
-                sweep_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["SweepStatistics"];
-                };
-            };
-            /** @description Unchanged */
-            304: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            /** @description Not Found */
-            404: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            /** @description Conflict */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            /** @description A problem (RFC 9457) */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    read_statistics_csv_api_v1_sweeps__sweep_id__statistics_csv_get: {
-        parameters: {
-            query?: {
-                measures?: string;
-            };
-            header?: never;
-            path: {
-                sweep_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "text/csv": unknown;
-                };
-            };
-            /** @description Not Found */
-            404: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            /** @description Conflict */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            /** @description A problem (RFC 9457) */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    read_statistics_tex_api_v1_sweeps__sweep_id__statistics_tex_get: {
-        parameters: {
-            query?: {
-                measures?: string;
-            };
-            header?: never;
-            path: {
-                sweep_id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/x-tex": unknown;
-                };
-            };
-            /** @description Not Found */
-            404: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            /** @description Conflict */
-            409: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
             };
             /** @description A problem (RFC 9457) */
             default: {

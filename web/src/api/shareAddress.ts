@@ -7,6 +7,12 @@ const ADDRESS =
 export const importPage = (address: string): string | null =>
   ADDRESS.test(address.trim()) ? `/import?${new URLSearchParams({ share: address.trim() })}` : null;
 
+/** The address of the names of all creatures of a share; null for one creature of it, and for any other text. */
+export function foreignNamesUrl(address: string): string | null {
+  const [, server, slug, creature] = ADDRESS.exec(address.trim()) ?? [];
+  return slug && !creature ? `${server}/api/v1/shares/${slug}/creatures.json` : null;
+}
+
 /** The address of the file at a share's address; null for any other text. */
 export function foreignFileUrl(address: string): string | null {
   const [, server, slug, creature] = ADDRESS.exec(address.trim()) ?? [];

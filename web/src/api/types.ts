@@ -28,7 +28,9 @@ export type SweepCase = { values: CaseValues; runs: string[] };
 export type SweepSummary = With<Wire["SweepSummary"], { cases: CaseSummary[] }>;
 export type CaseSummary = With<Wire["CaseSummary"], { values: CaseValues }>;
 export type SweepCurves = Wire["SweepCurves"];
-export type SweepStatistics = Wire["SweepStatistics"];
+export type Statistics = Wire["Statistics"];
+/** The runs of a sweep, or runs by their ids, separated by commas. */
+export type ComparedRuns = { sweep: string } | { runs: string };
 export type MeasureStatistics = Wire["MeasureStatistics"];
 export type SweepEstimate = Wire["SweepEstimate"];
 export type Member = Wire["SweepRun"];
@@ -131,6 +133,7 @@ export type Genome = Genes | Vector | Gait;
 
 export type NetworkPositions = Wire["NetworkPositions"];
 export type PlanDrawing = Wire["PlanDrawing"];
+export type Stroke = Wire["Stroke"];
 export type PlanSegment = Wire["PlanSegment"];
 export type Relative = Wire["Relative"];
 export type Ancestors = Wire["Ancestors"];

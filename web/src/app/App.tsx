@@ -11,14 +11,13 @@ import { useListener } from "../store/polling";
 import { type Toast, dismissToast, undoLatest } from "../store/toasts";
 import { DropTarget, OpenButton } from "../ui/DropTarget";
 import { NotFound, useTitle } from "../ui/Page";
-import { RunsPage } from "../runs/RunsPage";
 import { type PageLocation, useLocation } from "../store/router";
 import { usePageKeys } from "./keys";
 import { text } from "./text";
 import "./app.css";
 
 const PAGES: Record<string, FunctionComponent<{ id: string; query: URLSearchParams }>> = {
-  runs: RunsPage,
+  runs: lazy(async () => (await import("../runs/RunsPage")).RunsPage),
   new: lazy(async () => (await import("../new-run/NewRunPage")).NewRunPage),
   compare: lazy(async () => (await import("../compare/ComparePage")).ComparePage),
   workers: lazy(async () => (await import("../workers/WorkersPage")).WorkersPage),

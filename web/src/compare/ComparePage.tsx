@@ -6,20 +6,26 @@ import { CurveOptions } from "../charts/curves/CurveOptions";
 import { Curves } from "../charts/curves/Curves";
 import { type OtherRun, curveViewOf, overlayPlots } from "../charts/curves/curveView";
 import { type Plot, scoresOf } from "../charts/curves/plots";
-import { LineSample, MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
+import { LineSample, MAX_LINES, MAX_RUNS, colourOf, dashOf } from "../charts/lineStyle";
 import { StatusBadge, timeOf } from "../run/RunStatus";
 import { CORRECTED, SCORES, hasCorrected } from "../run/figures";
-import { differences, valueText } from "../run/spec/difference";
+import { differences, groupsOf, valueText } from "../run/spec/difference";
 import type { Curves as Columns } from "../store/curves";
-import { useCurvesOf, useExperiments } from "../store/fetch";
+import { hasArchive, useCurvesOf, useExperiments } from "../store/fetch";
 import { setQuery } from "../store/router";
 import { useRuns } from "../store/store";
+import { lazy } from "../ui/lazy";
 import { Card, Empty, Page } from "../ui/Page";
 import { Table } from "../ui/Table";
 import { Term } from "../ui/Term";
 import { shortId, titleOf, DASH, count, duration, number } from "../ui/format";
 import { CreaturesPage } from "./CreaturesPage";
 import { text } from "./text";
+
+const StatisticsCard = lazy(
+  async () => (await import("../statistics/StatisticsCard")).StatisticsCard,
+  "section",
+);
 
 /** Runs, or creatures if the address names them. */
 export function ComparePage({ query }: { query: URLSearchParams }) {
@@ -28,13 +34,11 @@ export function ComparePage({ query }: { query: URLSearchParams }) {
 
 function RunsCompared({ query }: { query: URLSearchParams }) {
   const requested = [...new Set((query.get("runs") ?? "").split(",").filter(Boolean))];
-  const ids = requested.slice(0, MAX_LINES);
+  const ids = requested.slice(0, MAX_RUNS);
   const { value: curves, error } = useCurvesOf(ids);
   const known = useRuns(ids);
   const experiments = useExperiments().value ?? [];
-  const runs = known.flatMap((run, lineIndex): Compared[] =>
-    run ? [{ run, lineIndex, name: nameOf(run, experiments) }] : [],
-  );
+  const runs = comparedOf(known, experiments);
   return (
     <Page
       title={text.compare}
@@ -42,8 +46,8 @@ function RunsCompared({ query }: { query: URLSearchParams }) {
       error={error}
       loading={ids.length > 0 && runs.length === 0}
     >
-      {requested.length > MAX_LINES && (
-        <p class="banner warning">{text.tooMany(MAX_LINES, requested.length)}</p>
+      {requested.length > MAX_RUNS && (
+        <p class="banner warning">{text.tooMany(MAX_RUNS, requested.length)}</p>
       )}
       {ids.length === 0 && (
         <Empty title={text.nothingSelected} hint={text.nothingSelectedHint}>
@@ -57,12 +61,35 @@ function RunsCompared({ query }: { query: URLSearchParams }) {
           <Legend runs={runs} ids={ids} />
           <Plots runs={runs} curves={curves ?? new Map()} query={query} />
           <Figures runs={runs} />
+          {mayTest(runs) && <StatisticsCard of={{ runs: ids.join() }} corrected={runs.every(isCorrected)} />}
           <Specs runs={runs} />
         </>
       )}
     </Page>
   );
 }
+
+/** Each run has a line style of its own; with more runs than lines, each spec has one. */
+function comparedOf(known: readonly (Run | undefined)[], experiments: Experiment[]): Compared[] {
+  const runs = known.flatMap((run) => run ?? []);
+  const lines = known.length > MAX_LINES ? groupsOf(runs.map(({ spec }) => spec)) : runs.map((_, i) => i);
+  return runs.map((run, i) => ({ run, lineIndex: lines[i]!, name: nameOf(run, experiments) }));
+}
+
+/** Statistics need archives, runs that have ended, and two seeds of some spec. */
+function mayTest(runs: Compared[]): boolean {
+  const statuses = runs.map(({ run }) => run.status);
+  const active = statuses.some((status) => ["queued", "running", "paused"].includes(status));
+  const groups = new Set(groupsOf(runs.map(({ run }) => run.spec)));
+  return (
+    groups.size < runs.length &&
+    !active &&
+    statuses.includes("finished") &&
+    runs.every(({ run }) => hasArchive(run))
+  );
+}
+
+const isCorrected = ({ run }: Compared) => hasCorrected(run);
 
 const nameOf = (run: Run, experiments: Experiment[]) =>
   run.name ?? `${titleOf(run, experiments)} ${shortId(run.id)}`;
@@ -102,7 +129,12 @@ function Plots({ runs, curves, query }: PlotsProps) {
     return own ? [{ name, colour: colourOf(lineIndex), dash: dashOf(lineIndex), curves: own }] : [];
   });
   return (
-    <Card id="curves" kind="wide-curves" title={text.curves}>
+    <Card
+      id="curves"
+      kind="wide-curves"
+      title={text.curves}
+      note={runs.length > MAX_LINES ? text.bySpec : undefined}
+    >
       <CurveOptions view={view} />
       <Curves plots={overlayPlots(oneLinePerRun, drawn, view)} view={view} />
     </Card>

@@ -3,6 +3,7 @@
 export const text = {
   runs: "Runs",
   compare: "Compare",
+  bySpec: "The line tells the spec: runs that differ in the seed alone share it.",
   tooMany: (limit: number, requested: number) =>
     `At most ${limit} runs can be compared. The first ${limit} of ${requested} are shown.`,
   nothingSelected: "No runs selected",

@@ -115,7 +115,7 @@ export function CreatureView({ creature, query, audit, title, address = null }: 
               <SavePage title={title ?? text.title(shortId(sha))} {...{ creature, address }} />
             </Downloads>
           </section>
-          {isEvolved(creature) && <LiveCard readInputs={readInputs} others={audit && othersOf(sha)} />}
+          {swims(creature) && <LiveCard readInputs={readInputs} others={audit && othersOf(sha)} />}
         </div>
         <div class="stack">
           {replay && <SpaceTimeCard {...{ replay, query, playhead }} />}

@@ -1,15 +1,21 @@
 /** Measures, coupling and origin of a creature. */
 
+import * as api from "../api/client";
 import type { Creature } from "../api/types";
+import { useFetched } from "../store/fetch";
 import { Card } from "../ui/Page";
 import { Term } from "../ui/Term";
 import { type Group, couplingRows, groupsOf, originOf } from "./facts";
 import { PhysicalUnits } from "./PhysicalUnits";
+import { strokeOf } from "./physical";
 import { text } from "./text";
 
 export function FactsCard({ creature }: { creature: Creature }) {
+  const { value: stroke } = useFetched(async () => {
+    return strokeOf(creature) === null ? null : api.readStroke(creature.sha256);
+  }, [creature.sha256]);
   const groups: Group[] = [
-    ...groupsOf(creature),
+    ...groupsOf(creature, stroke?.sperm ?? null),
     { title: text.coupling, rows: couplingRows(creature) },
     { title: text.origin, rows: originOf(creature) },
   ];

@@ -46,6 +46,22 @@ describe("a creature file", () => {
     });
   });
 
+  it("has the numbers of its flow together, the sperm number among them", () => {
+    const measures = { mach: 0.05, strouhal: 0.4, reynolds: 2 };
+    const measured = { fitness: 0, descriptors: {}, measures, block: 1, device: "cpu" };
+    const creature = { ...bare, measured } as unknown as Creature;
+    const flow = groupsOf(creature, 0.93).find(({ title }) => title === "Flow")!;
+    expect(Object.fromEntries(flow.rows)).toEqual({
+      "Reynolds number": "2",
+      "Strouhal number": "0.4",
+      "Sperm number": "0.93",
+      "Mach number": "0.05",
+    });
+    expect(Object.fromEntries(groupsOf(creature).flatMap(({ rows }) => rows))).not.toHaveProperty(
+      "Sperm number",
+    );
+  });
+
   it("of a body that grows from a plan names its form", () => {
     const genome = { encoding: "body-graph", control: {} };
     const measures = { free_ends: 3, total_length: 22, form_symmetry: 0.75 };
@@ -67,7 +83,7 @@ describe("a creature file", () => {
     const measured = {
       fitness: 2,
       descriptors: {},
-      measures: { cycle: 2, reynolds: 12.5, limited: 0.25 },
+      measures: { cycle_x: 2, reynolds: 12.5, limited: 0.25 },
       block: 1,
       device: "cpu",
     };
@@ -76,7 +92,7 @@ describe("a creature file", () => {
     expect(facts).toMatchObject({
       Swimmer: "Worm",
       Period: "600 steps",
-      "Displacement in the last cycle": "2 cells",
+      "Displacement along x in the last cycle": "2 cells",
       "Reynolds number": "12.5",
       "Limits active": "25 % of node steps",
     });

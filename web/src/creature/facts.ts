@@ -30,14 +30,16 @@ const GROUPS: [title: string, names: string[]][] = [
   ],
   [text.formGroup, FORM],
   [text.network, ["hidden_nodes", "connections"]],
-  [text.flow, ["reynolds", "sperm", "mach", "limited", "impulse"]],
+  [text.flow, ["reynolds", "strouhal", "sperm", "mach", "limited", "impulse"]],
 ];
 
-export function groupsOf(creature: Creature): Group[] {
+/** Groups of rows; `sperm` is the sperm number, which is no measure: it follows from the genes. */
+export function groupsOf(creature: Creature, sperm: number | null = null): Group[] {
   const { measured, identity } = creature;
   if (!measured) return [{ title: text.resultGroup, rows: [[text.fitness, text.notMeasured]] }];
   const plugins = measuringPlugins(creature);
-  const measures = Object.entries({ ...measured.descriptors, ...measured.measures });
+  const numbers = sperm === null ? {} : { sperm };
+  const measures = Object.entries({ ...measured.descriptors, ...measured.measures, ...numbers });
   const rowsOf = (belongs: (name: string) => boolean) =>
     measures.filter(([name]) => belongs(name)).map(([name, value]) => measureRow(name, value, plugins[name]));
   const grouped = GROUPS.flatMap(([, names]) => names);

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Creature } from "../api/types";
-import { lengthOf, like, periodOf, physicalRows, shown, strokeOf } from "./physical";
+import { like, physicalRows, shown, strokeOf } from "./physical";
 
 const creature = {
   identity: {
@@ -30,13 +30,6 @@ describe("physical units", () => {
     const changed = (identity: object) => ({ ...creature, identity }) as unknown as Creature;
     expect(strokeOf(changed({ world: { ...world, fluid: false }, genome }))).toBeNull();
     expect(strokeOf(changed({ world, genome: { control: { period: 20, timer: "linear" } } }))).toBeNull();
-  });
-
-  it("are read with their unit", () => {
-    expect(lengthOf("50 µm")).toBeCloseTo(5e-5, 12);
-    expect(periodOf("20ms")).toBeCloseTo(0.02, 12);
-    for (const wrong of ["", "1", "mm", "0 mm", "-1 mm", "1..2 mm", "1 s"])
-      expect(lengthOf(wrong)).toBeNull();
   });
 
   it("name the fluid and have prefixes", () => {

@@ -2,19 +2,8 @@
 
 import type { Creature } from "../api/types";
 import { number } from "../ui/format";
+import type { Real } from "./real/quantity";
 import { text } from "./text";
-
-/** Real length of the body in metres, and period of a stroke in seconds. */
-export interface Real {
-  length: number;
-  period: number;
-}
-
-/** A quantity as typed, such as `1 mm`. */
-export interface Typed {
-  length: string;
-  period: string;
-}
 
 /** Kinematic viscosities at 20 °C, in m²/s, in order; sources in docs/physics.md. */
 const FLUIDS: [name: string, viscosity: number][] = [
@@ -28,19 +17,6 @@ const FLUIDS: [name: string, viscosity: number][] = [
 ];
 /** The largest ratio of two viscosities that are called alike. */
 const LIKE = 1.5;
-
-const LENGTHS: Record<string, number> = { m: 1, cm: 1e-2, mm: 1e-3, um: 1e-6, µm: 1e-6, μm: 1e-6, nm: 1e-9 };
-const TIMES: Record<string, number> = { min: 60, s: 1, ms: 1e-3, us: 1e-6, µs: 1e-6, μs: 1e-6 };
-
-export const lengthOf = (typed: string) => quantity(typed, LENGTHS);
-export const periodOf = (typed: string) => quantity(typed, TIMES);
-
-/** A number above 0 with a known unit, in SI units; null for any other text. */
-function quantity(typed: string, units: Record<string, number>): number | null {
-  const [, digits, unit] = /^\s*([\d.]+(?:e[+-]?\d+)?)\s*([a-zµμ]+)\s*$/.exec(typed) ?? [];
-  const value = Number(digits) * (units[unit ?? ""] ?? NaN);
-  return value > 0 && Number.isFinite(value) ? value : null;
-}
 
 /** The steps of a stroke; null if a creature has none. */
 export function strokeOf({ identity: { genome, world } }: Creature): number | null {

@@ -2,8 +2,6 @@
 
 export const text = {
   physical: "Real length and time",
-  realLength: "Body length",
-  realPeriod: "Stroke",
   physicalHint:
     "Give a body length and the period of a stroke to see speeds and the fluid in physical units.",
   realSpeed: "Speed",
@@ -251,8 +249,8 @@ export const text = {
     speed: ["Speed", "lengths/1,000 steps"],
     stride: ["Stride", "lengths"],
     displacement: ["Displacement", "cells", 6],
-    cycle: ["Displacement in the last cycle", "cells", 6],
-    direction: ["Direction", "rad"],
+    cycle_x: ["Displacement along x in the last cycle", "cells", 6],
+    cycle_y: ["Displacement along y in the last cycle", "cells", 6],
     bending_effort: ["Bending effort", "rad²", 6],
     stretching_effort: ["Stretching effort", "cells²", 6],
     path_length: ["Path length", "cells", 6],

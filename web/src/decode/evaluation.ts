@@ -32,6 +32,8 @@ interface Header {
   goal: Goal | null;
   /** Names of the measures that the kernel returns, in its order. */
   measures: string[];
+  /** Steps of the last cycle, over which a gait's displacement counts; null for a creature with a genome. */
+  cycle: number | null;
   /** Copies of the creature, which carry out the rest shapes of the first. */
   copies: number;
   numbers: { develop: Record<string, number>; rollout: Record<string, number> };

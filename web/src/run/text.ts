@@ -3,6 +3,7 @@
 import type { Run } from "../api/types";
 
 export const text = {
+  export: "Export",
   archive: "Archive",
   loadingArchive: "Loading archive …",
   files: "Files",

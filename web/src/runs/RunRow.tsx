@@ -18,7 +18,7 @@ import { useDisclosure } from "../ui/forms";
 
 interface Props {
   id: string;
-  /** The pose stream of its best creature. */
+  /** The pose stream of its face. */
   face: PoseStream | null;
   columns: readonly RunColumn[];
   experiments: Experiment[];
@@ -39,9 +39,7 @@ export function RunRow({ id, face, columns, experiments, selected, knownTags, on
           <input type="checkbox" aria-label={text.compareRun(name)} checked={selected} onChange={onSelect} />
         )}
       </td>
-      <td class="face">
-        <SwimmingBody stream={face} onWater />
-      </td>
+      <td class="face">{run.face && <SwimmingBody stream={face} onWater />}</td>
       <th scope="row">
         <RowTitle {...{ run, title, name, readOnly }} />
         <RowNotes run={run} />

@@ -32,7 +32,6 @@ export function RunTable({ query, address, listed, experiments, selected, onSele
   const poses = usePoses(
     readTankBatch,
     faces.filter((face) => face !== null).map((creature) => ({ creature })),
-    false,
   );
   return (
     <table class="runs">

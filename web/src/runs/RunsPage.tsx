@@ -1,7 +1,7 @@
 /** The list of runs: search, sort, rename, compare. */
 
 import { useState } from "preact/hooks";
-import { MAX_LINES } from "../charts/lineStyle";
+import { MAX_RUNS } from "../charts/lineStyle";
 import type { RunQuery } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { useExperiments } from "../store/fetch";
@@ -56,7 +56,7 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
             <TableOptions address={address} />
           </div>
         )}
-        {selected.length > 0 && <CompareBar ids={selected} onClear={() => setSelected([])} />}
+        {selected.length > 0 && <CompareBar ids={selected} {...{ listed }} onSelect={setSelected} />}
         {empty && <NothingListed query={query} />}
         {query.sweep && <SweepBanner sweep={query.sweep} />}
         {hasSweeps && (
@@ -99,21 +99,31 @@ function HeaderLinks({ bin }: { bin: boolean }) {
   );
 }
 
-function CompareBar({ ids, onClear }: { ids: string[]; onClear: () => void }) {
+interface CompareProps {
+  ids: string[];
+  listed: readonly string[];
+  onSelect: (ids: string[]) => void;
+}
+
+function CompareBar({ ids, listed, onSelect }: CompareProps) {
+  const all = [...new Set([...ids, ...listed])];
   return (
     <p class="selected row" role="status">
       <span>
         {text.selected(ids.length)}
         {ids.length === 1 && text.selectAnother}
-        {ids.length > MAX_LINES && text.compareLimit(MAX_LINES)}
+        {ids.length > MAX_RUNS && text.compareLimit(MAX_RUNS)}
       </span>
       <span class="spring" />
-      {ids.length > 1 && ids.length <= MAX_LINES && (
+      {ids.length > 1 && ids.length <= MAX_RUNS && (
         <a class="button primary" href={`/compare?runs=${ids.join()}`}>
           {text.compare}
         </a>
       )}
-      <button onClick={onClear}>{text.clearSelection}</button>
+      {all.length > ids.length && all.length <= MAX_RUNS && (
+        <button onClick={() => onSelect(all)}>{text.selectAll(listed.length)}</button>
+      )}
+      <button onClick={() => onSelect([])}>{text.clearSelection}</button>
     </p>
   );
 }

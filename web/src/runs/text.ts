@@ -62,6 +62,7 @@ export const text = {
   selected: (count: number) => `${count} selected`,
   selectAnother: ": select another one to compare them",
   compareLimit: (limit: number) => `: at most ${limit} runs can be compared`,
+  selectAll: (count: number) => `Select all ${count} below`,
   clearSelection: "Clear selection",
   runsOf: "Runs of ",
   oneSweep: "one sweep",

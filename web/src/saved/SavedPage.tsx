@@ -2,7 +2,7 @@
 
 import { LiveCard } from "../creature/LiveCard";
 import { VerifyCard } from "../creature/VerifyCard";
-import { isEvolved } from "../creature/kinds";
+import { swims } from "../creature/kinds";
 import type { Replay } from "../decode/replay";
 import type { About } from "../offline/page";
 import { LoopPlayer } from "../replay/LoopPlayer";
@@ -36,7 +36,7 @@ export function SavedPage({ about, replay, readInputs }: Props) {
           </Card>
         </div>
         <div class="stack">
-          {isEvolved(creature) && <LiveCard readInputs={readInputs} />}
+          {swims(creature) && <LiveCard readInputs={readInputs} />}
           {creature.measured && <VerifyCard measured={creature.measured} readInputs={readInputs} />}
         </div>
       </div>

@@ -2,7 +2,7 @@
 
 import { importCreature } from "../api/client";
 import { type ForeignCreature, readForeignCreature } from "../api/foreign";
-import { foreignFileUrl } from "../api/shareAddress";
+import { foreignFileUrl, foreignNamesUrl } from "../api/shareAddress";
 import { useFetched } from "../store/fetch";
 import { useRefusal } from "../store/principal";
 import { navigate } from "../store/router";
@@ -10,12 +10,14 @@ import { useSubmit } from "../ui/forms";
 import { number, shortId } from "../ui/format";
 import { Card, Loading, Page } from "../ui/Page";
 import { Fact } from "./Fact";
+import { ImportAll } from "./ImportAll";
 import { text } from "./text";
 import "./shares.css";
 
 export function ImportPage({ query }: { query: URLSearchParams }) {
   const address = query.get("share") ?? "";
   const url = foreignFileUrl(address);
+  const names = foreignNamesUrl(address);
   return (
     <Page title={text.importTitle}>
       <section class="card">
@@ -23,11 +25,12 @@ export function ImportPage({ query }: { query: URLSearchParams }) {
       </section>
       {address && !url && <p class="banner wrong">{text.noAddress}</p>}
       {url && <Incoming key={url} url={url} />}
+      {names && <ImportAll key={names} url={names} />}
     </Page>
   );
 }
 
-/** The address is submitted by a new request of the page, whose policy then permits that file alone. */
+/** The address is submitted by a new request of the page, whose policy then permits the files of that share alone. */
 export function ImportForm({ address }: { address: string }) {
   return (
     <form class="import-form" action="/import">

@@ -20,6 +20,12 @@ export const text = {
   import: "Import",
   importing: "Importing …",
   importAbout: "Name, ancestors, licence and credit are imported too.",
+  importAllTitle: (count: number) => `All ${count} creatures of the archive`,
+  importAll: "Import all",
+  importAllAbout: "Each is verified by its hash, and comes without its ancestors. The first is the best.",
+  importProgress: "Creatures imported",
+  importedSome: (done: number, count: number) => `Imported ${done} of ${count}.`,
+  importedAll: (count: number) => `Imported all ${count} creatures. The best:`,
   ownTitle: "Open in your own Microcosmos",
   openOwn: "Open in your own",
   ownAbout:

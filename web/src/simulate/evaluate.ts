@@ -2,7 +2,7 @@
 
 import type { EvaluationInputs, Simulation } from "../decode/evaluation";
 import { crossing } from "./crossing";
-import { type Figures, fitnessOf, means, overTrials } from "./figures";
+import { type Figures, fitnessOf, lastCycle, means, overTrials } from "./figures";
 import { Kernel } from "./kernel";
 import { simulated } from "./simulation";
 
@@ -49,7 +49,9 @@ function figuresOf(kernel: Kernel, inputs: EvaluationInputs, one: Simulation): F
   });
   const values = found("measures");
   const measures = Object.fromEntries(inputs.measures.map((name, k) => [name, values[k]!]));
-  return withFitness(inputs, { ...measures, ...one.constant, crossing: crossed });
+  const path = () => kernel.read(observed.get("centre")!);
+  const cycle = inputs.cycle === null ? {} : lastCycle(path(), found("places"), inputs.cycle);
+  return withFitness(inputs, { ...measures, ...one.constant, ...cycle, crossing: crossed });
 }
 
 function withFitness({ goal }: EvaluationInputs, measures: Figures): Figures {

@@ -42,6 +42,18 @@ export function fitnessOf(goal: Goal | null, measures: Figures): number | null {
   return goal.displacement === 0 ? collected : fround(moved + collected);
 }
 
+/**
+ * The displacement of a body in its last cycle of some steps.
+ *
+ * `path` holds the places (step, 2) of its centre, and `start` begins with that at the start.
+ */
+export function lastCycle(path: Float32Array, start: Float32Array, steps: number): Figures {
+  const end = path.length - 2;
+  const from = end - 2 * steps;
+  const moved = (axis: number) => fround(path[end + axis]! - (from < 0 ? start[axis]! : path[from + axis]!));
+  return { cycle_x: moved(0), cycle_y: moved(1) };
+}
+
 /** Measures and fitness over trials; each has `fitness` among its figures unless it is unknown. */
 export function overTrials(trials: Figures[]): Figures {
   if (trials.length === 1) return { ...trials[0], [SPREAD]: 0 };

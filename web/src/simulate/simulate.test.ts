@@ -1,6 +1,6 @@
 import { beforeAll, describe, expect, it } from "vitest";
 import { crossing } from "./crossing";
-import { deviation, fitnessOf, mean, overTrials } from "./figures";
+import { deviation, fitnessOf, lastCycle, mean, overTrials } from "./figures";
 import { Kernel } from "./kernel";
 import address from "./kernel.wasm?url&inline";
 import { repeated } from "./simulation";
@@ -24,6 +24,20 @@ describe("figures over trials", () => {
   it("have the deviation of a sample", () => {
     expect(deviation([1, 2, 3, 4])).toBeCloseTo(Math.sqrt(5 / 3), 6);
     expect(mean([1, 2, 3, 6])).toBe(3);
+  });
+});
+
+describe("the last cycle", () => {
+  const [path, start] = [Float32Array.of(1, 2, 3, 5, 7, 1), Float32Array.of(0.5, 0.5)];
+
+  it("ends with the simulation, and may be all of it", () => {
+    expect(lastCycle(path, start, 2)).toEqual({ cycle_x: 6, cycle_y: -1 });
+    expect(lastCycle(path, start, 3)).toEqual({ cycle_x: 6.5, cycle_y: 0.5 });
+  });
+
+  it("is in single precision", () => {
+    const far = Float32Array.of(0.1, 0, 60.3, 0);
+    expect(lastCycle(far, start, 1).cycle_x).toBe(fround(fround(60.3) - fround(0.1)));
   });
 });
 

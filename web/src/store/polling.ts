@@ -1,6 +1,6 @@
 /** Hooks that slow down values, repeat requests or listen to the window; polling. */
 
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { messageOf, isTransient } from "../api/problem";
 
 /** The latest value, passed on at most once per interval. */
@@ -28,9 +28,9 @@ export function useDebounced<T>(value: T | null, after: number, call: (value: T)
   }, [value]);
 }
 
-/** Listen to events that reach the window while a component is shown. */
+/** Listen to events that reach the window as soon as a component is shown. */
 export function useListener<E extends Event>(type: string, listener: (event: E) => void): void {
-  useEffect(() => {
+  useLayoutEffect(() => {
     window.addEventListener(type, listener as EventListener);
     return () => window.removeEventListener(type, listener as EventListener);
   });

@@ -1,14 +1,7 @@
 /** Sweeps: reading them when they change, and commands for all of their runs. */
 
 import * as api from "../api/client";
-import type {
-  Sweep,
-  SweepChanged,
-  SweepCurves,
-  SweepPage,
-  SweepStatistics,
-  SweepSummary,
-} from "../api/types";
+import type { Sweep, SweepChanged, SweepCurves, SweepPage, SweepSummary } from "../api/types";
 import { type Loaded, useFetched } from "./fetch";
 import { useStore } from "./store";
 import { useThrottled } from "./polling";
@@ -43,12 +36,6 @@ export function useSweep(id: string, withRuns: boolean): Loaded<SweepDetail> {
     ]);
     return { sweep, summary, curves };
   }, [id, throttled, withRuns]);
-}
-
-/** Statistics of a sweep whose runs have ended, read again when one of them changes. */
-export function useSweepStatistics(id: string, measures: string): Loaded<SweepStatistics> {
-  const throttled = useThrottled(useStore((state) => `${state.epoch} ${state.sweepVersions.get(id) ?? 0}`));
-  return useFetched(() => api.readSweepStatistics(id, measures), [id, throttled, measures]);
 }
 
 const outcome = ({ changed, skipped }: SweepChanged, done: string) =>

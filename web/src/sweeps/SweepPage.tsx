@@ -28,7 +28,7 @@ import { lazy } from "../ui/lazy";
 import { text } from "./text";
 
 const StatisticsCard = lazy(
-  async () => (await import("./statistics/StatisticsCard")).StatisticsCard,
+  async () => (await import("../statistics/StatisticsCard")).StatisticsCard,
   "section",
 );
 
@@ -67,7 +67,9 @@ function LoadedSweep({ value, query, each }: { value: SweepDetail; query: URLSea
       </Card>
       <CaseCreatures shown={shown} />
       <Finals cases={cases} generation={summary.generation} />
-      {mayCompare(sweep) && <StatisticsCard id={sweep.id} corrected={hasCorrected(summary.cases)} />}
+      {mayCompare(sweep) && (
+        <StatisticsCard of={{ sweep: sweep.id }} corrected={hasCorrected(summary.cases)} />
+      )}
       <Members cases={cases} />
     </>
   );

@@ -3,14 +3,16 @@
 import type { RefObject } from "preact";
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Tank as Tankful } from "../api/types";
+import type { PoseStream } from "../decode/poses";
 import { useClock } from "../replay/clock";
-import { readTankBatch, usePoses } from "../store/poses";
+import { type ReadBatch, type Visible, readTankBatch, usePoses } from "../store/poses";
 import { navigate } from "../store/router";
 import { useStore } from "../store/store";
 import { useTank } from "../store/tank";
 import { type Size, prefersReducedMotion, px, useOnScreen, useSize } from "../ui/canvas";
 import { labelOf, number } from "../ui/format";
 import { drawTank, drawTrails } from "./drawTank";
+import { openExample, readExampleBatch, useExamples } from "./examples";
 import { type Swimmer, advance, nearestScale, swimmerAt, withSwimmers } from "./swimmers";
 import { TankLine } from "./TankLine";
 import { text } from "./text";
@@ -26,28 +28,45 @@ export function Tank() {
   const size = useSize(box);
   const narrow = window.innerWidth < PHONE;
   const { value: tank, error } = useTank(narrow ? ON_A_PHONE : MOST);
+  const isEmpty = tank?.swimmers.length === 0;
+  const examples = useExamples(isEmpty);
+  const shown = isEmpty ? examples : tank;
+  const source = isEmpty ? EXAMPLES : ELITES;
   return (
-    <section ref={box} class="tank" aria-label={text.label(tank?.swimmers.length ?? 0)}>
-      {tank && tank.swimmers.length > 0 && <Water tank={tank} size={size} />}
-      {tank && tank.swimmers.length === 0 && <Still />}
+    <section ref={box} class="tank" aria-label={text.label(shown?.swimmers.length ?? 0)}>
+      {shown && shown.swimmers.length > 0 && <Water tank={shown} size={size} {...source} />}
+      {isEmpty && <Begun examples={examples !== null} />}
       {error && <p class="tank-note">{error}</p>}
       {tank && <TankLine tank={tank} />}
     </section>
   );
 }
 
-interface WaterProps {
+/** How the motions of creatures are read, and what opens one. */
+interface Source {
+  readBatch: ReadBatch<Visible>;
+  onOpen: (creature: string) => void;
+}
+
+const ELITES: Source = {
+  readBatch: readTankBatch,
+  onOpen: (creature) => navigate(`/creatures/${creature}`),
+};
+const EXAMPLES: Source = { readBatch: readExampleBatch, onOpen: openExample };
+
+interface WaterProps extends Source {
   tank: Tankful;
   size: Size;
 }
 
-function Water({ tank, size }: WaterProps) {
+function Water({ tank, size, readBatch, onOpen }: WaterProps) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const trails = useRef<HTMLCanvasElement>(null);
   const [pointed, setPointed] = useState<string | null>(null);
   const [paused, setPaused] = useState(prefersReducedMotion);
-  const scene = useScene(tank, size, { canvas, trails }, pointed, paused);
-  const open = (creature: string | null) => creature && navigate(`/creatures/${creature}`);
+  const poses = usePoses(readBatch, tank.swimmers, false);
+  const scene = useScene(tank, poses, size, { canvas, trails }, pointed, paused);
+  const open = (creature: string | null) => creature && onOpen(creature);
   const under = (event: MouseEvent) => {
     const { left, top } = canvas.current!.getBoundingClientRect();
     const at = swimmerAt(
@@ -75,7 +94,7 @@ function Water({ tank, size }: WaterProps) {
         aria-describedby="tank-pointed"
         onPointerMove={(event) => setPointed(under(event))}
         onPointerLeave={() => setPointed(null)}
-        onClick={(event) => open(under(event))}
+        onClick={(event) => open(under(event) ?? pointed)}
         onKeyDown={press}
         onBlur={() => setPointed(null)}
       >
@@ -113,6 +132,7 @@ interface Scene {
 /** The swimmers, drawn in every frame unless they are paused or nobody sees them. */
 function useScene(
   tank: Tankful,
+  poses: ReadonlyMap<string, PoseStream>,
   size: Size,
   { canvas, trails }: Record<"canvas" | "trails", RefObject<HTMLCanvasElement | null>>,
   pointed: string | null,
@@ -120,7 +140,6 @@ function useScene(
 ): RefObject<Scene> & { current: Scene } {
   const scene = useRef<Scene>({ swimmers: [], nearest: 1 });
   const frame = useRef(0);
-  const poses = usePoses(readTankBatch, tank.swimmers, false);
   const streams = useMemo(
     () => tank.swimmers.flatMap(({ creature }) => poses.get(creature) ?? []),
     [tank, tank.swimmers.filter(({ creature }) => poses.has(creature)).length],
@@ -173,24 +192,26 @@ function Pointed({ tank, creature, scene }: PointedProps) {
       style={at ? px({ left: at[0], top: at[1] }) : undefined}
       hidden={!named}
     >
-      {named && run && (
+      {named && (
         <>
           <strong>{text.fitness(number(named.fitness))}</strong>
-          <span>{text.born(named.generation, labelOf(run))}</span>
+          <span>{run ? text.born(named.generation, labelOf(run)) : text.example}</span>
         </>
       )}
     </p>
   );
 }
 
-/** What stands in a tank without creatures. */
-function Still() {
+/** What stands in a tank without elites. */
+function Begun({ examples }: { examples: boolean }) {
   const first = useStore(({ runs }) => [...runs.values()].find(({ status }) => status in text.begun));
   const [title, hint] = text.begun[first?.status as "running" | "queued"] ?? text.nothing;
+  const reason = first?.waiting_reason ?? (examples ? null : hint);
   return (
-    <div class="tank-note">
+    <div class={`tank-note ${examples ? "over-examples" : ""}`}>
       <h2>{title}</h2>
-      <p>{first?.waiting_reason ?? hint}</p>
+      {reason && <p>{reason}</p>}
+      {examples && <p>{text.examples}</p>}
     </div>
   );
 }

@@ -7,6 +7,8 @@ export const text = {
   play: "Let the creatures swim",
   fitness: (value: string) => `fitness ${value}`,
   born: (generation: number, run: string) => `generation ${generation} of ${run}`,
+  example: "an example that comes with Microcosmos",
+  examples: "Until then, examples that come with Microcosmos swim here: open one to play with it.",
   evolves: "evolves",
   progress: (generation: number, generations: number) => `generation ${generation} of ${generations}`,
   rate: (rate: string) => `${rate} evaluations/s`,
@@ -15,7 +17,7 @@ export const text = {
   still: (creatures: number, runs: number) =>
     `The best and the most different ${creatures} creatures of ${runs === 1 ? "one run" : `the latest ${runs} runs`}`,
   nothing: [
-    "Nothing swims here yet",
+    "Nothing of yours swims here yet",
     "A run evolves swimmers, and the best of every kind appear here as they evolve.",
   ],
   begun: {
@@ -23,6 +25,6 @@ export const text = {
       "The first creatures are being evolved",
       "They appear here as soon as the first generation is done.",
     ],
-    queued: ["Nothing swims here yet", "A run waits for a worker."],
+    queued: ["Nothing of yours swims here yet", "A run waits for a worker."],
   },
 };

@@ -1,6 +1,6 @@
 /** A short tour: a panel beside the page explains its parts step by step. */
 
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { useListener } from "../store/polling";
 import { text } from "./text";
 import { prefersReducedMotion } from "./canvas";
@@ -32,7 +32,7 @@ export function Tour({ steps, requested, onStep, onEnd }: Props) {
     onStep(step);
     scrollIntoWindow(document.querySelector(step.selector));
   }, [number]);
-  useEffect(() => {
+  useLayoutEffect(() => {
     if (!requested) return;
     const before = document.activeElement as HTMLElement | null;
     panel.current!.focus();

@@ -3,7 +3,7 @@
 from .body import Grown, State
 from .columns import plan_of
 from .form import form
-from .graph import grown_body
+from .graph import grown_body, grown_length
 from .plan import LEAST_LIMB, LEAST_RING, LEAST_ROOT, Capacity, Plan
 from .random import (
     FIRST_LIMBS,

@@ -8,6 +8,13 @@ from .skeleton import skeleton
 from .sprouting import grow
 
 
+def grown_length(plan: Plan, capacity: Capacity) -> float:
+    """Return the longest way along the edges of the body that grows from a plan, in cells."""
+    grown = grow(plan, capacity)
+    apart = grown.distance[grown.present][:, grown.present]
+    return capacity.spacing * float(apart.max())
+
+
 def grown_body(plan: Plan, capacity: Capacity, softest: float = 1.0) -> Body:
     """Return the body that grows from a plan of NumPy arrays, in cells about its first node.
 

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...archive.physical import of_archive, shown
+from ...archive.physical import of_archive
+from ...archive.quantities import Real, shown
 from . import caption, curves, groups, lineage, maps, saving, sheet, strips
 from .lineage import family
 from .reading import Archive, Described, read
@@ -28,8 +29,8 @@ class Print:
     tex: bool = False
     """Also write the caption for LaTeX."""
     palette: str = "viridis"
-    real: tuple[str, str] | None = None
-    """Real length of a body and period of a stroke, which captions convert units by."""
+    real: Real | None = None
+    """Real length of a body and period of a stroke, by which captions convert units."""
 
     def physical(self, data: bytes) -> str:
         """Return a sentence on physical units of an archive file's fittest elite, if asked for.
@@ -38,7 +39,7 @@ class Print:
         """
         if self.real is None:
             return ""
-        scales, table = of_archive(data, *self.real)
+        scales, table = of_archive(data, self.real)
         speeds = table.get("speed_m_per_s")
         fastest = 0 if speeds is None else int(speeds.argmax())
         reached = (
@@ -68,15 +69,20 @@ def progress(
     found: Sequence[groups.Group],
     out: Path,
     options: Print,
-    shown: Sequence[str],
+    names: Sequence[str],
     against: str,
 ) -> list[Path]:
-    """Draw the curves of groups of runs."""
+    """Draw the curves with these names of groups of runs."""
+    from . import real  # Loads SciPy.
+
     saving.kind(out)
     with styled():
         width = millimetres(options.width)
-        figure = curves.curves(found, shown=shown, against=against, width=width)
-        return options.publish(figure, out, caption.of_curves(found, shown))
+        figure = curves.curves(found, shown=names, against=against, width=width)
+        text = caption.of_curves(found, names)
+        if options.real is not None:
+            text += real.of_curves(found, names, options.real)
+        return options.publish(figure, out, text)
 
 
 def boxes(found: "Comparison", out: Path, options: Print) -> list[Path]:
@@ -86,7 +92,8 @@ def boxes(found: "Comparison", out: Path, options: Print) -> list[Path]:
     saving.kind(out)
     with styled():
         figure = compared.boxes(found, width=millimetres(options.width))
-        return options.publish(figure, out, compared_caption.of_boxes(found))
+        text = compared_caption.of_boxes(found) + _in_units(found, options)
+        return options.publish(figure, out, text)
 
 
 def parameter(found: "Comparison", path: str, out: Path, options: Print) -> list[Path]:
@@ -96,7 +103,15 @@ def parameter(found: "Comparison", path: str, out: Path, options: Print) -> list
     saving.kind(out)
     with styled():
         figure = compared.parameter(found, path, width=millimetres(options.width))
-        return options.publish(figure, out, compared_caption.of_parameter(found, path))
+        text = compared_caption.of_parameter(found, path) + _in_units(found, options)
+        return options.publish(figure, out, text)
+
+
+def _in_units(found: "Comparison", options: Print) -> str:
+    """Return a sentence on physical units of compared groups, if asked for."""
+    from . import real  # Loads SciPy.
+
+    return "" if options.real is None else real.of_comparison(found, options.real)
 
 
 def profiles(found: "Aggregates", first: Described, out: Path, options: Print) -> list[Path]:

@@ -21,6 +21,7 @@ def newcomers(task, count):
     return jax.jit(jax.vmap(lambda key: task.encoding.newcomer(key=key)))(keys)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("free", [{}, {"max_speed": None, "lag": 0, "max_bend": None}])
 def test_a_stroke_repeats_the_rest_shapes_of_the_simulation(strokes_of, free):
     """Once the ramp is over, at equal phases of the clock; the simulation interpolates."""
@@ -45,6 +46,7 @@ def test_a_stroke_repeats_the_rest_shapes_of_the_simulation(strokes_of, free):
         assert float(took[number]) == pytest.approx(np.diff(steps)[0], rel=0.15)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("parts", [CHAIN, ZOO])
 def test_known_measures_are_those_of_the_simulation(strokes_of, parts):
     strokes = strokes_of(**parts)
@@ -63,6 +65,7 @@ def test_known_measures_are_those_of_the_simulation(strokes_of, parts):
     assert np.all(np.isfinite(described.inputs))
 
 
+@pytest.mark.long
 def test_shapes_alone_nearly_tell_curvature_and_symmetry(strokes_of):
     """Of swimmers that complete two strokes."""
     strokes = strokes_of(task={"steps": 1500})

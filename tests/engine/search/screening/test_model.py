@@ -23,6 +23,7 @@ def samples(count, seed=0):
     return inputs, np.stack([wave, np.abs(inputs[:, 2])], 1)
 
 
+@pytest.mark.long
 def test_recursive_least_squares_is_ridge_regression(regression):
     inputs, outputs = samples(READY + 40)
     model = learned(regression, regression.init(), inputs[:READY], outputs[:READY])
@@ -49,6 +50,7 @@ def test_the_first_evaluations_set_the_scales_however_they_arrive(regression):
     jax.tree.map(np.testing.assert_array_equal, model, at_once)
 
 
+@pytest.mark.long
 def test_it_is_learned_anew_from_the_newest_whenever_evaluations_double(regression):
     inputs, outputs = samples(4 * READY)
     inputs[READY:] *= 0.1  # Later creatures differ less.
@@ -70,6 +72,7 @@ def test_old_evaluations_are_forgotten(regression):
     np.testing.assert_array_equal(model.inputs, samples(rows)[0][100:])
 
 
+@pytest.mark.long
 def test_a_smooth_function_is_learned(regression):
     model = learned(regression, regression.init(), *samples(2000))
     inputs, outputs = samples(500, seed=1)

@@ -217,6 +217,7 @@ def test_values_are_those_of_tensorneat_in_double_precision_nan_included(referen
             assert worst <= 1e-6
 
 
+@pytest.mark.long
 def test_the_engine_computes_the_same_for_every_genome_that_ours_can_express(
     reference, float64
 ):

@@ -1,8 +1,8 @@
 /** Texts of exports. */
 
 export const text = {
-  export: "Export",
   about: "The last checkpoint, in formats that other programs read.",
+  real: "For SI units in Parquet, Arrow and netCDF: real length of a body and time of a stroke",
   preparing: "Preparing …",
   formats: {
     parquet: ["Parquet", "Tables for pandas, polars and R (ZIP)"],

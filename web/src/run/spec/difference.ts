@@ -20,6 +20,14 @@ export function differences(specs: readonly Spec[]): Difference[] {
     .filter(({ values }) => values.some((value) => JSON.stringify(value) !== JSON.stringify(values[0])));
 }
 
+/** The group of each spec: equal ones, apart from the seed, have one number, counted from 0. */
+export function groupsOf(specs: readonly Spec[]): number[] {
+  const differing = differences(specs).filter(({ path }) => path !== "seed");
+  const keys = specs.map((_, i) => JSON.stringify(differing.map(({ values }) => values[i] ?? null)));
+  const known = [...new Set(keys)];
+  return keys.map((key) => known.indexOf(key));
+}
+
 /** A value as a table shows it. */
 export function valueText(value: Json | undefined): string {
   if (value === undefined) return DASH;

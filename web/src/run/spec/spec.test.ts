@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Preset } from "../../api/types";
-import { differences, valueText } from "./difference";
+import { differences, groupsOf, valueText } from "./difference";
 import { brief, nameOf, nearestPreset, sectionsOf } from "./sections";
 
 describe("the sections of a spec", () => {
@@ -87,5 +87,13 @@ describe("the difference between specs", () => {
     [[], "none"],
   ])("writes %j as %s", (value, text) => {
     expect(valueText(value)).toBe(text);
+  });
+});
+
+describe("groups of specs", () => {
+  it("are those that differ in the seed alone, in the order of the first of each", () => {
+    const spec = (viscosity: number, seed: number) => ({ world: { viscosity }, seed });
+    expect(groupsOf([spec(0.2, 1), spec(0.1, 1), spec(0.2, 2), spec(0.1, 3)])).toEqual([0, 1, 0, 1]);
+    expect(groupsOf([spec(0.2, 1), spec(0.2, 2)])).toEqual([0, 0]);
   });
 });

@@ -1,7 +1,7 @@
 /** Rows of the tables of statistics, and numbers as text. */
 
-import type { MeasureStatistics } from "../../api/types";
-import { count, number, percent } from "../../ui/format";
+import type { MeasureStatistics } from "../api/types";
+import { count, number, percent } from "../ui/format";
 import { text } from "./text";
 
 const SHARES = ["coverage", "corrected_coverage", "hit_rate"];

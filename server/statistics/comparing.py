@@ -1,4 +1,4 @@
-"""Statistics of a sweep: its finished runs by case, compared as `microcosmos compare` does."""
+"""Statistics of finished runs by their specs, compared as `microcosmos compare` does."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,18 +7,21 @@ from typing import TYPE_CHECKING, Any
 from uuid import UUID
 
 import numpy as np
-from sqlalchemy import select
+from sqlalchemy import Row, select
 from sqlalchemy.orm import Session
 
 from ..core.errors import ProblemError, invalid_field
+from ..forks.forking import SEARCHES
 from ..runs.lifecycle import NOT_IN_BIN
 from ..tables import CORRECTED, FINISHED, TERMINAL, Generation, Run, Sweep
-from .statistics_schemas import SweepStatistics
+from .schemas import Statistics
 
 if TYPE_CHECKING:
     from microcosmos.statistics import Comparison, RunRecord
 
 COLUMNS = ("evaluations", "qd_score", "coverage", "best", "mean", "infeasible")
+COMPARED = (Run.id, Run.experiment, Run.status, Run.generation, Run.rewinds, Run.sweep_index)
+Found = Row[UUID, str, str, int, int, int | None]
 MAX_MEASURES = 12
 FORMS = {"csv": "text/csv", "tex": "application/x-tex"}
 """Media types of tables to download."""
@@ -35,14 +38,36 @@ class Asked:
     measures: tuple[str, ...]
 
 
-def asked(session: Session, sweep: Sweep, measures: str) -> Asked:
-    """Return what a request compares. Raise `ProblemError` where runs are not finished."""
-    if "search" not in sweep.spec:
-        detail = f"Statistics need archives; runs of `{sweep.experiment}` have tables."
-        raise ProblemError(404, "No statistics", detail)
-    columns = (Run.id, Run.status, Run.generation, Run.rewinds, Run.sweep_index)
-    mine = select(*columns).where(Run.sweep == sweep.id, NOT_IN_BIN).order_by(Run.sweep_index)
+def of_sweep(session: Session, sweep_id: UUID, measures: str) -> Asked:
+    """Return what is asked of all runs of a sweep, in the order of its cases.
+
+    Raise `ProblemError` where it cannot be compared.
+    """
+    sweep = session.get(Sweep, sweep_id)
+    if sweep is None:
+        raise ProblemError(404, "Not found", f"No sweep has the id {sweep_id}.")
+    cases = prod(map(len, sweep.grid.values()))
+    mine = select(*COMPARED).where(Run.sweep == sweep_id, NOT_IN_BIN).order_by(Run.sweep_index)
     runs = session.execute(mine).all()
+    return _asked(sorted(runs, key=lambda run: run.sweep_index % cases), measures)
+
+
+def of_runs(session: Session, ids: Sequence[UUID], measures: str) -> Asked:
+    """Return what is asked of some runs, in their order.
+
+    Raise `ProblemError` where they cannot be compared.
+    """
+    found = session.execute(select(*COMPARED).where(Run.id.in_(ids), NOT_IN_BIN))
+    runs = {run.id: run for run in found}
+    for missing in (one for one in ids if one not in runs):
+        raise ProblemError(404, "Not found", f"No run has the id {missing}.")
+    return _asked([runs[one] for one in dict.fromkeys(ids)], measures)
+
+
+def _asked(runs: Sequence[Found], measures: str) -> Asked:
+    for table in (run.experiment for run in runs if run.experiment not in SEARCHES):
+        detail = f"Statistics need archives; runs of `{table}` have tables."
+        raise ProblemError(404, "No statistics", detail)
     finished = [run for run in runs if run.status == FINISHED]
     active = sum(run.status not in TERMINAL for run in runs)
     if active or not finished:
@@ -51,8 +76,6 @@ def asked(session: Session, sweep: Sweep, measures: str) -> Asked:
     named = tuple(one.strip() for one in measures.split(",") if one.strip())
     if len(named) > MAX_MEASURES:
         raise invalid_field("measures", f"at most {MAX_MEASURES} measures", len(named))
-    cases = prod(map(len, sweep.grid.values()))
-    finished.sort(key=lambda run: run.sweep_index % cases)  # Groups are in the order of cases.
     state = tuple((run.id, run.generation, run.rewinds) for run in finished)
     ids = tuple(run.id for run in finished)
     return Asked(ids, len(runs) - len(finished), state, named)
@@ -74,17 +97,17 @@ def compared(session: Session, wanted: Asked) -> "Comparison":
         raise ProblemError(409, "Cannot be compared", f"{error}.") from error
 
 
-def document(session: Session, wanted: Asked) -> SweepStatistics:
+def document(session: Session, wanted: Asked) -> Statistics:
     """Return the comparison for the page."""
     from microcosmos.statistics import tables
 
     found = tables.document(compared(session, wanted))
-    told = {name: found[name] for name in SweepStatistics.model_fields}
+    told = {name: found[name] for name in Statistics.model_fields}
     if wanted.left_out:
         runs = "1 run is" if wanted.left_out == 1 else f"{wanted.left_out} runs are"
         caution = f"{runs} left out, since they failed or were cancelled."
         told["cautions"] = [caution, *told["cautions"]]
-    return SweepStatistics.model_validate(told)
+    return Statistics.model_validate(told)
 
 
 def table(session: Session, wanted: Asked, form: str) -> str:

@@ -1,7 +1,7 @@
 /** Numbers and rows of the statistics of a sweep. */
 
 import { describe, expect, it } from "vitest";
-import type { MeasureStatistics } from "../../api/types";
+import type { MeasureStatistics } from "../api/types";
 import { formatOf, intervalText, pairsOf, probability, summariesOf } from "./rows";
 
 const test = { test: "Mann–Whitney, exact", statistic: 0, p: 0.008 };

@@ -1,25 +1,31 @@
-/** Statistics of a sweep: figures of its groups, rank tests and effect sizes, and their files. */
+/** Statistics of finished runs: figures of their groups, rank tests and effect sizes, and their files. */
 
-import { statisticsUrl } from "../../api/files";
-import type { MeasureStatistics, SweepStatistics } from "../../api/types";
-import { useSweepStatistics } from "../../store/sweeps";
-import { count } from "../../ui/format";
-import { FileLink } from "../../ui/links";
-import { Card } from "../../ui/Page";
-import { type Column, Table } from "../../ui/Table";
+import { statisticsUrl } from "../api/files";
+import type { ComparedRuns, MeasureStatistics, Statistics } from "../api/types";
+import { useStatistics } from "../store/statistics";
+import { count } from "../ui/format";
+import { FileLink } from "../ui/links";
+import { Card } from "../ui/Page";
+import { type Column, Table } from "../ui/Table";
 import { capitalised, formatOf, intervalText, pairsOf, probability, summariesOf } from "./rows";
 import { text } from "./text";
 import "./statistics.css";
 
 const MEASURES = ["qd_score", "coverage", "best"];
 
-export function StatisticsCard({ id, corrected }: { id: string; corrected: boolean }) {
+interface Props {
+  of: ComparedRuns;
+  /** True if all have a corrected QD score. */
+  corrected: boolean;
+}
+
+export function StatisticsCard({ of, corrected }: Props) {
   const measures = [...MEASURES, ...(corrected ? ["corrected_qd_score"] : [])].join();
-  const { value, error } = useSweepStatistics(id, measures);
+  const { value, error } = useStatistics(of, measures);
   const files = (
     <>
-      <FileLink url={statisticsUrl(id, "csv", measures)} name={text.csv} title={text.csvAbout} />
-      <FileLink url={statisticsUrl(id, "tex", measures)} name={text.latex} title={text.latexAbout} />
+      <FileLink url={statisticsUrl("csv", of, measures)} name={text.csv} title={text.csvAbout} />
+      <FileLink url={statisticsUrl("tex", of, measures)} name={text.latex} title={text.latexAbout} />
     </>
   );
   return (
@@ -27,7 +33,7 @@ export function StatisticsCard({ id, corrected }: { id: string; corrected: boole
       id="statistics"
       kind="statistics"
       title={text.statistics}
-      note={text.about}
+      note={"sweep" in of ? text.byCase : text.bySpec}
       actions={value && files}
     >
       {error && <p class="banner warning">{error}</p>}
@@ -37,7 +43,7 @@ export function StatisticsCard({ id, corrected }: { id: string; corrected: boole
   );
 }
 
-function Comparison(found: SweepStatistics) {
+function Comparison(found: Statistics) {
   const pairs = pairsOf(found.measures);
   const overall = found.measures.filter((one) => one.overall !== null);
   return (
@@ -47,7 +53,7 @@ function Comparison(found: SweepStatistics) {
         <Table label={text.figures} columns={FIGURES} rows={summariesOf(found.measures)} keyOf={keyOf} />
         <div>
           {pairs.length > 0 && (
-            <Table label={text.tests} kind="sweep-members" columns={PAIRS} rows={pairs} keyOf={keyOf} />
+            <Table label={text.tests} kind="pairs" columns={PAIRS} rows={pairs} keyOf={keyOf} />
           )}
           {overall.length > 0 && (
             <Table label={text.overall} columns={OVERALL} rows={overall} keyOf={({ measure }) => measure} />

@@ -1,4 +1,4 @@
-"""Routes of the statistics of a sweep: for the page, and as tables to download."""
+"""Routes of the statistics of runs: for the page, and as tables to download."""
 
 from collections.abc import Awaitable, Callable
 from typing import Annotated
@@ -12,35 +12,43 @@ from microcosmos.version import VERSION
 from ..auth.authorize import MAY_READ
 from ..core.answers import respond, tag_of
 from ..core.api import sends
-from ..core.errors import ProblemError
+from ..core.errors import invalid_field
 from ..services.services import ServicesDep
-from ..tables import Sweep
-from . import statistics
-from .statistics import Asked
-from .statistics_schemas import SweepStatistics
+from . import comparing
+from .comparing import Asked
+from .schemas import Statistics
 
-router = APIRouter(prefix="/sweeps/{sweep_id}", tags=["sweeps"])
+router = APIRouter(prefix="/statistics", tags=["runs"])
 JSON = "application/json"
+MAX_RUNS = 100
+UUID_PATTERN = "[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}"
+RUNS = rf"^{UUID_PATTERN}(,{UUID_PATTERN}){{0,{MAX_RUNS - 1}}}$"
 
 
 def _asked(
-    sweep_id: UUID, services: ServicesDep, measures: Annotated[str, Query(max_length=400)] = ""
+    services: ServicesDep,
+    runs: Annotated[str | None, Query(pattern=RUNS)] = None,
+    sweep: UUID | None = None,
+    measures: Annotated[str, Query(max_length=400)] = "",
 ) -> Asked:
     """Read the state of the runs over a connection that is closed again."""
+    if (runs is None) == (sweep is None):
+        raise invalid_field("runs", "either `runs` or a `sweep`", runs)
     with services.sessions.read() as session:
-        sweep = session.get(Sweep, sweep_id)
-        if sweep is None:
-            raise ProblemError(404, "Not found", f"No sweep has the id {sweep_id}.")
-        return statistics.asked(session, sweep, measures)
+        if sweep is not None:
+            return comparing.of_sweep(session, sweep, measures)
+        return comparing.of_runs(
+            session, [UUID(one) for one in (runs or "").split(",")], measures
+        )
 
 
 AskedDep = Annotated[Asked, Depends(_asked)]
 
 
 @router.get(
-    "/statistics",
+    "",
     responses={
-        200: {"model": SweepStatistics},
+        200: {"model": Statistics},
         304: {"description": "Unchanged"},
         404: {},
         409: {},
@@ -50,30 +58,28 @@ AskedDep = Annotated[Asked, Depends(_asked)]
 async def read_statistics(
     request: Request, wanted: AskedDep, services: ServicesDep
 ) -> Response:
-    """Compare the cases of a sweep whose runs are finished: quartiles, rank tests with Holm's
-    correction, and effect sizes with bootstrap intervals.
+    """Compare finished runs, grouped by what differs in their specs beside the seed: quartiles,
+    rank tests with Holm's correction, and effect sizes with bootstrap intervals.
 
-    `measures` are curves (`qd_score`), curves after evaluations (`qd_score@6400`) or the
-    evaluations to a value (`best>=0.5`), separated by commas.
+    `runs` are ids separated by commas; or give the id of a `sweep`. `measures` are curves
+    (`qd_score`), curves after evaluations (`qd_score@6400`) or the evaluations to a value
+    (`best>=0.5`), separated by commas.
     """
 
     def make() -> bytes:
         with services.sessions.read() as session:
-            return statistics.document(session, wanted).model_dump_json().encode()
+            return comparing.document(session, wanted).model_dump_json().encode()
 
     return await _answer(request, wanted, JSON, make, {})
 
 
 def _table_reader(form: str, media_type: str) -> Callable[..., Awaitable[Response]]:
-    async def read(
-        sweep_id: UUID, request: Request, wanted: AskedDep, services: ServicesDep
-    ) -> Response:
+    async def read(request: Request, wanted: AskedDep, services: ServicesDep) -> Response:
         def make() -> bytes:
             with services.sessions.read() as session:
-                return statistics.table(session, wanted, form).encode()
+                return comparing.table(session, wanted, form).encode()
 
-        name = f"statistics-{str(sweep_id)[:8]}.{form}"
-        headers = {"Content-Disposition": f'attachment; filename="{name}"'}
+        headers = {"Content-Disposition": f'attachment; filename="statistics.{form}"'}
         return await _answer(request, wanted, media_type, make, headers)
 
     read.__name__ = f"read_statistics_{form}"
@@ -81,9 +87,9 @@ def _table_reader(form: str, media_type: str) -> Callable[..., Awaitable[Respons
     return read
 
 
-for form, media_type in statistics.FORMS.items():
+for form, media_type in comparing.FORMS.items():
     router.get(
-        f"/statistics.{form}",
+        f".{form}",
         **sends(media_type, {404: {}, 409: {}}),
         dependencies=[MAY_READ],
     )(_table_reader(form, media_type))

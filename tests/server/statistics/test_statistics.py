@@ -1,4 +1,4 @@
-"""The statistics of a sweep are those of the library, of finished runs alone."""
+"""The statistics of runs, or of a sweep, are those of the library, of finished runs alone."""
 
 import csv
 from io import StringIO
@@ -52,8 +52,16 @@ def sweep(post, write):
     return found
 
 
+@pytest.fixture
+def post(api, spec):
+    def send(**asked):
+        return api.post("sweeps", json={"spec": spec, **asked})
+
+    return send
+
+
 def read(api, sweep, path="statistics", **query):
-    return api.get(f"sweeps/{sweep['id']}/{path}", params=query)
+    return api.get(path, params={"sweep": sweep["id"], **query})
 
 
 def test_cases_are_compared_as_in_the_library(api, sweep):
@@ -93,10 +101,35 @@ def test_tables_are_downloaded(api, sweep):
     assert latex.text.startswith("% \\usepackage{booktabs}")
 
 
+def test_any_finished_runs_are_grouped_by_what_differs_in_their_specs(api, sweep):
+    of_sweep = read(api, sweep).json()
+    thick, _, thin = (case["runs"] for case in sweep["cases"])
+    found = api.get("statistics", params={"runs": ",".join([*thin, *thick])}).json()
+    assert [group["name"] for group in found["groups"]] == ["viscosity 0.2", "viscosity 0.05"]
+    assert [one["run"] for one in found["groups"][0]["runs"]] == thin
+    figures = {one["group"]: one for one in of_sweep["measures"][0]["groups"]}
+    assert all(figures[one["group"]] == one for one in found["measures"][0]["groups"])
+    table = api.get("statistics.csv", params={"runs": ",".join(thick), "measures": "best"})
+    assert sum(row["table"] == "run" for row in csv.DictReader(StringIO(table.text))) == 5
+
+
+def test_runs_that_nobody_has_and_unclear_questions_are_refused(api, sweep):
+    nobody, run = str(UUID(int=0)), sweep["cases"][0]["runs"][0]
+    missing = api.get("statistics", params={"runs": f"{run},{nobody}"})
+    assert (missing.status_code, missing.json()["detail"]) == (
+        404,
+        f"No run has the id {nobody}.",
+    )
+    assert api.get("statistics").json()["errors"][0]["field"] == "runs"
+    both = api.get("statistics", params={"runs": run, "sweep": sweep["id"]})
+    assert both.status_code == 422
+    assert api.get("statistics", params={"runs": "those"}).status_code == 422
+
+
 def test_an_answer_is_made_once_for_each_state_of_the_runs(api, sweep, write, services):
     first = read(api, sweep)
     known = {"If-None-Match": first.headers["etag"]}
-    path = f"sweeps/{sweep['id']}/statistics"
+    path = f"statistics?sweep={sweep['id']}"
     assert api.get(path, headers=known).status_code == 304
     with services.sessions.write.begin() as session:
         session.get_one(Run, UUID(sweep["cases"][0]["runs"][0])).rewinds += 1
@@ -140,4 +173,4 @@ def test_a_sweep_without_archives_has_none(api):
     refused = read(api, found)
     assert refused.status_code == 404
     assert "runs of `gaits` have tables" in refused.json()["detail"]
-    assert api.get(f"sweeps/{UUID(int=0)}/statistics").status_code == 404
+    assert read(api, {"id": str(UUID(int=0))}).status_code == 404

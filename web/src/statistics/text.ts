@@ -1,8 +1,9 @@
-/** Texts of the statistics of a sweep. */
+/** Texts of the statistics of runs. */
 
 export const text = {
   statistics: "Statistics",
-  about: "finished runs, case by case",
+  byCase: "finished runs, case by case",
+  bySpec: "finished runs, grouped by what differs in their specs beside the seed",
   computing: "Computing …",
   figures: "Figures of the groups",
   tests: "Tests between pairs of groups",

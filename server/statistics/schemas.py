@@ -1,4 +1,4 @@
-"""Wire types of the statistics of a sweep: groups, tests and effect sizes."""
+"""Wire types of the statistics of runs: groups, tests and effect sizes."""
 
 from uuid import UUID
 
@@ -11,7 +11,7 @@ class GroupRun(Wire):
 
 
 class ComparedGroup(Wire):
-    """The finished runs of a case."""
+    """Finished runs that differ in the seed alone."""
 
     name: str
     n: int
@@ -67,7 +67,7 @@ class MeasureStatistics(Wire):
     """Empty without tests."""
 
 
-class SweepStatistics(Wire):
+class Statistics(Wire):
     groups: list[ComparedGroup]
     measures: list[MeasureStatistics]
     refusal: str | None

@@ -2,12 +2,11 @@
 
 import re
 
-from playwright.sync_api import Page, expect
+from pages import expect_in_url, picture, wait_until_changed
+from playwright.sync_api import Locator, Page, expect
 from written_run import GENERATIONS, WrittenRun
 
 from microcosmos.spec import EXPERIMENTS
-
-CHANGED = "before => before !== document.querySelector('#curves canvas').toDataURL()"
 
 
 def test_a_run_is_shown_from_the_queue_to_its_end_and_compared(page, idle):
@@ -55,7 +54,7 @@ def follow_the_log(page: Page, run: WrittenRun) -> None:
     expect(entries.last).to_contain_text("Submitted: neuroevolution")
     expect(log.get_by_text("from the checkpoint of generation 4")).to_be_visible()
     log.get_by_label("Show").select_option("error")
-    assert "level=error" in page.url
+    expect_in_url(page, "level=error")
     expect(entries).to_have_count(1)
     entries.get_by_text("ZeroDivisionError: twice nothing").first.click()
     expect(log.get_by_text("File x")).to_be_visible()
@@ -97,32 +96,32 @@ def choose_how_curves_are_drawn(page: Page) -> None:
     curves = page.get_by_role("region", name="Curves")
     score = curves.get_by_role("img", name=re.compile("^QD score"))
     expect(score).to_have_attribute("aria-label", "QD score over generations: now 144")
-    raw = pixels(page)
+    raw = picture(curve(page))
     curves.get_by_label("Log scale").check()
-    page.wait_for_function(CHANGED, arg=raw)
+    wait_until_changed(curve(page), raw)
     curves.get_by_label("Smoothing").select_option("5")
     expect(score).to_have_attribute("aria-label", re.compile("now 102"))
     curves.get_by_role("combobox", name=re.compile("^X axis")).select_option("evaluations")
     expect(score).to_have_attribute("aria-label", re.compile("^QD score over evaluations"))
     for word in ("log=1", "smooth=5", "over=evaluations"):
-        assert word in page.url
+        expect_in_url(page, word)
 
 
-def pixels(page: Page) -> str:
-    return page.evaluate("document.querySelector('#curves canvas').toDataURL()")
+def curve(page: Page) -> Locator:
+    return page.locator("#curves canvas").first
 
 
 def compare_with_another_run(page: Page, other: WrittenRun) -> None:
     curves = page.get_by_role("region", name="Curves")
-    alone = pixels(page)
+    alone = picture(curve(page))
     curves.get_by_role("button", name="Compare with a run").click()
     curves.get_by_label("Compare with a run").select_option(str(other.id))
     curves.get_by_role("button", name="Compare", exact=True).click()
     expect(curves.get_by_role("link", name=re.compile(str(other.id)[:8]))).to_be_visible()
-    page.wait_for_function(CHANGED, arg=alone)
+    wait_until_changed(curve(page), alone)
     score = curves.get_by_role("img", name=re.compile(f"^QD score .*{str(other.id)[:8]}"))
     expect(score).to_be_visible()
-    assert f"with={other.id}" in page.url
+    expect_in_url(page, f"with={other.id}")
 
 
 def see_what_differs_in_the_spec(page: Page, other: WrittenRun) -> None:
@@ -133,7 +132,7 @@ def see_what_differs_in_the_spec(page: Page, other: WrittenRun) -> None:
     card.get_by_role("button", name="Compare", exact=True).click()
     found = card.get_by_role("region", name="Differences from another run")
     expect(found.get_by_role("row", name=re.compile("Seed"))).to_have_text("Seed87")
-    assert f"against={other.id}" in page.url
+    expect_in_url(page, f"against={other.id}")
 
 
 def reload_and_close_comparisons(page: Page, other: WrittenRun) -> None:
@@ -143,9 +142,9 @@ def reload_and_close_comparisons(page: Page, other: WrittenRun) -> None:
     expect(curves.get_by_label("Smoothing")).to_have_value("5")
     expect(curves.get_by_role("link", name=re.compile(str(other.id)[:8]))).to_be_visible()
     curves.get_by_role("button", name=re.compile("^Remove")).click()
-    assert "with=" not in page.url
+    expect_in_url(page, "with=", False)
     page.get_by_role("button", name="Close differences").click()
-    assert "against=" not in page.url
+    expect_in_url(page, "against=", False)
 
 
 def walk_by_keyboard(page: Page) -> None:
@@ -165,7 +164,7 @@ def walk_by_keyboard(page: Page) -> None:
     expect(choice.get_by_role("option")).not_to_have_count(1)
     page.keyboard.press("ArrowDown")  # Of a closed list this takes one, which is no decision.
     expect(choice).to_be_focused()
-    assert "against=" not in page.url
+    expect_in_url(page, "against=", False)
     page.keyboard.press("Escape")
     expect(difference).to_be_focused()
 

@@ -1,0 +1,96 @@
+"""Physical units and numbers without a unit, of creature files and of archive files."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..archive import creature, export, file
+from ..archive import physical as scaling
+from ..archive.export import Source
+from ..archive.physical import Physical, columns, scaled_by, scene_of
+from ..archive.quantities import Real
+from ..archive.sperm import sperm
+from ..spec import is_unavailable
+from . import bodies
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """What makes the numbers of a creature: its length, its stroke and how its body yields."""
+
+    length: float
+    """Reach of the body, in cells."""
+    period: float
+    """Steps of a stroke."""
+    sperm: float | None
+    """Effective sperm number; None where a joint has no stiffness."""
+
+
+def physical(source: Mapping[str, Any] | Source, length: str, period: str) -> dict[str, Any]:
+    """Return physical units of a creature file, or columns of those of an archive file.
+
+    `length` is the real length of the body, such as `1mm`, `period` that of a stroke, such as
+    `0.5s`. Speeds are in m/s and viscosities in m²/s. Raise `ValueError` as `of_creature` and
+    `of_archive` do.
+    """
+    if isinstance(source, Mapping):
+        return dict(of_creature(source, length, period)[1])
+    data = export.source_bytes(source)
+    if data.startswith(file.HDF5):
+        return dict(of_archive(data, length, period)[1])
+    return dict(of_creature(data, length, period)[1])
+
+
+def of_creature(
+    document: Mapping[str, Any] | bytes, length: str, period: str
+) -> tuple[Physical, dict[str, float]]:
+    """Return the scales of a creature file, and its numbers: SI units and none.
+
+    The length is that of the body as its genes made it. Raise `ValueError` for a creature
+    without a fluid or a stroke.
+    """
+    real, parsed = Real.of(length, period), creature.parse(document)
+    assert real is not None
+    scene, genes = creature.scene_of(parsed), parsed["identity"]["genome"]
+    found = scaled_by(scene, bodies.length_of(scene, genes), real)
+    measures = (parsed["measured"] or {}).get("measures", {})
+    numbers = {name: float(value) for name, value in columns(found, measures).items()}
+    number = sperm(scene, bodies.body_of(scene, genes))
+    return found, numbers | ({} if number is None else {"sperm": number})
+
+
+def of_archive(
+    data: bytes, length: str, period: str
+) -> tuple[list[Physical], dict[str, np.ndarray]]:
+    """Return the scales of each elite of an archive file, and columns of their numbers.
+
+    Each elite has the given length. `sperm` is NaN where a joint has no stiffness, and missing
+    where a plug-in that is not loaded builds the body. Raise `ValueError` for a run without an
+    archive, a fluid or a stroke.
+    """
+    real = Real.of(length, period)
+    assert real is not None
+    scaled, found = scaling.of_archive(data, real)
+    tree, attributes = file.load(data)
+    scene = scene_of(json.loads(attributes["spec"]))
+    if is_unavailable(scene.body):
+        return scaled, found
+    grown = bodies.elites(scene, tree["archive"]["genomes"])
+    numbers = [sperm(scene, body) for body in grown]
+    return scaled, found | {"sperm": np.array(numbers, float)}
+
+
+def stroke(document: Mapping[str, Any]) -> Stroke:
+    """Return the length, stroke and sperm number of a parsed creature file.
+
+    Raise `ValueError` for a creature without a stroke.
+    """
+    scene, genes = creature.scene_of(document), document["identity"]["genome"]
+    return Stroke(
+        bodies.length_of(scene, genes),
+        scaling.stroke_of(scene),
+        sperm(scene, bodies.body_of(scene, genes)),
+    )

@@ -1,0 +1,1 @@
+"""Statistics of finished runs: groups that differ in the seed alone, compared by rank tests."""
