@@ -1,22 +1,53 @@
 """Atomic writing of files: write beside, sync, rename, sync the folder."""
 
+import fcntl
 import os
+import re
+from contextlib import suppress
 from pathlib import Path
+from typing import IO
 
 
 def write_whole(path: Path, data: bytes) -> None:
-    """Replace a file; the old content stays readable on any failure. Raises `OSError`."""
+    """Replace a file; the old content stays readable on any failure. Raises `OSError`.
+
+    What a process that was killed while it wrote this file left beside it is removed.
+    """
+    _remove_left(path)
     beside = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         with beside.open("wb") as file:
+            _lock(file)
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
-        beside.replace(path)
+            beside.replace(path)
     except OSError:
         beside.unlink(missing_ok=True)
         raise
     sync_folder(path.parent)
+
+
+def _remove_left(path: Path) -> None:
+    """Remove parts of a file that nobody writes any more.
+
+    A writer locks its part while it is empty, and a lock ends with its process: a part with
+    content and without a lock has lost its writer.
+    """
+    name = re.compile(rf"\.{re.escape(path.name)}\.\d+\.part")
+    for part in filter(lambda found: name.fullmatch(found.name), path.parent.iterdir()):
+        with suppress(OSError), part.open("rb+") as file:
+            if _lock(file) and os.fstat(file.fileno()).st_size:
+                part.unlink()
+
+
+def _lock(file: IO[bytes]) -> bool:
+    """Lock a file; return False where another holds it or the file system has no locks."""
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True
 
 
 def sync_folder(path: Path) -> None:

@@ -1,6 +1,7 @@
 """Files are deterministic, complete or absent, and readable by other programs."""
 
 import csv
+import fcntl
 import io
 import json
 import resource
@@ -80,6 +81,23 @@ def test_a_write_that_fails_leaves_the_old_file_and_nothing_beside_it(tmp_path):
         signal.signal(signal.SIGXFSZ, handler)
     assert path.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.fast
+def test_a_write_removes_what_a_killed_one_left_and_no_part_of_a_living_one(tmp_path):
+    path, other = tmp_path / "a[1].h5", tmp_path / "b.h5"
+    killed, of_other = tmp_path / ".a[1].h5.77.part", tmp_path / ".b.h5.77.part"
+    download = tmp_path / f".a[1].h5.{'0f' * 32}.part"
+    kept = [tmp_path / ".a[1].h5.78.part", tmp_path / ".a[1].h5.79.part", of_other, download]
+    for part in (killed, *kept):
+        part.write_bytes(b"half")
+    with kept[0].open("rb+") as written, kept[1].open("wb"):  # The latter is not locked yet.
+        fcntl.flock(written, fcntl.LOCK_EX)
+        write_whole(path, b"whole")
+    assert set(tmp_path.iterdir()) == {path, *kept}
+    assert path.read_bytes() == b"whole"
+    write_whole(other, b"whole")
+    assert not of_other.exists()
 
 
 def test_a_creature_file_survives_hdf5_with_the_same_bytes(newcomer):
