@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from importlib import metadata
 from pathlib import Path
 
 HERE = Path(__file__).parent
@@ -20,7 +21,7 @@ PIP_BUILD = ["--no-build-isolation", "--no-deps"]
 
 def main() -> None:
     with tempfile.TemporaryDirectory(prefix="microcosmos-") as place:
-        compiler = system_compiler() or zig(Path(place))
+        compiler = system_compiler() or zig_compiler(Path(place))
         if compiler and build(compiler):
             return
     reason = f"{compiler} could not build it" if compiler else "there is no C++ compiler"
@@ -33,19 +34,29 @@ def system_compiler() -> str | None:
 
 
 def zig(place: Path) -> str | None:
-    """Install Zig's compiler into a folder and return the command that runs it."""
+    """Return the program of Zig: that of this environment, or else fetched into a folder."""
+    try:
+        found = metadata.distribution("ziglang")
+    except metadata.PackageNotFoundError:
+        found = None
+    if found and f"ziglang=={found.version} " in ZIG.read_text():
+        return str(found.locate_file("ziglang/zig"))
     print("Fetching a C++ compiler for the native kernel ...")
     fetch = [*PIP, "install", "--require-hashes", "--target", place, "-r", ZIG]
-    fetched = subprocess.run(fetch)
-    if fetched.returncode:
+    return None if subprocess.run(fetch).returncode else os.fspath(place / "ziglang" / "zig")
+
+
+def zig_compiler(place: Path) -> str | None:
+    """Write the command of Zig's C++ compiler into a folder and return it."""
+    program, command = zig(place), place / "c++"
+    if not program:
         return None
-    command = place / "c++"
     # Zig adds checks of undefined behaviour that need a library of its own. It compiles its C++
     # library once for programs and libraries if both are stripped and have the same addressing.
     command.write_text(
-        f"#!/bin/sh\nexport PYTHONPATH={place}\n"
+        f"#!/bin/sh\n"
         f"export ZIG_GLOBAL_CACHE_DIR=${{ZIG_GLOBAL_CACHE_DIR:-{place / 'cache'}}}\n"
-        f'exec {sys.executable} -m ziglang c++ -fno-sanitize=all -fPIC -s "$@"\n'
+        f'exec {program} c++ -fno-sanitize=all -fPIC -s "$@"\n'
     )
     command.chmod(0o755)
     return os.fspath(command)

@@ -19,11 +19,12 @@ KERNEL = os.fspath(HERE / "src" / "wasm.cpp"), "-mexec-model=reactor"
 
 def main(out: str, *program: str) -> None:
     with tempfile.TemporaryDirectory(prefix="microcosmos-") as place:
-        if not zig(Path(place)):
+        compiler = zig(Path(place))
+        if not compiler:
             sys.exit("Zig cannot be fetched from the package registry")
-        found = {"ZIG_GLOBAL_CACHE_DIR": f"{place}/cache", **os.environ, "PYTHONPATH": place}
-        command = [sys.executable, "-m", "ziglang", "c++", "-DNDEBUG", *TARGET, *FLAGS]
-        subprocess.run([*command, *(program or KERNEL), "-o", out], env=found, check=True)
+        cached = {"ZIG_GLOBAL_CACHE_DIR": f"{place}/cache", **os.environ}
+        command = [compiler, "c++", "-DNDEBUG", *TARGET, *FLAGS, *(program or KERNEL)]
+        subprocess.run([*command, "-o", out], env=cached, check=True)
     Path(out).chmod(0o644)
 
 

@@ -9,7 +9,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from install import HERE, PIP, PIP_BUILD, tools, zig
+from install import HERE, PIP, PIP_BUILD, tools, zig_compiler
 
 INTERFACE = HERE.parents[1] / "requirements-xla.lock"
 PROCESSORS = "x86_64", "aarch64"
@@ -18,7 +18,7 @@ GLIBC = "2.17"
 
 def main(out: str) -> None:
     with tempfile.TemporaryDirectory(prefix="microcosmos-") as place:
-        compiler = zig(Path(place))
+        compiler = zig_compiler(Path(place))
         if not compiler:
             sys.exit("Zig cannot be fetched from the package registry")
         fetch = [*PIP, "install", "--require-hashes", "--no-deps", "--target", place]

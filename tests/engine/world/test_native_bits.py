@@ -42,28 +42,20 @@ def printed(command, *arguments):
     return subprocess.check_output([*command, *arguments], text=True).split()
 
 
-@pytest.fixture(scope="module")
-def zig(tmp_path_factory, zig_cache):
-    """Zig's clang, which compiles for other processors too, from the package registry.
+@pytest.fixture
+def clang(monkeypatch, zig):
+    """Zig's clang, which compiles for other processors too.
 
     Its options are those of the wheels, so that it compiles its C++ library once for both.
     """
-    place = tmp_path_factory.mktemp("zig")
-    pip = [sys.executable, "-m", "pip", "install", "-q", "--disable-pip-version-check"]
-    lock = ROOT / "requirements-zig.lock"
-    fetched = subprocess.run([*pip, "--require-hashes", "--target", place, "-r", lock])
-    if fetched.returncode:
-        pytest.skip("Zig cannot be fetched from the package registry")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("ZIG_GLOBAL_CACHE_DIR", zig_cache)
-        yield [place / "ziglang" / "zig", "c++", "-fno-sanitize=all", "-fPIC", "-s", "-DNDEBUG"]
-    shutil.rmtree(place)
+    monkeypatch.setenv("ZIG_GLOBAL_CACHE_DIR", zig.environment["ZIG_GLOBAL_CACHE_DIR"])
+    return [zig.program, "c++", "-fno-sanitize=all", "-fPIC", "-s", "-DNDEBUG"]
 
 
-def test_compilers_and_processors_give_the_same_bits(tmp_path, zig):
+def test_compilers_and_processors_give_the_same_bits(tmp_path, clang):
     known = CPU.read_text() if CPU.exists() else ""
     found = {
-        "clang": printed(compiled(zig, tmp_path / "clang", "--target=x86_64-linux-gnu.2.17")),
+        "clang": printed(compiled(clang, tmp_path / "clang", "--target=x86_64-linux-gnu.2.17")),
     }
     if shutil.which("g++"):
         found["gcc"] = printed(compiled(["g++"], tmp_path / "gcc"))
@@ -73,7 +65,7 @@ def test_compilers_and_processors_give_the_same_bits(tmp_path, zig):
             found["gcc, AVX-512"] = printed(compiled(["g++"], tmp_path / "wide", *AVX512))
     emulator = shutil.which("qemu-aarch64")
     if emulator and ARM.exists():
-        program = compiled(zig, tmp_path / "arm", "--target=aarch64-linux-gnu.2.17")
+        program = compiled(clang, tmp_path / "arm", "--target=aarch64-linux-gnu.2.17")
         found["clang, ARM"] = printed([emulator, "-L", ARM, *program])
     else:
         print(f"SKIPPED: ARM, there is no {ARM if emulator else 'qemu-aarch64'}")
@@ -81,27 +73,21 @@ def test_compilers_and_processors_give_the_same_bits(tmp_path, zig):
     assert found["clang"][1] == "100", "some evaluations did not stay finite"
 
 
-@pytest.fixture(scope="module")
-def webassembly(tmp_path_factory, zig_cache):
+@pytest.fixture
+def webassembly(tmp_path, zig):
     """A function that builds the kernel for the page, or a program."""
-    place = tmp_path_factory.mktemp("webassembly")
 
     def built(*program):
-        out = place / "out.wasm"
-        shared = os.environ | {"ZIG_GLOBAL_CACHE_DIR": str(zig_cache)}
-        command = [sys.executable, WASM, out, *program]
-        done = subprocess.run(command, stderr=subprocess.PIPE, text=True, env=shared)
-        if "Zig cannot be fetched" in done.stderr:
-            pytest.skip("Zig cannot be fetched from the package registry")
-        assert done.returncode == 0, done.stderr
+        out = tmp_path / "out.wasm"
+        subprocess.run([sys.executable, WASM, out, *program], check=True, env=zig.environment)
         return out
 
     return built
 
 
 @pytest.mark.skipif(not NODE, reason="needs node")
-def test_webassembly_gives_the_same_bits(tmp_path, zig, webassembly):
-    native = printed(compiled(zig, tmp_path / "native"))
+def test_webassembly_gives_the_same_bits(tmp_path, clang, webassembly):
+    native = printed(compiled(clang, tmp_path / "native"))
     node = [NODE, "--no-warnings", "--input-type=module", "--eval", RUN]
     assert printed([*node, webassembly(SOURCE)]) == native
 
