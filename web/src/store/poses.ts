@@ -1,6 +1,6 @@
 /** Pose streams of visible creatures: in batches where the server has them, others one at a time. */
 
-import { useEffect, useState } from "preact/hooks";
+import { useEffect, useMemo, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { type PoseStream, decodePoseBatch, decodePoses } from "../decode/poses";
 import { setNewest } from "./cache";
@@ -41,7 +41,8 @@ const batched = new Map<string, () => void>();
 const lacking = new Set<string>();
 /** Functions that stop the requests of single creatures. */
 const requests = new Map<string, () => void>();
-let pending: string[] = [];
+/** What each list on the page wants rendered, in its order. */
+const waiting = new Map<symbol, string[]>();
 const listeners = new Set<() => void>();
 
 /**
@@ -54,22 +55,26 @@ export function usePoses<T extends Visible>(
   render = true,
 ): ReadonlyMap<string, PoseStream> {
   const [, redraw] = useState(0);
+  const list = useMemo(() => Symbol(), []);
   useEffect(() => {
     const listener = () => redraw((count) => count + 1);
     listeners.add(listener);
     return () => {
       listeners.delete(listener);
+      waiting.delete(list);
       if (listeners.size === 0) stop();
     };
   }, []);
   useEffect(() => {
-    const timer = setTimeout(() => request(readBatch, visible, render), DEBOUNCE_MS);
+    const timer = setTimeout(() => request(list, readBatch, visible, render), DEBOUNCE_MS);
     return () => clearTimeout(timer);
   }, [readBatch === null, visible.map(({ creature }) => creature).join()]);
   return cache;
 }
 
-function request<T extends Visible>(
+/** Request what a list shows; what it showed before is requested no more. */
+export function request<T extends Visible>(
+  list: symbol,
   readBatch: ReadBatch<T> | null,
   visible: readonly T[],
   render: boolean,
@@ -81,23 +86,20 @@ function request<T extends Visible>(
     cache.set(creature, stream); // Now the newest.
   }
   const missing = visible.filter(({ creature }) => !cache.has(creature));
-  const alone = (sha: string) => render && (readBatch === null || lacking.has(sha)) && !requests.has(sha);
-  pending = missing.map(({ creature }) => creature).filter(alone);
+  waiting.set(list, render ? missing.map(({ creature }) => creature) : []);
   const unknown = missing.filter(({ creature }) => !lacking.has(creature) && !batched.has(creature));
   for (let first = 0; readBatch && first < unknown.length; first += BATCH) {
-    requestBatch(readBatch, unknown.slice(first, first + BATCH), render);
+    requestBatch(readBatch, unknown.slice(first, first + BATCH));
   }
   startRequests();
 }
 
-function requestBatch<T extends Visible>(readBatch: ReadBatch<T>, elites: T[], render: boolean): void {
+function requestBatch<T extends Visible>(readBatch: ReadBatch<T>, elites: T[]): void {
   const done = (streams: PoseStream[]) => {
     for (const stream of streams) add(stream);
     for (const { creature } of elites) {
       batched.delete(creature);
-      if (cache.has(creature)) continue;
-      lacking.add(creature);
-      if (render) pending.push(creature);
+      if (!cache.has(creature)) lacking.add(creature);
     }
     startRequests();
   };
@@ -115,7 +117,20 @@ function add(stream: PoseStream): void {
 }
 
 function startRequests(): void {
-  while (requests.size < MAX_REQUESTS && pending.length > 0) startRequest(pending.shift()!);
+  while (requests.size < MAX_REQUESTS) {
+    const sha = nextWaiting();
+    if (sha === null) return;
+    if (!cache.has(sha) && !requests.has(sha)) startRequest(sha);
+  }
+}
+
+/** The first creature that waits and is in no batch; it waits no more. */
+function nextWaiting(): string | null {
+  for (const creatures of waiting.values()) {
+    const place = creatures.findIndex((sha) => !batched.has(sha));
+    if (place >= 0) return creatures.splice(place, 1)[0]!;
+  }
+  return null;
 }
 
 function startRequest(sha: string): void {
@@ -141,7 +156,7 @@ async function readStream(sha: string): Promise<PoseStream | null> {
 }
 
 function stop(): void {
-  pending = [];
+  waiting.clear();
   for (const started of [batched, requests]) {
     for (const end of started.values()) end();
     started.clear();
