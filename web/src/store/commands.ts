@@ -13,7 +13,7 @@ const apply = async (request: Promise<Run>) => (await orShowError(applyResponse(
 export const sendCommand = (id: string, verb: api.RunCommand) => apply(api.commandRun(id, verb));
 
 export const cancelWithUndo = (id: string, title: string) =>
-  delayWithUndo(text.cancelling(title), () => void sendCommand(id, "cancel"));
+  delayWithUndo(id, text.cancelling(title), () => void sendCommand(id, "cancel"));
 
 export const extend = (id: string, generations: number) => apply(api.extendRun(id, generations));
 

@@ -57,4 +57,4 @@ export async function removeSweep(id: string): Promise<void> {
 }
 
 export const cancelSweepWithUndo = (id: string, title: string) =>
-  delayWithUndo(text.cancellingSweep(title), () => void sendSweepCommand(id, "cancel"));
+  delayWithUndo(id, text.cancellingSweep(title), () => void sendSweepCommand(id, "cancel"));

@@ -52,10 +52,21 @@ export function offerUndo(note: string, undo: () => void): number {
 
 const UNDO_MS = 4000;
 
+/** What is done soon, by a name: asking twice does it once, and undoing it undoes both. */
+const delayed = new Set<string>();
+
 /** Do something after a delay in which it can be undone. */
-export function delayWithUndo(note: string, act: () => void): void {
-  const timer = setTimeout(act, UNDO_MS);
-  offerUndo(note, () => clearTimeout(timer));
+export function delayWithUndo(name: string, note: string, act: () => void): void {
+  if (delayed.has(name)) return;
+  delayed.add(name);
+  const timer = setTimeout(() => {
+    delayed.delete(name);
+    act();
+  }, UNDO_MS);
+  offerUndo(note, () => {
+    delayed.delete(name);
+    clearTimeout(timer);
+  });
 }
 
 /** Ctrl+Z presses the newest undo button, which the Tab key reaches too late. */
