@@ -28,7 +28,8 @@ interface Props {
 }
 
 export function RunRow({ id, face, columns, experiments, selected, knownTags, onSelect }: Props) {
-  const run = useStore((state) => state.runs.get(id)!);
+  const run = useStore((state) => state.runs.get(id));
+  if (!run) return null; // Just removed for good.
   const title = titleOf(run, experiments);
   const name = `${title} ${shortId(run.id)}`;
   const readOnly = useRefusal(run) !== null || run.deleted_at !== null;

@@ -26,7 +26,7 @@ interface TableProps {
 export function RunTable({ query, address, listed, experiments, selected, onSelect }: TableProps) {
   const columns = columnsOf(address);
   const grouping = groupingOf(address);
-  const names = useEach(listed, ({ runs }, id) => groupName(runs.get(id)!, grouping));
+  const names = useEach(listed, ({ runs }, id) => groupName(runs.get(id), grouping));
   const groups = groupedBy(names);
   const faces = useEach(listed, ({ runs }, id) => runs.get(id)?.face ?? null);
   const poses = usePoses(

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { columnsOf, columnsParameter, groupedBy, groupingOf, USUAL } from "./columns";
+import { columnsOf, columnsParameter, groupName, groupedBy, groupingOf, USUAL } from "./columns";
 import { parseViews, withView } from "./views";
 
 const ids = (text: string) => columnsOf(new URLSearchParams(text)).map(({ id }) => id);
@@ -21,6 +21,10 @@ describe("the columns of the list of runs", () => {
 describe("groups", () => {
   it("keep the order of the list", () => {
     expect(groupedBy(["b", "a", "b"])).toEqual([["b", [0, 2]], ["a", [1]]]); // prettier-ignore
+  });
+
+  it("have no name for a run that was just removed for good", () => {
+    expect(["", "state", "tag", "viscosity"].map((group) => groupName(undefined, group))).toEqual(["", "", "", ""]); // prettier-ignore
   });
 
   it("are by what the page knows", () => {

@@ -141,7 +141,9 @@ export function groupingOf(address: URLSearchParams): string {
 }
 
 /** The group of a run; empty without a grouping. */
-export const groupName = (run: Run, grouping: string): string => OF_GROUP[grouping]?.(run) ?? "";
+/** A run that was just removed for good has no group. */
+export const groupName = (run: Run | undefined, grouping: string): string =>
+  (run && OF_GROUP[grouping]?.(run)) ?? "";
 
 /** The places of each group; groups and their members keep the order of the list. */
 export function groupedBy(names: readonly string[]): [name: string, places: number[]][] {
