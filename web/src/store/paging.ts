@@ -1,6 +1,6 @@
 /** A list that is read page by page. */
 
-import { useEffect, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { messageOf } from "../api/problem";
 import { useStore } from "./store";
 
@@ -13,31 +13,46 @@ export interface Pages<T> {
   /** Null before the first page. */
   items: T[] | null;
   error: string | null;
-  /** Load the next page; null after the last one. */
+  /** Load the next page, unless one is loaded just now; null after the last one. */
   more: (() => void) | null;
   replace: (changed: T) => void;
 }
 
+type Read<T> = (cursor?: string) => Promise<Page<T>>;
+
+/** Reads the first page or, with a cursor, the next one; calls back with all items so far. */
+export function pagesOf<T>(read: Read<T>, show: (page: Page<T>) => void, fail: (reason: unknown) => void) {
+  let newest = 0;
+  let loading = false;
+  return async (before: Page<T> | null): Promise<void> => {
+    if (before && loading) return;
+    loading = true;
+    const request = ++newest;
+    try {
+      const { items, next } = await read(before?.next ?? undefined);
+      if (request === newest) show({ items: [...(before?.items ?? []), ...items], next });
+    } catch (reason) {
+      if (request === newest) fail(reason);
+    }
+    if (request === newest) loading = false; // Otherwise the list was begun anew.
+  };
+}
+
 /** The list is read again after every reset of the store. */
-export function usePages<T>(read: (cursor?: string) => Promise<Page<T>>, key: (item: T) => string): Pages<T> {
+export function usePages<T>(read: Read<T>, key: (item: T) => string): Pages<T> {
   const [page, setPage] = useState<Page<T> | null>(null);
   const [error, setError] = useState<string | null>(null);
   const epoch = useStore((state) => state.epoch);
-  const load = async (cursor?: string) => {
-    try {
-      const { items, next } = await read(cursor);
-      setPage((old) => ({ items: [...(cursor ? (old?.items ?? []) : []), ...items], next }));
-      setError(null);
-    } catch (reason) {
-      setError(messageOf(reason));
-    }
+  const show = (found: Page<T>) => {
+    setPage(found);
+    setError(null);
   };
-  useEffect(() => void load(), [epoch]);
-  const next = page?.next;
+  const load = useRef(pagesOf(read, show, (reason) => setError(messageOf(reason)))).current;
+  useEffect(() => void load(null), [epoch]);
   return {
     items: page?.items ?? null,
     error,
-    more: next ? () => void load(next) : null,
+    more: page?.next ? () => void load(page) : null,
     replace: (changed) =>
       setPage(
         (old) =>
