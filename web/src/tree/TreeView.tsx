@@ -164,6 +164,7 @@ function TreePort({ elements: { port, picture, overlay }, loaded, view, stage }:
       <canvas ref={picture} class="tree-picture" />
       <canvas ref={overlay} class="tree-overlay" />
       {!loaded && <p class="quiet loading">{text.arranging}</p>}
+      {loaded?.layout.totalRows === 0 && <p class="quiet">{text.noElites}</p>}
     </div>
   );
 }

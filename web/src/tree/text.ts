@@ -14,6 +14,7 @@ export const text = {
   failed: (reason: string) => `The tree could not be drawn: ${reason}`,
   summary: (creatures: string, first: string, now: string) =>
     `${creatures} creatures, ${first} first ${first === "1" ? "ancestor" : "ancestors"}, ${now} ${now === "1" ? "elite" : "elites"} now.`,
+  noElites: "None of these creatures is an elite now.",
   one: "This creature has no relatives that the server knows.",
   label:
     "Tree of life. Time runs from left to right. The left arrow key moves to the parent, the right one along the line of descent, up and down to the neighbours. Enter opens a creature, plus and minus zoom, 0 shows the whole tree, Shift with arrow keys moves the window, Escape clears the selection.",

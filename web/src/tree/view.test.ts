@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import { NONE } from "../decode/phylogeny";
 import { press } from "./keys";
 import { landmarksOf, ranked } from "./landmarks";
-import { chainsOf, layoutOf } from "./layout";
+import { chainsOf, layoutOf, surviving } from "./layout";
 import { lineOf, nearest, otherParents, relativeAt } from "./nearest";
 import { shadesOf } from "./shades";
 import { strokesOf } from "./strokes";
@@ -49,6 +49,22 @@ describe("a view", () => {
   it("finds the zoom of a height", () => {
     expect(scalesOf(extent, SIZE, zoomOf(26, extent, SIZE)).y).toBeCloseTo(26, 6);
     expect(scalesOf(extent, SIZE, 1).y).toBeCloseTo(64, 6);
+  });
+});
+
+describe("a tree of which nothing is shown", () => {
+  it("has a finite view, from which the whole tree comes back", () => {
+    const lost = { ...tree, lost: new Int32Array(tree.count).fill(1) };
+    const nothing = layoutOf(tree, surviving(lost, layout.parent));
+    expect(nothing.totalRows).toBe(0);
+    const empty = extentOf(tree, nothing);
+    const close = clamped({ ...start, zoom: 0.5 }, extent, SIZE);
+    for (const view of [clamped(close, empty, SIZE), clamped(whole(empty), empty, SIZE)]) {
+      expect(Object.values(view).every(Number.isFinite)).toBe(true);
+      const back = clamped(view, extent, SIZE);
+      expect(Object.values(back).every(Number.isFinite)).toBe(true);
+    }
+    expect(nearest(tree, nothing, [500, 300], start, scalesOf(empty, SIZE, 0), SIZE, Infinity)).toBe(NONE);
   });
 });
 

@@ -44,6 +44,7 @@ export function extentOf({ time, count }: Phylogeny, { parent, row, totalRows }:
     lastTime = Math.max(lastTime, time[i]!);
     if (parent[i] !== NONE) gaps.push(time[i]! - time[parent[i]!]!);
   }
+  if (totalRows === 0) return { firstTime: 0, lastTime: 0, rows: 0, gap: 1 }; // Nothing is shown.
   const gap = Int32Array.from(gaps).sort()[Math.floor(GAP_SHARE * gaps.length)] ?? 1;
   return { firstTime, lastTime, rows: totalRows, gap };
 }
