@@ -5,6 +5,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { STEPS_PER_SECOND, useClock, useKeys } from "../replay/clock";
 import { showFailure } from "../store/toasts";
 import { type Size, prefersReducedMotion, px, useSize } from "../ui/canvas";
+import { useLeaving } from "../ui/forms";
 import { type Lane, drawRace, isOver } from "./race";
 import { gifOf } from "./gif";
 import { canFilm, film, save, savePicture } from "./recording";
@@ -76,17 +77,18 @@ interface ExportsProps {
 /** A picture of this moment, and a film from the start until the first one has arrived. */
 function Exports({ canvas, lanes, size, pace, onStart, isOver }: ExportsProps) {
   const [filming, setFilming] = useState(false);
+  const leaving = useLeaving();
   const make = async () => {
     setFilming(true);
     onStart();
-    await film(canvas.current!, text.fileName, isOver).catch(showFailure);
+    await film(canvas.current!, text.fileName, isOver, leaving).catch(showFailure);
     setFilming(false);
   };
   const [drawn, setDrawn] = useState<number | null>(null);
   const makeGif = async () => {
     setDrawn(0);
     await gifOf(lanes, size, pace * STEPS_PER_SECOND, setDrawn)
-      .then((blob) => save(blob, `${text.fileName}.gif`))
+      .then((blob) => leaving.aborted || save(blob, `${text.fileName}.gif`))
       .catch(showFailure);
     setDrawn(null);
   };

@@ -21,23 +21,27 @@ export function savePicture(canvas: HTMLCanvasElement, name: string): void {
   canvas.toBlob((blob) => blob && save(blob, `${name}.png`));
 }
 
-/** Record a canvas until `isOver`, half a minute at most, and save the film. */
-export async function film(canvas: HTMLCanvasElement, name: string, isOver: () => boolean): Promise<void> {
+/** Record a canvas until `isOver`, half a minute at most, and save the film unless it is aborted. */
+export async function film(
+  canvas: HTMLCanvasElement,
+  name: string,
+  isOver: () => boolean,
+  signal: AbortSignal,
+): Promise<void> {
   const [type, ending] = kind()!;
-  const recorder = new MediaRecorder(canvas.captureStream(FRAMES_PER_SECOND), {
-    mimeType: type,
-    videoBitsPerSecond: BITS_PER_SECOND,
-  });
+  const stream = canvas.captureStream(FRAMES_PER_SECOND);
+  const recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: BITS_PER_SECOND });
   const parts: Blob[] = [];
   recorder.addEventListener("dataavailable", ({ data }) => parts.push(data));
   const stopped = new Promise((resolve) => recorder.addEventListener("stop", resolve));
   recorder.start();
   const begun = performance.now();
-  while (!isOver() && performance.now() - begun < LONGEST_MS)
+  while (!signal.aborted && !isOver() && performance.now() - begun < LONGEST_MS)
     await new Promise((resolve) => setTimeout(resolve, LOOK_MS));
   recorder.stop();
   await stopped;
-  save(new Blob(parts, { type }), `${name}.${ending}`);
+  for (const track of stream.getTracks()) track.stop();
+  if (!signal.aborted) save(new Blob(parts, { type }), `${name}.${ending}`);
 }
 
 export function save(blob: Blob, name: string): void {

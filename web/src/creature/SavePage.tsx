@@ -3,19 +3,24 @@
 import { useState } from "preact/hooks";
 import { saveFile } from "../api/files";
 import type { About } from "../offline/page";
-import { orShowError, showToast } from "../store/toasts";
+import { showFailure, showToast } from "../store/toasts";
+import { useLeaving } from "../ui/forms";
 import { bytes, shortId } from "../ui/format";
 import { text } from "./text";
 
 export function SavePage(about: About) {
   const [busy, setBusy] = useState(false);
+  const leaving = useLeaving();
   const save = async () => {
     setBusy(true);
-    const page = await orShowError(made(about));
+    try {
+      const page = await made(about, leaving);
+      saveFile(page, `creature-${shortId(about.creature.sha256)}.html`);
+      showToast({ kind: "note", text: text.savedPage(bytes(page.size)) });
+    } catch (error) {
+      if (!leaving.aborted) showFailure(error);
+    }
     setBusy(false);
-    if (!page) return;
-    saveFile(page, `creature-${shortId(about.creature.sha256)}.html`);
-    showToast({ kind: "note", text: text.savedPage(bytes(page.size)) });
   };
   return (
     <button disabled={busy} onClick={() => void save()} title={text.savePageAbout}>
@@ -24,4 +29,5 @@ export function SavePage(about: About) {
   );
 }
 
-const made = async (about: About): Promise<Blob> => (await import("../offline/page")).pageOf(about);
+const made = async (about: About, signal: AbortSignal): Promise<Blob> =>
+  (await import("../offline/page")).pageOf(about, signal);

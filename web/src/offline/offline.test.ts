@@ -1,11 +1,18 @@
 /** A creature as one HTML file. */
 
-import { describe, expect, it } from "vitest";
+import { afterEach, describe, expect, it, vi } from "vitest";
+import * as api from "../api/client";
 import { type Replay, decodeReplay } from "../decode/replay";
 import { replayBytes } from "../decode/replay.fixture";
 import { packMotion, unpackMotion } from "./motion";
-import { filled, forScript } from "./page";
+import { type About, filled, forScript, pageOf } from "./page";
 import { packed, unpacked } from "./packing";
+
+vi.mock("../api/client", () => ({
+  readReplay: vi.fn(() => Promise.resolve(null)),
+  readEvaluation: vi.fn(() => Promise.resolve(null)),
+}));
+afterEach(() => void vi.unstubAllGlobals());
 
 const through = (replay: Replay) => unpackMotion(packMotion(replay).buffer);
 
@@ -59,5 +66,24 @@ describe("the page", () => {
 
   it("needs a template with both places", () => {
     expect(() => filled("<!--title-->", "Eel", {})).toThrow("one place for data");
+  });
+});
+
+describe("a page that is left while its replay is rendered", () => {
+  it("asks no more", async () => {
+    vi.useFakeTimers();
+    vi.stubGlobal("fetch", () => Promise.resolve(new Response("")));
+    const leaving = new AbortController();
+    const about = { title: "Eel", address: null, creature: { sha256: "ab" } } as About;
+    const page = expect(pageOf(about, leaving.signal)).rejects.toThrow("aborted");
+    await vi.advanceTimersByTimeAsync(2500);
+    const asked = vi.mocked(api.readReplay).mock.calls.length;
+    expect(asked).toBe(3);
+    leaving.abort();
+    await page;
+    await vi.advanceTimersByTimeAsync(5000);
+    expect(vi.mocked(api.readReplay).mock.calls.length).toBe(asked);
+    expect(vi.mocked(api.readEvaluation).mock.calls.length).toBe(asked);
+    vi.useRealTimers();
   });
 });

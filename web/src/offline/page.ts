@@ -18,12 +18,13 @@ export interface About {
 
 const TEMPLATE = "/saved.html";
 
-export async function pageOf(about: About): Promise<Blob> {
+/** Throws what the signal says when it is aborted. */
+export async function pageOf(about: About, signal: AbortSignal): Promise<Blob> {
   const sha = about.creature.sha256;
   const [template, replay, evaluation, kernel] = await Promise.all([
     fetch(TEMPLATE).then((answer) => answer.text()),
-    ready(() => api.readReplay(sha)),
-    ready(() => api.readEvaluation(sha)),
+    ready(() => api.readReplay(sha), signal),
+    ready(() => api.readEvaluation(sha), signal),
     isInstalled ? kernelBytes() : null,
   ]);
   const data = {
@@ -51,8 +52,13 @@ export const forScript = (value: unknown) => JSON.stringify(value).replaceAll("<
 
 const escaped = (text: string) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
 
-/** Ask until the server has made it. */
-const ready = <T>(ask: () => Promise<T | null>) =>
+/** Ask until the server has made it, or nobody wants it. */
+const ready = <T>(ask: () => Promise<T | null>, signal: AbortSignal) =>
   new Promise<T>((value, reject) => {
-    poll(ask, { value, note: () => {}, error: (message) => reject(new Error(message)) });
+    signal.throwIfAborted();
+    const end = poll(ask, { value, note: () => {}, error: (message) => reject(new Error(message)) });
+    signal.addEventListener("abort", () => {
+      end();
+      reject(signal.reason as Error);
+    });
   });
