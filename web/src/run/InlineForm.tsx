@@ -1,6 +1,7 @@
 /** A short form in the place of the button that opened it. */
 
 import type { ComponentChildren, RefObject } from "preact";
+import { composes } from "../ui/forms";
 import { text } from "./text";
 
 interface Props {
@@ -18,7 +19,7 @@ export function InlineForm({ onSubmit, onClose, closeButton, children }: Props) 
         event.preventDefault();
         onSubmit();
       }}
-      onKeyDown={(event) => event.key === "Escape" && onClose()}
+      onKeyDown={(event) => event.key === "Escape" && !composes(event) && onClose()}
     >
       {children}
       <button ref={closeButton} type="button" class="slim" onClick={onClose}>

@@ -1,6 +1,7 @@
 /** A text field for editing in place. */
 
 import { useLayoutEffect, useRef } from "preact/hooks";
+import { composes } from "./forms";
 
 interface Props {
   label: string;
@@ -33,6 +34,7 @@ export function InlineText({ label, value, limit, long = false, list, onDone }: 
     defaultValue: value,
     onBlur: () => end(true),
     onKeyDown: (event: KeyboardEvent) => {
+      if (composes(event)) return;
       if (event.key === "Escape") end(false);
       if (event.key === "Enter" && (!long || event.ctrlKey || event.metaKey)) {
         event.preventDefault();

@@ -37,5 +37,15 @@ export function newIdempotencyKey(): string {
   return [...parts].map((part) => part.toString(16).padStart(8, "0")).join("");
 }
 
+/** True for a key that an input method takes, as Enter to accept a conversion. */
+export const composes = (event: KeyboardEvent) => event.isComposing || event.key === "Process";
+
+/** A signal that is aborted when the component is left. */
+export function useLeaving(): AbortSignal {
+  const leaving = useRef(new AbortController());
+  useEffect(() => () => leaving.current.abort(), []);
+  return leaving.current.signal;
+}
+
 /** Elements that take text or use most keys themselves. */
 export const TEXT_FIELDS = "select, textarea, [contenteditable], input:not([type=range], [type=checkbox])";
