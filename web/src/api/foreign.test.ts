@@ -2,7 +2,7 @@
 
 import { describe, expect, it } from "vitest";
 import { nameOf } from "../decode/identity";
-import { foreignFileOf, verified } from "./foreign";
+import { foreignFileOf, limited, verified } from "./foreign";
 import { foreignFileUrl, foreignNamesUrl, importPage } from "./shareAddress";
 import type { Creature } from "./types";
 
@@ -55,5 +55,27 @@ describe("a file", () => {
     expect([found.creature.sha256, found.ancestors.length]).toEqual([creature(1).sha256, 1]);
     const forged = { ...creature(2), sha256: SHA };
     expect(() => verified({ ...creature(1), ancestors: [forged] })).toThrow(`SHA-256 ${SHA}`);
+  });
+
+  it("that is no creature is refused", () => {
+    for (const body of [null, [], {}, { identity: null }, { ...creature(1), ancestors: [{}] }]) {
+      expect(() => verified(body as never)).toThrow("no creature");
+    }
+  });
+
+  it("of any size is read up to the limit alone", async () => {
+    let [sent, cancelled] = [0, false];
+    const endless = new ReadableStream<Uint8Array>({
+      pull: (controller) => {
+        sent += 100;
+        controller.enqueue(new Uint8Array(100));
+      },
+      cancel: () => void (cancelled = true),
+    });
+    await expect(limited(new Response(endless), 1000)).rejects.toThrow("at most 1000 bytes");
+    expect(sent).toBeLessThan(2000);
+    expect(cancelled).toBe(true);
+    const whole = await limited(new Response("ab".repeat(500)), 1000);
+    expect(await whole.text()).toBe("ab".repeat(500));
   });
 });

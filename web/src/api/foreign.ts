@@ -14,6 +14,8 @@ export interface ForeignCreature {
 
 /** The largest file that a server imports. */
 const MAX_BYTES = 8 << 20;
+/** For all of it. */
+const PATIENCE_MS = 60_000;
 const NAME = /^[0-9a-f]{64}$/;
 
 /** Read a file without telling its server who asks; throw unless each hash is right. */
@@ -29,8 +31,11 @@ export async function readForeignCreature(url: string): Promise<ForeignCreature>
 
 /** The names of all creatures of a share, the best first. */
 export async function readForeignNames(url: string): Promise<string[]> {
-  const { creatures } = (await readForeign(url)).body as { creatures: string[] };
-  return creatures.filter((name) => NAME.test(name));
+  const { creatures } = ((await readForeign(url)).body ?? {}) as { creatures?: unknown };
+  if (!Array.isArray(creatures)) throw new Error(text.noShare);
+  return (creatures as unknown[]).filter(
+    (name): name is string => typeof name === "string" && NAME.test(name),
+  );
 }
 
 /** The file of a creature of a share, from the address of its names; without ancestors. */
@@ -38,17 +43,55 @@ export const foreignFileOf = (namesUrl: string, name: string) =>
   `${namesUrl.replace(/creatures\.json$/, "creature.json")}?creature=${name}&ancestors=false`;
 
 async function readForeign(url: string): Promise<{ file: Blob; body: unknown }> {
-  const answer = await fetch(url, { credentials: "omit", referrerPolicy: "no-referrer", redirect: "error" });
-  const file = await answer.blob();
-  if (file.size > MAX_BYTES) throw new Problem(answer.status, { title: text.tooLarge(file.size, MAX_BYTES) });
-  const body: unknown = JSON.parse(await file.text());
-  if (!answer.ok) throw problemOf(answer.status, body as never);
+  const signal = AbortSignal.timeout(PATIENCE_MS);
+  const answer = await fetch(url, {
+    credentials: "omit",
+    referrerPolicy: "no-referrer",
+    redirect: "error",
+    signal,
+  });
+  const file = await limited(answer);
+  const body = parsed(await file.text());
+  if (!answer.ok) throw problemOf(answer.status, body);
   return { file, body };
+}
+
+/** The body of an answer; a larger one than a server imports is not read to its end. */
+export async function limited(answer: Response, most = MAX_BYTES): Promise<Blob> {
+  const parts: Uint8Array<ArrayBuffer>[] = [];
+  let size = 0;
+  for await (const part of chunks(answer)) {
+    size += part.length;
+    if (size > most) throw new Problem(answer.status, { title: text.tooLarge(most) });
+    parts.push(part);
+  }
+  return new Blob(parts);
+}
+
+/** Pieces of a body; it is cancelled where the caller stops. Safari's streams cannot be iterated. */
+async function* chunks({ body }: Response) {
+  const reader = body!.getReader();
+  try {
+    for (let { done, value } = await reader.read(); !done; { done, value } = await reader.read())
+      yield value!;
+  } finally {
+    await reader.cancel();
+  }
+}
+
+/** What a file says; null for text that is not JSON. */
+function parsed(text: string): unknown {
+  try {
+    return JSON.parse(text);
+  } catch {
+    return null;
+  }
 }
 
 /** The creature of a file and its ancestors; throw unless each hash is right. */
 export function verified(body: Creature & { ancestors?: Creature[] }) {
-  const { ancestors = [], ...creature } = body;
+  const { ancestors = [], ...creature } = body ?? {};
+  if (![creature, ...ancestors].every((each) => each?.identity)) throw new Error(text.noShare);
   for (const { identity, sha256 } of [creature, ...ancestors]) {
     const found = nameOf(identity);
     if (found !== sha256) throw new Error(text.wrongHash(sha256, found));

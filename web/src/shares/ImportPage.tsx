@@ -55,7 +55,8 @@ function Incoming({ url }: { url: string }) {
 }
 
 function explain(reason: unknown, host: string): never {
-  throw reason instanceof TypeError ? new Error(text.unreachable(host)) : reason;
+  const silent = reason instanceof TypeError || (reason as Error).name === "TimeoutError";
+  throw silent ? new Error(text.unreachable(host)) : reason;
 }
 
 function Verified({ creature, ancestors, file, host }: ForeignCreature & { host: string }) {
