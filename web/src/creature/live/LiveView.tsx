@@ -2,6 +2,7 @@
 
 import type { ComponentChildren } from "preact";
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { decodeEvaluation } from "../../decode/evaluation";
 import type { FieldName } from "../../replay/fields";
 import { text as replayText } from "../../replay/text";
 import type { Live, Push } from "../../simulate/live";
@@ -94,12 +95,15 @@ function useJoining(others: Others | null, wishes: Wishes) {
   const { value, error } = usePolled(picked && others ? () => others.readInputs(picked) : null, [picked]);
   useEffect(() => {
     if (!value) return;
-    wishes.joining.push(value);
-    tell(text.joined(name.current));
+    const { uncovered } = decodeEvaluation(value);
+    if (uncovered === null) wishes.joining.push(value);
+    tell(uncovered === null ? text.joined(name.current) : text.uncovered(name.current, uncovered));
     setPicked(null);
   }, [value]);
   useEffect(() => {
-    if (error) tell(text.refused(name.current, error));
+    if (!error) return;
+    tell(text.refused(name.current, error));
+    setPicked(null); // It can be picked again.
   }, [error]);
   return {
     note: told,

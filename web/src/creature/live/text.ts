@@ -18,5 +18,7 @@ export const text = {
   others: "Let others join",
   joining: (name: string) => `${name} is prepared …`,
   joined: (name: string) => `${name} swims too.`,
+  uncovered: (name: string, reason: string) =>
+    `${name} cannot join: the native kernel does not cover ${reason}.`,
   refused: (name: string, reason: string) => `${name} cannot join. ${reason}`,
 };
