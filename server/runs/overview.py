@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import and_, func, or_, select
+from sqlalchemy import and_, case, func, or_, select
 from sqlalchemy.orm import Session
 
 from ..auth import tokens
@@ -61,10 +61,14 @@ def _curves(session: Session, runs: Sequence[Run]) -> dict[UUID, list[Generation
 
 
 def faces_of(session: Session, runs: Sequence[Run]) -> dict[UUID, str]:
-    """Return a creature of each run that has one: its best elite, or its newest result's."""
+    """Return a creature of each run that has one: its best elite, or its newest result's.
+
+    A share has a run as it was, so that later elites do not count.
+    """
+    last = case({run.id: run.generation for run in runs}, value=Run.id) if runs else 0
     best = (
         select(Elite.creature)
-        .where(Elite.run_id == Run.id, Elite.fitness.is_not(None))
+        .where(Elite.run_id == Run.id, Elite.fitness.is_not(None), Elite.generation <= last)
         .order_by(Elite.fitness.desc(), Elite.cell.desc())
         .limit(1)
     )

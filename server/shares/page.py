@@ -59,12 +59,12 @@ def read_share_page(
     if not (static_files.BUILT / "index.html").is_file():
         return HTMLResponse(static_files.MISSING, 503)
     index = (static_files.BUILT / "index.html").read_text()
+    headers = {"Content-Security-Policy": EMBEDDABLE} if rest == "embed" else None
     try:
         share = find_live(session, slug)
     except ProblemError as error:
-        return HTMLResponse(index, error.problem.status)
+        return HTMLResponse(index, error.problem.status, headers=headers)
     request.state.listed = share.listed
-    headers = {"Content-Security-Policy": EMBEDDABLE} if rest == "embed" else None
     services: Services = request.app.state.services
     previews.order(services, session, share.cover, anonymous=True)
     has_film = renderings.find(session, share.cover, LOOP) is not None

@@ -34,6 +34,7 @@ def test_an_archive_is_shared_as_it_was(through, archive, attempt, report, run_i
     assert through(slug, f"{under}/archive").json() == before
     assert through(slug, f"{under}/archive", params={"generation": 3}).json() == before
     assert before["cell"] == [3, 7]
+    assert through(slug, under).json()["face"] == before["creature"][0]
     history = through(slug, f"{under}/archive/history").json()
     assert history["fitness"] == [1.0, 2.0, 1.5]
     assert through(slug, f"{under}/generations").json()["generation"] == [1, 2]
