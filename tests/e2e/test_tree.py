@@ -239,6 +239,25 @@ def test_fingers_select_first_and_pinch(shared, browser):
     context.close()
 
 
+def test_a_shared_tree_without_elites_says_so_and_comes_back(shared, page):
+    product = shared.product
+    best = best_of(product, shared.finished("search"))
+    slug = product.http.post("/api/v1/shares", json={"creature": best}).json()["slug"]
+    page.emulate_media(reduced_motion="reduce")
+    page.goto(f"{product.url}/s/{slug}/tree")
+    painted(page)
+    wait_until_still(overlay(page))
+    before = picture(overlay(page))
+    choice = page.get_by_role("combobox", name="Show")
+    choice.select_option("Lines of the elites now")
+    expect(page.get_by_text("None of these creatures is an elite now.")).to_be_visible()
+    page.get_by_role("button", name="Zoom in").click()
+    choice.select_option("All births")
+    page.get_by_role("button", name="Whole tree").click()
+    wait_until_still(overlay(page))
+    assert picture(overlay(page)) == before
+
+
 def test_a_run_without_elites_and_a_tree_that_fails_say_so(idle, page, complaints):
     queued = idle.product.submit(TINY | {"seed": 77})
     page.goto(f"{idle.product.url}/runs/{queued}/tree")
