@@ -156,6 +156,19 @@ def test_latex_is_a_booktabs_table_of_escaped_words(group_of):
     assert {line.count(" & ") for line in body} == {6, 7}
 
 
+def test_latex_keeps_minus_signs_and_words(group_of):
+    """Two hyphens before a minus would be a dash of TeX: -0.8 to -0.6 would lose a sign."""
+    low = [-x for x in SLOW]
+    groups = named({"point to point": group_of(low), "p": group_of([-9.0, -8, -7, -6, -5.5])})
+    text = tables.latex(compare(groups, ["qd_score", "qd_score>=-2"], FEW))
+    rows = [line for line in text.splitlines() if line.endswith(r"\\")]
+    assert r"QD score & point to point & 5 & $-$3 & $-$4 to $-$2 & $-$3 & " in rows[1]
+    assert rows[2].startswith(" & p & 5 & $-$7 & $-$8 to $-$6")
+    assert rows[3].startswith("evaluations to QD score -2 & point to point & 5 & ")
+    assert " & $U$ & $p$ & p (Holm) & $A_{12}$ & " in text
+    assert "---" not in text
+
+
 def test_tests_that_cannot_find_a_difference_are_said_to(group_of):
     scores = {"a": [1.0, 2, 3, 4, 5], "b": [6.0, 7, 8, 9, 10]}
     groups = named({name: group_of(values) for name, values in scores.items()})
