@@ -99,6 +99,23 @@ def test_unequal_evaluations_are_refused_with_the_point_at_which_to_compare(grou
     refused(groups, r"from 10, its first generation, to 40, its last, got 60", ["best@60"])
 
 
+def test_a_run_that_ended_before_others_reached_the_value_is_refused(group_of):
+    """Equal speeds of progress: the short runs would be later by their ends alone."""
+    short, long = group_of([2.0] * 5), group_of([4.0] * 5, generations=8)
+    groups = named({"short": short, "long": long})
+    refused(
+        groups,
+        r"2-seed0.h5, which ended at 40 evaluations without reaching it, and 4-seed0.h5, which "
+        "reached it at 50",
+        ["qd_score>=2.5"],
+    )
+    (result,) = compare(groups, ["qd_score>=2"], FEW).results
+    assert result.pairs[0].superiority == 0.5, "all reach it"
+    late = named({"short": short, "long": group_of([9.0] * 5, generations=8)})
+    (result,) = compare(late, ["qd_score>=2.5"], FEW).results
+    assert result.summaries[0].values == (np.inf,) * 5, "40 evaluations are more than 30"
+
+
 def test_specs_that_differ_in_a_group_are_refused_with_the_field(group_of, run):
     mixed = [*group_of(SLOW), run(9.0, seed=9, world__viscosity=0.3)]
     refused(named({"a": mixed, "b": group_of(FAST)}), r"`world.viscosity` 0.05 in .*and 0.3 in")
