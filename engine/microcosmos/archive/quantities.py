@@ -26,6 +26,8 @@ PREFIXES = {"km": 1e3, "m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6
 PREFIXES |= {"nm": 1e-9}
 TIMES = {"min": 60.0, "s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6}
 NUMBER = re.compile(r"\s*([0-9.]+(?:e[+-]?[0-9]+)?)\s*([^\W\d]+)\s*")
+PREFIXED = ("m", "s", "m/s")
+"""Units that are shown with a prefix."""
 SHOWN = ((1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
@@ -92,7 +94,12 @@ def like(viscosity: float) -> str:
 
 
 def shown(value: float, unit: str) -> str:
-    """Format a quantity with a prefix, such as `0.27 mm/s`."""
+    """Format a quantity, with a prefix where its unit takes one, such as `270 µm/s`.
+
+    A prefix counts before the power of a unit: a nm³ is 1e-27 m³.
+    """
+    if unit not in PREFIXED:
+        return f"{value:.3g} {unit}"
     size = abs(value)
     scale, prefix = next(((s, p) for s, p in SHOWN if size >= 0.9995 * s), SHOWN[-1])
     return f"{value / scale:.3g} {prefix}{unit}" if value else f"0 {unit}"

@@ -23,14 +23,16 @@ class Summary:
 
     group: str
     values: tuple[float, ...]
-    """In the order of the group's runs; infinite where a run does not reach the value."""
+    """In the order of the group's runs; infinite where a run does not reach the value, minus
+    infinity where it has no elites."""
     low: float
     median: float
     high: float
     middle_mean: float
     """The interquartile mean."""
     interval: tuple[float, float] | None
-    """95 % bootstrap interval of the interquartile mean; None without tests."""
+    """95 % bootstrap interval of the interquartile mean; None without tests, and where an end
+    is infinite."""
 
     @property
     def count(self) -> int:
@@ -175,15 +177,15 @@ def _result(
 
 def _summary(group: Group, values: np.ndarray, tested: bool, bootstrap: Bootstrap) -> Summary:
     low, median, high = quartiles(values)
-    finite = bool(np.isfinite(values).all())
+    interval = bootstrap.interval([values], middle_mean) if tested else (np.nan, np.nan)
     return Summary(
         group=group.name,
         values=tuple(values.tolist()),
         low=low,
         median=median,
         high=high,
-        middle_mean=float(middle_mean(values)) if finite else float("inf"),
-        interval=bootstrap.interval([values], middle_mean) if tested and finite else None,
+        middle_mean=float(middle_mean(values)),
+        interval=interval if np.isfinite(interval).all() else None,
     )
 
 

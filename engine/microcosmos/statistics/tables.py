@@ -146,7 +146,8 @@ def _runs(found: Comparison, result: Result) -> list[dict[str, Any]]:
 
 
 def document(found: Comparison) -> dict[str, Any]:
-    """Return all of a comparison as JSON's values; null where a run does not reach a value."""
+    """Return all of a comparison as JSON's values; null where a run does not reach a value, or
+    has no elites."""
     return {
         "groups": [
             {

@@ -171,3 +171,17 @@ def test_a_run_that_never_arrives_is_later_than_all_others():
     assert quartiles(times) == (20.0, 30.0, np.inf)
     assert superiority(times, np.array([25.0])) == 3 / 5
     assert mann_whitney(times, np.array([np.inf] * 5)).p < 1
+
+
+def test_an_archive_without_elites_is_worse_than_all_others():
+    best = np.array([-30.0, -np.inf, -10.0, -20.0, -np.inf])
+    assert quartiles(best) == (-np.inf, -30.0, -20.0)
+    assert superiority(best, np.array([-25.0])) == 2 / 5
+
+
+def test_a_mean_of_the_middle_half_is_finite_where_the_middle_half_is():
+    late = np.array([200.0] * 7 + [np.inf])
+    assert middle_mean(late) == 200
+    assert middle_mean(np.array([1.0, 2, 3, np.inf, np.inf])) == np.inf
+    low, high = Bootstrap(499).interval([late], middle_mean)
+    assert (low, high) == (200, np.inf), "three of eight are drawn late often enough"
