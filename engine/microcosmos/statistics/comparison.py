@@ -125,10 +125,10 @@ def _refuse_unequal(runs: Sequence[RunRecord], measure: Measure) -> None:
     if measure.reaches is not None:
         return _refuse_early(runs, measure)
     if measure.at is not None:
-        return
+        return None
     ends = {int(run.evaluations[-1]): run for run in reversed(runs)}
     if len(ends) < 2:
-        return
+        return None
     low, high = min(ends), max(ends)
     raise ValueError(
         f"`{measure.text}` needs runs with equal evaluations, got {low:,} in {ends[low].name} "

@@ -162,7 +162,8 @@ def cautions(found: Comparison) -> list[str]:
     values = [x for r in found.results for one in r.summaries for x in one.values]
     if float("-inf") in values:
         said.append(
-            "A run without elites has no best or mean fitness and counts as less than any other."
+            "A run without elites has no best or mean fitness, and counts as less than any "
+            "other."
         )
     if any(result.measure.curve in SUMS for result in found.results) and any(
         has_negative_fitness(run) for group in found.groups for run in group.runs
@@ -185,9 +186,10 @@ def aggregated(found: Aggregates) -> str:
         " and ".join(f"{path} {value_text(value)}" for path, value in task.items())
         for task in found.tasks
     )
+    count = "1 task" if len(found.tasks) == 1 else f"{len(found.tasks)} tasks"
     first = found.groups[0].group
     said = [
-        f"Over {len(found.tasks)} tasks ({tasks}); scores are relative to the median of "
+        f"Over {count} ({tasks}); scores are relative to the median of "
         f"{first} in the task. IQM is the mean of the middle half of all runs, and "
         "P(first > second) the mean over tasks of the share of pairs of runs."
     ]

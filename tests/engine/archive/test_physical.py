@@ -99,6 +99,21 @@ def test_quantities_have_a_prefix(value, expected):
     assert quantities.shown(value, "m/s") == expected
 
 
+@pytest.mark.fast
+@pytest.mark.parametrize(
+    ("unit", "expected"),
+    [
+        ("m^3/s^2", "-1.12e-07 m^3/s^2"),
+        ("1/s", "-1.12e-07 1/s"),
+        ("m", "-112 nm"),
+        ("s", "-112 ns"),
+    ],
+)
+def test_powers_of_units_have_no_prefix(unit, expected):
+    """A prefix counts before the power: 1 nm³ is 1e-27 m³."""
+    assert quantities.shown(-1.12e-7, unit) == expected
+
+
 def test_a_creature_and_its_row_of_the_archive_agree(run):
     best = json.loads(run.with_suffix(".best.json").read_bytes())
     alone, table = mc.physical(best, "1mm", "0.5s"), mc.physical(run, "1mm", "0.5s")

@@ -68,13 +68,13 @@ def test_tasks_may_be_lists(run):
     runs = [run(float(seed + 1), seed=seed) for seed in range(5)]
     found = across(named({"a": runs}), "qd_score", ["search.initial"], FEW)
     assert found.tasks == ({"search.initial": []},)
-    assert "Over 1 tasks (search.initial" in tables.aggregates_text([found])
+    assert "Over 1 task (search.initial" in tables.aggregates_text([found])
 
 
 def test_a_run_without_elites_has_no_score(run, group_of):
     empty = run(0.0, seed=5, curves={"coverage": np.zeros(4)})
     groups = named({"a": group_of([1.0] * 5), "b": [*group_of([2.0] * 4), empty]})
-    with pytest.raises(ValueError, match="needs elites in every run, got none in 0-seed5.h5"):
+    with pytest.raises(ValueError, match=r"needs elites in every run, got none in 0-seed5\.h5"):
         across(groups, "best", TASK, FEW)
 
 

@@ -51,7 +51,7 @@ def test_tables_say_that_a_run_has_no_elites(costs):
     found = compare(costs, ["best"], FEW)
     text = tables.text(found)
     assert "no elites to -20" in text
-    assert "A run without elites has no best or mean fitness and counts as less" in text
+    assert "A run without elites has no best or mean fitness, and counts as less" in text
     (measure,) = json.loads(tables.json(found))["measures"]
     assert measure["groups"][1]["values"] == [*BETTER, None, None]
 
