@@ -68,11 +68,22 @@ def test_lengths_are_read(text, expected):
 
 @pytest.mark.fast
 @pytest.mark.parametrize(
-    "text", ["1", "mm", "-1mm", "0mm", "1s", "1..2mm", "1 parsec", "1e999m"]
+    "text",
+    ["1", "mm", "-1mm", "0mm", "1s", "1..2mm", "1 parsec", "1e999m", "1e200m", "1e-200m"],
 )
 def test_other_lengths_are_refused(text):
     with pytest.raises(ValueError, match="`length` must be a number above 0 with a unit"):
         quantities.length_of(text)
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize("length", ["1e-12m", "1000km"])
+@pytest.mark.parametrize("period", ["1e-12s", "1e6s"])
+def test_the_ends_of_lengths_and_periods_have_scales(length, period):
+    real = quantities.Real.of(length, period)
+    found = physical.Physical(real.length, 10.0, real.period, 20.0, 0.1)
+    # ν = 0.1 cells²/step: a tenth of a hundredth of L² in a twentieth of T.
+    assert found.fluid == pytest.approx(0.02 * real.length**2 / real.period, rel=1e-12)
 
 
 @pytest.mark.fast
