@@ -52,12 +52,14 @@ def _archives(results: Results) -> Files:
 
 
 def _poses(results: Results) -> Files:
-    """Return the poses of every run's fittest creature."""
+    """Return the poses of the fittest creature of every run that has elites."""
     found = {}
     for id, one in results.runs.items():
         tree, attributes = load(one.data)
-        best = int(np.argmax(tree["archive"]["fitness"]))
-        found[f"poses/{id}.npz"] = streams(tree, attributes)[best].npz()
+        fitness = tree["archive"]["fitness"]
+        if len(fitness):
+            best = streams(tree, attributes)[int(np.argmax(fitness))]
+            found[f"poses/{id}.npz"] = best.npz()
     return found
 
 
