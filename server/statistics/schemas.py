@@ -19,7 +19,7 @@ class ComparedGroup(Wire):
 
 
 class GroupFigures(Wire):
-    """One measure of a group; None where a run does not reach the value."""
+    """One measure of a group; None where a run does not reach the value, or has no elites."""
 
     group: str
     n: int

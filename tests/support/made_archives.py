@@ -93,3 +93,23 @@ def made(
         "operators": '["random", "neat"]',
     }
     return file.dump(tree, attributes)
+
+
+def without_elites(data):
+    """Return the same run as if no creature had been feasible, as a search writes it."""
+    tree, attributes = file.load(data)
+    for name in ("qd_score", "coverage", "best", "mean"):
+        tree["curves"][name] = np.zeros_like(tree["curves"][name])
+    emptied = {name: _emptied(tree[name]) for name in ("archive", "lineage")}
+    return file.dump(tree | emptied, attributes)
+
+
+def _emptied(part):
+    return {
+        name: _emptied(one)
+        if isinstance(one, dict)
+        else one
+        if name == "centroids"
+        else one[:0]
+        for name, one in part.items()
+    }

@@ -5,6 +5,7 @@ import json
 import os
 from collections.abc import Sequence
 from io import StringIO
+from math import prod
 from pathlib import Path
 from typing import Any
 
@@ -41,7 +42,8 @@ def columns(data: bytes) -> Columns:
     archive = tree["archive"]
     genomes = archive["genomes"]
     arrays = [genomes[name].astype(np.float32) for name in sorted(genomes)]
-    solution = np.concatenate([x.reshape(len(x), -1) for x in arrays], axis=1)
+    rows = [x.reshape(len(x), prod(x.shape[1:])) for x in arrays]  # There may be no row.
+    solution = np.concatenate(rows, axis=1)
     spec = json.loads(attributes["spec"])["archive"]
     axes, names = spec["descriptors"], json.loads(attributes["measures"])
     place = scaled if tessellation(archive, spec) is None else unit

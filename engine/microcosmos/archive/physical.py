@@ -75,11 +75,13 @@ def of_archive(data: bytes, real: Real) -> tuple[list[Physical], dict[str, np.nd
     table, scene = export.columns(data), scene_of(json.loads(attributes["spec"]))
     streams = poses.streams(tree, attributes)
     scaled = [scaled_by(scene, one.length, real) for one in streams]
+    measured = [name for name in MEASURED if name in table]
     rows = [
-        columns(one, {name: table[name][i] for name in MEASURED if name in table})
+        columns(one, {name: table[name][i] for name in measured})
         for i, one in enumerate(scaled)
     ]
-    names = list(rows[0]) if rows else []
+    # An archive without elites has the same columns, of a body that nobody has.
+    names = columns(scaled_by(scene, 1.0, real), dict.fromkeys(measured, 0.0))
     found = {name: np.array([row[name] for row in rows], float) for name in names}
     return scaled, {"cell": table["index"], "creature": np.array(table["creature"])} | found
 

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import isfinite, log10
+from math import log10
 from typing import Self
 
 FLUIDS = {
@@ -25,7 +25,11 @@ LIKE = 1.5
 PREFIXES = {"km": 1e3, "m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6}
 PREFIXES |= {"nm": 1e-9}
 TIMES = {"min": 60.0, "s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6}
+SMALLEST, LARGEST = 1e-12, 1e6
+"""In m and s: powers of quantities beyond overflow."""
 NUMBER = re.compile(r"\s*([0-9.]+(?:e[+-]?[0-9]+)?)\s*([^\W\d]+)\s*")
+PREFIXED = ("m", "s", "m/s")
+"""Units that are shown with a prefix."""
 SHOWN = ((1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
@@ -54,25 +58,26 @@ class Real:
 
 def length_of(text: str) -> float:
     """Return a length such as `1mm` in metres. Raise `ValueError` for any other text."""
-    return _quantity("length", text, PREFIXES, "1mm or 50um")
+    return _quantity("length", text, PREFIXES, "1mm or 50um", "m")
 
 
 def period_of(text: str) -> float:
     """Return a time such as `0.5s` in seconds. Raise `ValueError` for any other text."""
-    return _quantity("period", text, TIMES, "0.5s or 20ms")
+    return _quantity("period", text, TIMES, "0.5s or 20ms", "s")
 
 
-def _quantity(field: str, text: str, known: Mapping[str, float], such: str) -> float:
+def _quantity(field: str, text: str, known: Mapping[str, float], such: str, si: str) -> float:
     found = NUMBER.fullmatch(text)
     if found and found[2] in known:
         try:
             value = float(found[1]) * known[found[2]]
         except ValueError:
             value = 0.0
-        if value > 0 and isfinite(value):
+        if SMALLEST <= value <= LARGEST:
             return value
     raise ValueError(
-        f"`{field}` must be a number above 0 with a unit, such as {such}; got {text!r}"
+        f"`{field}` must be a number above 0 with a unit, such as {such}, between "
+        f"{SMALLEST:g} and {LARGEST:g} {si}; got {text!r}"
     )
 
 
@@ -92,7 +97,12 @@ def like(viscosity: float) -> str:
 
 
 def shown(value: float, unit: str) -> str:
-    """Format a quantity with a prefix, such as `0.27 mm/s`."""
+    """Format a quantity, with a prefix where its unit takes one, such as `270 µm/s`.
+
+    A prefix counts before the power of a unit: a nm³ is 1e-27 m³.
+    """
+    if unit not in PREFIXED:
+        return f"{value:.3g} {unit}"
     size = abs(value)
     scale, prefix = next(((s, p) for s, p in SHOWN if size >= 0.9995 * s), SHOWN[-1])
     return f"{value / scale:.3g} {prefix}{unit}" if value else f"0 {unit}"

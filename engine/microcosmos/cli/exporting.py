@@ -90,9 +90,11 @@ def _open(client: Client, run: str, form: Format) -> tuple[RunFile, dict[str, Fi
 
 
 def _picture(run: RunFile) -> dict[str, File]:
-    """Return the map of the archive, if matplotlib is installed."""
+    """Return the map of an archive with elites, if matplotlib is installed."""
     from ..viz.figures import drawing
 
+    if not len(run.archive()["cell"]):
+        return {}
     with TemporaryDirectory() as folder, suppress(ImportError):
         path, out = Path(folder, "run.h5"), Path(folder, PICTURE)
         path.write_bytes(run.data)

@@ -1,6 +1,7 @@
 """README of a published run: its content, and the command that repeats it."""
 
 from collections.abc import Mapping, Sequence
+from shlex import quote
 from typing import Any
 
 from ..spec import breeding_refusal
@@ -14,7 +15,7 @@ CHOICES = "choices.json"
 
 def command(run: RunFile) -> str:
     """Return the command that repeats a run in the folder of its files."""
-    parts = ["microcosmos evolve", SPEC, "--out repeated.h5"]
+    parts = ["microcosmos evolve", SPEC, f"--out {out(run)}"]
     if run.spec.get("search", {}).get("initial"):
         parts.append("--from INITIAL")
     if "choices" in run.tree:
@@ -22,6 +23,11 @@ def command(run: RunFile) -> str:
     if run.plugins:
         parts.append("--module PLUGIN.py")
     return " ".join(parts)
+
+
+def out(run: RunFile) -> str:
+    """Return the file that the command writes, which is not that of the run."""
+    return "again.h5" if run.name == "repeated" else "repeated.h5"
 
 
 def readme(run: RunFile, title: str, licence: str, file: str, about: Mapping[str, str]) -> str:
@@ -36,7 +42,7 @@ def readme(run: RunFile, title: str, licence: str, file: str, about: Mapping[str
 ```sh
 pip install -r {REQUIREMENTS}
 {command(run)}
-sha256sum {file} repeated.h5
+sha256sum {quote(file)} {out(run)}
 ```
 
 {_repeated(run)}

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable, Iterator, Mapping
+from math import prod
 from typing import Any
 
 import numpy as np
@@ -95,8 +96,7 @@ def genomes(run: RunFile) -> Columns:
 
 def _listed(genes: np.ndarray) -> Ragged:
     """Rows have one length, but those of another run may have another."""
-    rows = genes.reshape(len(genes), -1)
-    return Ragged(rows.ravel(), np.full(len(rows), rows.shape[1]))
+    return Ragged(genes.ravel(), np.full(len(genes), prod(genes.shape[1:])))
 
 
 def curves(run: RunFile) -> Columns:

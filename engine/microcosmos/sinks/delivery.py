@@ -129,15 +129,15 @@ class Feed:
     def offer(self, message: Message) -> None:
         """Take a message, unless the queue is full; of archives only one may wait."""
         self._offered += 1
-        with self._lock:
+        with self._lock, suppress(Full):
             if message.kind == "archive" and self._archives:
                 return
-            self._archives += message.kind == "archive"
-        with suppress(Full):
             self._queue.put_nowait(message)
+            self._archives += message.kind == "archive"  # Of those that found room.
 
     def end(self, message: Message) -> None:
-        """Let the thread end after what waits; a full queue makes room."""
+        """Let the thread end after what waits; a full queue makes room. Nothing is offered
+        after it, so a picture that it drops need not be counted."""
         while True:
             with suppress(Full):
                 self._queue.put_nowait(message)

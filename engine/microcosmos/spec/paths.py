@@ -28,6 +28,13 @@ def _is_index(name: str, part: Any) -> bool:
     return whole and int(name) < len(part)
 
 
+def value(document: Any, path: str) -> Any:
+    """Return the value at a path of a document that has it."""
+    for name in path.split("."):
+        document = document[int(name)] if isinstance(document, list) else document[name]
+    return document
+
+
 def replaced(document: Any, path: str, value: Any) -> Any:
     """Return the document with another value at a path; a null on the way becomes a part."""
     return _replaced(document, path.split("."), value)

@@ -91,21 +91,22 @@ def across(
         )
         for i, j in combinations(range(len(groups)), 2)
     )
-    named = tuple(dict(zip(tasks, values, strict=True)) for values in keys)
+    named = tuple({path: split[0][key][0].fields[path] for path in tasks} for key in keys)
     points = tuple(along.tolist())
     return Aggregates(measure, named, aggregates, improvements, points, refusal, bootstrap)
 
 
-Split = Mapping[tuple, list[RunRecord]]
+Split = Mapping[tuple[str, ...], list[RunRecord]]
+"""Runs by the values of the tasks' fields as text, since some values are lists."""
 
 
 def _by_task(group: Group, tasks: Sequence[str]) -> Split:
-    found: dict[tuple, list[RunRecord]] = {}
+    found: dict[tuple[str, ...], list[RunRecord]] = {}
     for run in group.runs:
         missing = [path for path in tasks if path not in run.fields]
         if missing:
             raise ValueError(f"{run.name}: the spec has no field `{missing[0]}` for tasks")
-        found.setdefault(tuple(run.fields[path] for path in tasks), []).append(run)
+        found.setdefault(tuple(repr(run.fields[path]) for path in tasks), []).append(run)
     return found
 
 
@@ -114,8 +115,8 @@ def _refuse_unequal(groups: Sequence[Group], split: Sequence[Split], measure: Me
     for group, one in zip(groups, split, strict=True):
         if set(one) != set(first):
             raise ValueError(
-                f"every group needs the same tasks, got {sorted(map(str, first))} in "
-                f"{groups[0].name!r} and {sorted(map(str, one))} in {group.name!r}"
+                f"every group needs the same tasks, got {_listed(first)} in "
+                f"{groups[0].name!r} and {_listed(one)} in {group.name!r}"
             )
         if len({len(runs) for runs in one.values()}) > 1:
             counts = ", ".join(str(len(runs)) for runs in one.values())
@@ -133,10 +134,19 @@ def _refuse_unequal(groups: Sequence[Group], split: Sequence[Split], measure: Me
             )
 
 
+def _listed(tasks: Split) -> str:
+    return "; ".join(sorted(", ".join(values) for values in tasks))
+
+
 def _scores(
-    split: Sequence[Split], keys: Sequence[tuple], measure: Measure
+    split: Sequence[Split], keys: Sequence[tuple[str, ...]], measure: Measure
 ) -> list[list[np.ndarray]]:
     """Return scores by group, task and run, relative to the first group's median."""
+    for run in (run for one in split for key in keys for run in one[key]):
+        if np.isinf(measure.of(run)):
+            raise ValueError(
+                f"`{measure.text}` needs elites in every run, got none in {run.name}"
+            )
     raw = [[np.array([measure.of(run) for run in one[key]]) for key in keys] for one in split]
     scales = [float(np.median(values)) for values in raw[0]]
     if wrong := [scale for scale in scales if scale <= 0]:

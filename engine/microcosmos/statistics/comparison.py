@@ -10,6 +10,7 @@ import numpy as np
 from .effects import Bootstrap, middle_mean, quartiles, superiority
 from .groups import Group, differences, refuse_wrong
 from .measures import DEFAULT, Measure
+from .records import RunRecord
 from .testing import Test, holm, kruskal_wallis, mann_whitney
 
 FEWEST = 5
@@ -22,14 +23,16 @@ class Summary:
 
     group: str
     values: tuple[float, ...]
-    """In the order of the group's runs; infinite where a run does not reach the value."""
+    """In the order of the group's runs; infinite where a run does not reach the value, minus
+    infinity where it has no elites."""
     low: float
     median: float
     high: float
     middle_mean: float
     """The interquartile mean."""
     interval: tuple[float, float] | None
-    """95 % bootstrap interval of the interquartile mean; None without tests."""
+    """95 % bootstrap interval of the interquartile mean; None without tests, and where an end
+    is infinite."""
 
     @property
     def count(self) -> int:
@@ -96,8 +99,9 @@ def compare(
     refuse_wrong(groups)
     bootstrap = bootstrap or Bootstrap()
     asked = [Measure.parse(one) if isinstance(one, str) else one for one in measures]
+    runs = [run for group in groups for run in group.runs]
     for measure in asked:
-        _refuse_unequal(groups, measure)
+        _refuse_unequal(runs, measure)
     refusal = too_few(groups)
     results = [_result(groups, measure, not refusal, bootstrap) for measure in asked]
     return Comparison(
@@ -116,20 +120,41 @@ def too_few(groups: Sequence[Group]) -> str:
     return f"Tests need at least {FEWEST} seeds in each group, got {counts}."
 
 
-def _refuse_unequal(groups: Sequence[Group], measure: Measure) -> None:
-    """Raise `ValueError` where final values belong to unequal numbers of evaluations."""
-    if measure.at is not None or measure.reaches is not None:
-        return
-    runs = [run for group in groups for run in group.runs]
+def _refuse_unequal(runs: Sequence[RunRecord], measure: Measure) -> None:
+    """Raise `ValueError` where the number of evaluations alone could order the runs."""
+    if measure.reaches is not None:
+        return _refuse_early(runs, measure)
+    if measure.at is not None:
+        return None
     ends = {int(run.evaluations[-1]): run for run in reversed(runs)}
     if len(ends) < 2:
-        return
+        return None
     low, high = min(ends), max(ends)
     raise ValueError(
         f"`{measure.text}` needs runs with equal evaluations, got {low:,} in {ends[low].name} "
         f"and {high:,} in {ends[high].name}; compare at a number that all reach, as "
         f"{measure.curve}@{low}"
     )
+
+
+def _refuse_early(runs: Sequence[RunRecord], measure: Measure) -> None:
+    """Raise `ValueError` where a run ended before another one reached the value.
+
+    With more evaluations it might have been the earlier of the two.
+    """
+    reached = [(measure.of(run), run) for run in runs]
+    missing = [run for at, run in reached if at == np.inf]
+    finite = [one for one in reached if one[0] < np.inf]
+    if not missing or not finite:
+        return
+    short = min(missing, key=lambda run: run.evaluations[-1])
+    latest, other = max(finite, key=lambda one: one[0])
+    if (end := short.evaluations[-1]) < latest:
+        raise ValueError(
+            f"`{measure.text}` needs equal evaluations where a run does not reach the value, "
+            f"got {short.name}, which ended at {end:,.0f} evaluations without reaching it, and "
+            f"{other.name}, which reached it at {latest:,.0f}"
+        )
 
 
 def _result(
@@ -152,15 +177,15 @@ def _result(
 
 def _summary(group: Group, values: np.ndarray, tested: bool, bootstrap: Bootstrap) -> Summary:
     low, median, high = quartiles(values)
-    finite = bool(np.isfinite(values).all())
+    interval = bootstrap.interval([values], middle_mean) if tested else (np.nan, np.nan)
     return Summary(
         group=group.name,
         values=tuple(values.tolist()),
         low=low,
         median=median,
         high=high,
-        middle_mean=float(middle_mean(values)) if finite else float("inf"),
-        interval=bootstrap.interval([values], middle_mean) if tested and finite else None,
+        middle_mean=float(middle_mean(values)),
+        interval=interval if np.isfinite(interval).all() else None,
     )
 
 

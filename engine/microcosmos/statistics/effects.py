@@ -25,20 +25,22 @@ class Bootstrap:
         """Return the 95 % interval of a statistic of independent samples.
 
         Each sample is drawn again by itself, which is the stratified bootstrap where samples
-        are tasks (Agarwal et al. 2021). `statistic` takes the samples and `axis`.
+        are tasks (Agarwal et al. 2021). `statistic` takes the samples and `axis`. An end is
+        not finite where resamples beyond it have infinite statistics.
         """
         size = max(1, np.prod([len(one) for one in samples], dtype=float))
-        found = stats.bootstrap(
-            tuple(samples),
-            statistic,
-            paired=False,
-            vectorized=True,
-            n_resamples=self.resamples,
-            batch=int(max(1, min(self.resamples, CHUNK // min(size, CHUNK)))),
-            confidence_level=LEVEL,
-            method="percentile",
-            rng=np.random.default_rng(self.seed),
-        )
+        with np.errstate(invalid="ignore"):  # SciPy subtracts infinite statistics.
+            found = stats.bootstrap(
+                tuple(samples),
+                statistic,
+                paired=False,
+                vectorized=True,
+                n_resamples=self.resamples,
+                batch=int(max(1, min(self.resamples, CHUNK // min(size, CHUNK)))),
+                confidence_level=LEVEL,
+                method="percentile",
+                rng=np.random.default_rng(self.seed),
+            )
         return float(found.confidence_interval.low), float(found.confidence_interval.high)
 
 
@@ -63,7 +65,8 @@ def middle_mean(*samples: np.ndarray, axis: int = -1) -> Any:
 def quartiles(values: np.ndarray) -> tuple[float, float, float]:
     """Return lower quartile, median and upper quartile, by linear interpolation.
 
-    Infinite values, of runs that never reach a score, count as greater than all others.
+    Infinite values, of runs that never reach a score, count as greater than all others, and
+    minus infinity, of archives without elites, as less.
     """
     ordered = np.sort(values)
     low, middle, high = (
@@ -74,6 +77,6 @@ def quartiles(values: np.ndarray) -> tuple[float, float, float]:
 
 def _between(ordered: np.ndarray, place: float) -> float:
     below, above = ordered[int(np.floor(place))], ordered[int(np.ceil(place))]
-    if below == above:  # Also where both are infinite.
+    if below == above or np.isneginf(below):  # Also where both are infinite.
         return float(below)
     return float(below + (above - below) * (place - np.floor(place)))

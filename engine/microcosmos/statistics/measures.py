@@ -19,6 +19,12 @@ TITLES = {
 REEVALUATED = ("corrected_qd_score", "corrected_coverage", "hit_rate")
 """Curves with values only where elites were evaluated again."""
 
+OF_ELITES = ("best", "mean")
+"""Curves without a value while the archive is empty. Files then have 0, as for a creature that
+does not move, which beats every negative fitness."""
+SUMS = ("qd_score", "corrected_qd_score")
+"""Curves that add up fitness."""
+
 DEFAULT = ("qd_score", "coverage", "best")
 FORM = re.compile(
     r"(?P<curve>[a-z_][a-z0-9_]*)"
@@ -72,7 +78,8 @@ class Measure:
         return self.reaches is not None
 
     def of(self, run: RunRecord) -> float:
-        """Return the value; infinity where a run does not reach it.
+        """Return the value; infinity where a run does not reach it, minus infinity for the best
+        or mean fitness of an archive without elites.
 
         Raises `ValueError` for a curve that the run lacks, or a point beyond its end.
         """
@@ -84,7 +91,7 @@ class Measure:
         values = curve[:until]
         if self.curve in REEVALUATED and self.at is not None:
             values = values[np.isfinite(values)]
-        if not len(values) or not np.isfinite(values[-1]):
+        if not len(values) or np.isnan(values[-1]):
             raise ValueError(
                 f"{run.name}: `{self.text}` needs elites that were evaluated again by then "
                 "(`search.reevaluation`), got none"
@@ -95,7 +102,10 @@ class Measure:
         if self.curve not in run.curves:
             known = ", ".join(sorted(run.curves))
             raise ValueError(f"{run.name}: a curve must be one of {known}, got {self.curve!r}")
-        return np.asarray(run.curves[self.curve], np.float64)
+        values = np.asarray(run.curves[self.curve], np.float64)
+        if self.curve in OF_ELITES:
+            return np.where(np.asarray(run.curves["coverage"]) > 0, values, -np.inf)
+        return values
 
     def _until(self, run: RunRecord) -> int:
         """Return the number of generations that ended by `at`."""
@@ -107,3 +117,9 @@ class Measure:
                 f"generation, to {last:,}, its last, got {self.at:,}"
             )
         return int(np.searchsorted(run.evaluations, self.at, side="right"))
+
+
+def has_negative_fitness(run: RunRecord) -> bool:
+    """Return whether the best or mean fitness or the QD score is ever below 0."""
+    curves = [run.curves[name] for name in (*OF_ELITES, "qd_score") if name in run.curves]
+    return any(bool(np.any(np.asarray(one) < 0)) for one in curves)

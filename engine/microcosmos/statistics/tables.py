@@ -17,6 +17,10 @@ Cells = list[list[str]]
 GROUPS = ("measure", "group", "n", "median", "quartiles", "IQM", "95 %")
 PAIRS = ("measure", "first", "second", "U", "p", "p (Holm)", "A12", "95 %")
 OVERALL = ("measure", "groups", "H", "p")
+INTERVALS = ("quartiles", "95 %")
+"""Columns with two numbers in a cell."""
+SYMBOLS = {"A12": "$A_{12}$", "U": "$U$", "H": "$H$", "p": "$p$"}
+"""Titles of columns that LaTeX sets as mathematics."""
 COLUMNS = (
     *("table", "measure", "group", "other", "n", "low", "median", "high"),
     *("iqm", "iqm_low", "iqm_high", "test", "statistic", "p", "p_holm"),
@@ -142,7 +146,8 @@ def _runs(found: Comparison, result: Result) -> list[dict[str, Any]]:
 
 
 def document(found: Comparison) -> dict[str, Any]:
-    """Return all of a comparison as JSON's values; null where a run does not reach a value."""
+    """Return all of a comparison as JSON's values; null where a run does not reach a value, or
+    has no elites."""
     return {
         "groups": [
             {
@@ -204,24 +209,31 @@ def latex(found: Comparison) -> str:
 
 
 def _tabular(titles: Sequence[str], rows: Cells, columns: str) -> str:
-    lines = [f"\\begin{{tabular}}{{{columns}}}", "\\toprule", _row(titles), "\\midrule"]
+    head = _row([SYMBOLS.get(title, escaped(title)) for title in titles])
+    lines = [f"\\begin{{tabular}}{{{columns}}}", "\\toprule", head, "\\midrule"]
     before, several = "", len({row[0] for row in rows}) < len(rows)
     for row in rows:
         if several and before and row[0] != before:
             lines.append("\\addlinespace")
-        lines.append(_row(["" if row[0] == before else row[0], *row[1:]]))
+        shown = ["" if row[0] == before else row[0], *row[1:]]
+        cells = zip(shown, titles, columns, strict=True)
+        lines.append(_row([_cell(*one) for one in cells]))
         before = row[0]
     return "\n".join([*lines, "\\bottomrule", "\\end{tabular}"])
 
 
 def _row(cells: Sequence[str]) -> str:
-    return " & ".join(_letters(cell) for cell in cells) + r" \\"
+    return " & ".join(cells) + r" \\"
 
 
-def _letters(text: str) -> str:
-    text = text.replace("< 0.001", "<0.001")
-    found = escaped(text).replace("<", "$<$").replace(" to ", "--")
-    return {"A12": "$A_{12}$", "U": "$U$", "H": "$H$", "p": "$p$"}.get(text, found)
+def _cell(text: str, title: str, column: str) -> str:
+    """Return a cell for LaTeX; columns on the right have numbers, all others words."""
+    if column == "l":
+        return escaped(text)
+    found = escaped(text.replace("< ", "<")).replace("-", "$-$")
+    if title in INTERVALS and "-" not in text:  # A dash before a minus is hard to read.
+        found = found.replace(" to ", "--")
+    return found
 
 
 def aggregates_text(several: Sequence[Aggregates]) -> str:

@@ -7,8 +7,14 @@ from .aggregates import Aggregates
 from .comparison import Comparison, Pair
 from .effects import Bootstrap
 from .groups import Group
+from .measures import SUMS, has_negative_fitness
 
 NOT_REACHED = "not reached"
+NO_ELITES = "no elites"
+NEGATIVE = (
+    "Some runs have negative fitness. A QD score adds up fitness, so each elite with negative "
+    "fitness lowers it: compare coverage and best fitness instead."
+)
 MAX_FIELDS = 6
 """Fields in which specs differ that a sentence names."""
 MAX_PAIRS = 12
@@ -18,9 +24,10 @@ LEVEL = 0.05
 
 
 def number(value: float) -> str:
-    """Return a number with four digits; infinity is a value that a run does not reach."""
+    """Return a number with four digits; infinity is a value that a run does not reach, minus
+    infinity the fitness of an archive without elites."""
     if isinf(value):
-        return NOT_REACHED
+        return NOT_REACHED if value > 0 else NO_ELITES
     return f"{value:,.0f}" if abs(value) >= 10_000 else f"{value:.4g}"
 
 
@@ -132,7 +139,8 @@ def _pair(pair: Pair) -> str:
 
 
 def cautions(found: Comparison) -> list[str]:
-    """Return what a reader should know: other versions or devices, and few values of p."""
+    """Return what a reader should know: other versions or devices, few values of p, runs
+    without elites, and sums of negative fitness."""
     said = []
     if len(found.versions) > 1:
         said.append(f"Runs are of several versions: {', '.join(found.versions)}.")
@@ -151,6 +159,16 @@ def cautions(found: Comparison) -> list[str]:
             "Fewer evaluations to a value are better; a run that does not reach it counts as "
             "more than any other."
         )
+    values = [x for r in found.results for one in r.summaries for x in one.values]
+    if float("-inf") in values:
+        said.append(
+            "A run without elites has no best or mean fitness, and counts as less than any "
+            "other."
+        )
+    if any(result.measure.curve in SUMS for result in found.results) and any(
+        has_negative_fitness(run) for group in found.groups for run in group.runs
+    ):
+        said.append(NEGATIVE)
     return said
 
 
@@ -168,9 +186,10 @@ def aggregated(found: Aggregates) -> str:
         " and ".join(f"{path} {value_text(value)}" for path, value in task.items())
         for task in found.tasks
     )
+    count = "1 task" if len(found.tasks) == 1 else f"{len(found.tasks)} tasks"
     first = found.groups[0].group
     said = [
-        f"Over {len(found.tasks)} tasks ({tasks}); scores are relative to the median of "
+        f"Over {count} ({tasks}); scores are relative to the median of "
         f"{first} in the task. IQM is the mean of the middle half of all runs, and "
         "P(first > second) the mean over tasks of the share of pairs of runs."
     ]

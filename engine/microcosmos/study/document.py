@@ -1,14 +1,13 @@
 """The file of a study, as YAML or JSON; errors name the field."""
 
-import json
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidationError, field_validator, model_validator
 
-from ..optional import require
 from ..spec.base import Part, field_path
 from ..statistics.measures import DEFAULT, Measure
+from . import once
 
 Name = Annotated[str, Field(min_length=1, max_length=60, pattern=r"^[A-Za-z0-9][\w .+-]*$")]
 Export = Literal["csv", "json", "latex", "archive-csv", "poses-npz"]
@@ -101,6 +100,19 @@ class Study(Part):
     """Resamples of the bootstrap, whose seed is 0."""
 
     @model_validator(mode="after")
+    def refuse_one_file_of_two(self) -> Self:
+        """Raise `ValueError` where exports of two comparisons would be one file."""
+        files: dict[str, str] = {}
+        for name in self.comparisons:
+            other = files.setdefault(file_of(name), name)
+            if other != name:
+                raise ValueError(
+                    "`comparisons` needs names of different files, got "
+                    f"{other!r} and {name!r}, which are both {file_of(name)!r}"
+                )
+        return self
+
+    @model_validator(mode="after")
     def refuse_unknown_names(self) -> Self:
         for name, one in self.comparisons.items():
             groups = one.groups
@@ -132,6 +144,11 @@ class Study(Part):
         return name, self.comparisons[name]
 
 
+def file_of(comparison: str) -> str:
+    """Return the name of a comparison's files, without their ending."""
+    return comparison.replace(" ", "-")
+
+
 def _refuse_unknown(field: str, name: str, known: Any) -> None:
     if name not in known:
         raise ValueError(f"`{field}` must be one of {', '.join(known)}, got {name!r}")
@@ -146,17 +163,9 @@ def read(path: Path) -> Study:
 def parse(text: str, is_json: bool = False) -> Study:
     """Return the study in a text; see `read`."""
     try:
-        return Study.model_validate(json.loads(text) if is_json else _yaml(text))
+        return Study.model_validate(once.json(text) if is_json else once.yaml(text))
     except ValidationError as error:
         raise ValueError("\n".join(_message(one) for one in error.errors())) from error
-
-
-def _yaml(text: str) -> Any:
-    yaml = require("yaml", "microcosmos[studies]")
-    try:
-        return yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        raise ValueError(f"a study must be YAML or JSON: {error}") from error
 
 
 def _message(error: Any) -> str:

@@ -10,6 +10,7 @@ from ..archive.atomic import write_whole
 from ..archive.file import load
 from ..archive.poses import streams
 from ..statistics import tables
+from .document import file_of
 from .results import Results
 
 Files = dict[str, bytes]
@@ -34,16 +35,12 @@ def _table(suffix: str, write: Callable[..., str]) -> Callable[[Results], Files]
         found: Files = {}
         for name, one in results.comparisons.items():
             if one.statistics:
-                found[f"{_file(name)}.{suffix}"] = write(one.statistics).encode()
+                found[f"{file_of(name)}.{suffix}"] = write(one.statistics).encode()
             elif suffix == "json":
-                found[f"{_file(name)}.json"] = tables.aggregates_json(one.aggregates).encode()
+                found[f"{file_of(name)}.json"] = tables.aggregates_json(one.aggregates).encode()
         return found
 
     return made
-
-
-def _file(name: str) -> str:
-    return name.replace(" ", "-")
 
 
 def _archives(results: Results) -> Files:
@@ -52,12 +49,14 @@ def _archives(results: Results) -> Files:
 
 
 def _poses(results: Results) -> Files:
-    """Return the poses of every run's fittest creature."""
+    """Return the poses of the fittest creature of every run that has elites."""
     found = {}
     for id, one in results.runs.items():
         tree, attributes = load(one.data)
-        best = int(np.argmax(tree["archive"]["fitness"]))
-        found[f"poses/{id}.npz"] = streams(tree, attributes)[best].npz()
+        fitness = tree["archive"]["fitness"]
+        if len(fitness):
+            best = streams(tree, attributes)[int(np.argmax(fitness))]
+            found[f"poses/{id}.npz"] = best.npz()
     return found
 
 

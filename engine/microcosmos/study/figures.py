@@ -1,6 +1,6 @@
 """The figures of a study, with captions that name groups, runs and tests."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,8 @@ import numpy as np
 from ..archive.atomic import write_whole
 from ..archive.file import load
 from ..archive.poses import streams
-from ..statistics import Group
+from ..statistics import RunRecord
+from ..statistics.measures import Measure
 from ..viz.figures import caption, compared, compared_caption, curves, saving, sheet, strips
 from ..viz.figures.groups import Group as Drawn
 from ..viz.figures.reading import read
@@ -112,24 +113,26 @@ def _profile(results: Results, figure: Figure, of: Compare) -> Made:
 
 def _creatures(results: Results, figure: Figure, of: Compare) -> Made:
     """Draw a stroke of the fittest creature of each group, from recorded poses."""
-    shown, said, ids = [], [], []
-    names = sheet.numerals(len(of.groups))
-    for numeral, group in zip(names, of.groups, strict=True):
-        name = _fittest(group)
+    fittest = [(group, _fittest(group.runs)) for group in of.groups]
+    found = [(group, run.name) for group, run in fittest if _best(run) > -np.inf]
+    if not found:
+        raise ValueError("a run with an elite is needed, got none")
+    shown, said = [], []
+    for numeral, (group, name) in zip(sheet.numerals(len(found)), found, strict=True):
         tree, attributes = load(results.runs[name].data)
         fitness = tree["archive"]["fitness"]
         best = int(np.argmax(fitness))
         shown.append(strips.strip(float(fitness[best]), streams(tree, attributes)[best]))
         seed = results.runs[name].run.spec.seed
         said.append(f"{numeral}: {group.name}, run {name}, seed {seed}")
-        ids.append(name)
+    said += [f"{group.name} has no elites" for group, run in fittest if _best(run) == -np.inf]
     text = (
         f"The fittest creature of each group ({'; '.join(said)}). {MOMENTS} moments of one "
         "stroke, in order and from dark to light; the dot marks the first node. Bodies have "
         "one scale and travel upwards; the arrow is the way of one stroke, the number the "
         "fitness."
     )
-    return strips.strips(shown, moments=MOMENTS), text, tuple(ids)
+    return strips.strips(shown, moments=MOMENTS), text, tuple(name for _, name in found)
 
 
 def _sheet(results: Results, figure: Figure, of: Compare) -> Made:
@@ -137,7 +140,7 @@ def _sheet(results: Results, figure: Figure, of: Compare) -> Made:
     from ..viz.figures import motions  # Loads JAX.
 
     runs = [run for group in of.groups for run in group.runs]
-    name = max(runs, key=lambda run: run.curves["best"][-1]).name
+    name = _fittest(runs).name
     data = results.runs[name].data
     found = read(data)
     plan = sheet.layout(found)
@@ -146,8 +149,12 @@ def _sheet(results: Results, figure: Figure, of: Compare) -> Made:
     return drawn, f"Run {name}. {caption.of_sheet(found, plan, moved, 5)}", (name,)
 
 
-def _fittest(group: Group) -> str:
-    return max(group.runs, key=lambda run: run.curves["best"][-1]).name
+def _fittest(runs: Sequence[RunRecord]) -> RunRecord:
+    return max(runs, key=_best)
+
+
+_best = Measure("best").of
+"""The best fitness of a run; minus infinity without elites."""
 
 
 _DRAW: dict[str, Callable[[Results, Figure, Compare], Made]] = {

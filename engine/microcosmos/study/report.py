@@ -13,6 +13,7 @@ import scipy
 from ..archive.atomic import write_whole
 from ..spec.differences import value_text
 from ..statistics import Group, tables, wording
+from ..statistics.measures import Measure
 from ..version import VERSION
 from . import exports, figures, markup
 from .figures import Picture
@@ -169,8 +170,7 @@ def _runs(results: Results) -> list[str]:
     titles = ["run", "sweep", "case", "seed", "evaluations", "QD score", "coverage", "best"]
     rows: list[list[Cell]] = []
     for id, one in results.runs.items():
-        curves = one.record.curves
-        last = [curves[name][-1] for name in ("qd_score", "coverage", "best")]
+        last = [Measure(name).of(one.record) for name in ("qd_score", "coverage", "best")]
         numbers = [f"{int(one.record.evaluations[-1]):,}", *map(wording.number, last)]
         numbers = [str(one.record.seed), *numbers]
         cells = [Number(text, (id,)) for text in numbers]

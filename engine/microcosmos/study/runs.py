@@ -26,7 +26,9 @@ class PlannedRun:
 
     sweep: str
     values: dict[str, Any]
-    """The case: values by paths of the grid."""
+    """The case: values by paths of the grid, numbers and words as the spec has them."""
+    given: dict[str, Any]
+    """The same as the study's file has it, where a number may be text."""
     spec: Any
     path: Path
 
@@ -63,15 +65,14 @@ class Plan:
             run
             for run in self.runs
             if run.sweep == sweep
-            and all(run.values.get(k, _NONE) == v for k, v in where.items())
+            and all(
+                k in run.given and v in (run.values[k], run.given[k]) for k, v in where.items()
+            )
         ]
         if not found:
             grid = self.study.sweeps[sweep].grid
             raise ValueError(f"`where` must be values of the grid {grid}, got {dict(where)}")
         return found
-
-
-_NONE = object()
 
 
 def plan(study: Study, folder: Path, beside: Path) -> Plan:
@@ -89,13 +90,32 @@ def plan(study: Study, folder: Path, beside: Path) -> Plan:
             seeds = list(range(document["seed"], document["seed"] + seeds))
         bases[name] = _parsed({**document, "seed": seeds[0]}, f"{field}.set")
         for seed in seeds:
-            for values in paths.combinations(sweep.grid):
-                spec = _case({**document, "seed": seed}, values, field)
-                path = folder / "runs" / f"{identity(spec)[:SHORT]}.h5"
-                runs.append(PlannedRun(name, values, spec, path))
+            runs += _cases(name, sweep, {**document, "seed": seed}, folder)
     if len(runs) > MAX_RUNS:
         raise ValueError(f"a study needs at most {MAX_RUNS:,} runs in all, got {len(runs):,}")
     return Plan(study, folder, bases, tuple(runs))
+
+
+def _cases(name: str, sweep: Sweep, document: dict[str, Any], folder: Path) -> list[PlannedRun]:
+    """Return the runs of a seed. Raises `ValueError` where two cases are one run."""
+    field, found = f"sweeps.{name}", dict[str, PlannedRun]()
+    for given in paths.combinations(sweep.grid):
+        spec = _case(document, given, field)
+        path = folder / "runs" / f"{identity(spec)[:SHORT]}.h5"
+        run = PlannedRun(name, _values(spec, given), given, spec, path)
+        if (earlier := found.setdefault(run.id, run)) is not run:
+            raise ValueError(
+                f"{field}.grid: cases must be different runs, got {_shown(earlier.given)} and "
+                f"{_shown(given)}, which are one"
+            )
+    return list(found.values())
+
+
+def _values(spec: Spec, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values of a case from its spec; parts, which have defaults, as given."""
+    document = spec.model_dump(mode="json")
+    found = {path: paths.value(document, path) for path in given}
+    return {k: given[k] if isinstance(v, dict | list) else v for k, v in found.items()}
 
 
 def identity(spec: Spec) -> str:
@@ -146,8 +166,11 @@ def _refuse_path(document: dict[str, Any], path: str, field: str) -> None:
 def _case(document: dict[str, Any], values: Mapping[str, Any], field: str) -> Spec:
     for path, value in values.items():
         document = paths.replaced(document, path, value)
-    shown = ", ".join(f"{path} {value}" for path, value in values.items())
-    return _parsed(document, f"{field}.grid ({shown})" if values else f"{field}.set")
+    return _parsed(document, f"{field}.grid ({_shown(values)})" if values else f"{field}.set")
+
+
+def _shown(values: Mapping[str, Any]) -> str:
+    return ", ".join(f"{path} {value}" for path, value in values.items())
 
 
 def _parsed(document: Mapping[str, Any], field: str) -> Spec:

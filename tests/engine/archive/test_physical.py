@@ -68,11 +68,22 @@ def test_lengths_are_read(text, expected):
 
 @pytest.mark.fast
 @pytest.mark.parametrize(
-    "text", ["1", "mm", "-1mm", "0mm", "1s", "1..2mm", "1 parsec", "1e999m"]
+    "text",
+    ["1", "mm", "-1mm", "0mm", "1s", "1..2mm", "1 parsec", "1e999m", "1e200m", "1e-200m"],
 )
 def test_other_lengths_are_refused(text):
     with pytest.raises(ValueError, match="`length` must be a number above 0 with a unit"):
         quantities.length_of(text)
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize("length", ["1e-12m", "1000km"])
+@pytest.mark.parametrize("period", ["1e-12s", "1e6s"])
+def test_the_ends_of_lengths_and_periods_have_scales(length, period):
+    real = quantities.Real.of(length, period)
+    found = physical.Physical(real.length, 10.0, real.period, 20.0, 0.1)
+    # ν = 0.1 cells²/step: a tenth of a hundredth of L² in a twentieth of T.
+    assert found.fluid == pytest.approx(0.02 * real.length**2 / real.period, rel=1e-12)
 
 
 @pytest.mark.fast
@@ -97,6 +108,21 @@ def test_a_viscosity_is_named_by_a_fluid(viscosity, expected):
 )
 def test_quantities_have_a_prefix(value, expected):
     assert quantities.shown(value, "m/s") == expected
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize(
+    ("unit", "expected"),
+    [
+        ("m^3/s^2", "-1.12e-07 m^3/s^2"),
+        ("1/s", "-1.12e-07 1/s"),
+        ("m", "-112 nm"),
+        ("s", "-112 ns"),
+    ],
+)
+def test_powers_of_units_have_no_prefix(unit, expected):
+    """A prefix counts before the power: 1 nm³ is 1e-27 m³."""
+    assert quantities.shown(-1.12e-7, unit) == expected
 
 
 def test_a_creature_and_its_row_of_the_archive_agree(run):

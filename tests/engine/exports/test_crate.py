@@ -3,6 +3,7 @@
 import hashlib
 import io
 import json
+import subprocess
 import zipfile
 from datetime import date
 
@@ -107,6 +108,21 @@ def test_the_command_repeats_the_run(folder, ran, tmp_path, invoke):
     (tmp_path / "spec.json").write_bytes((folder / "spec.json").read_bytes())
     invoke(*text.split()[1:])
     assert (tmp_path / "repeated.h5").read_bytes() == ran.read_bytes()
+
+
+@pytest.mark.parametrize("name", ["small", "my run", "Jane's $run", "repeated"])
+def test_a_shell_compares_the_run_with_its_repetition(made, tmp_path, name):
+    """The repetition is the file of `--out`: a copy, as the same run would be."""
+    run = RunFile(name, made())
+    text = crate(run, PUBLICATION)["README.md"].decode()
+    block = text.split("```sh\n")[1].split("```")[0].splitlines()
+    again = block[1].split("--out ")[1].split()[0]
+    assert again != f"{name}.h5"
+    for file in (f"{name}.h5", again):
+        (tmp_path / file).write_bytes(run.data)
+    sums = subprocess.run(["sh", "-c", block[2]], cwd=tmp_path, capture_output=True, check=True)
+    digest = hashlib.sha256(run.data).hexdigest()
+    assert [line.split()[0] for line in sums.stdout.decode().splitlines()] == [digest] * 2
 
 
 def test_the_environment_lists_what_the_library_needs():

@@ -2,6 +2,7 @@
 
 import logging
 import sys
+import time
 
 import pytest
 from few_reports import report_of
@@ -103,6 +104,41 @@ def test_a_full_queue_drops_and_never_waits(instead, monkeypatch, caplog):
             sinks.checkpoint(step, bytes(1 << 20))
         sinks.close(1, {"run.h5": bytes(1 << 20)}, done=False)
     assert "20,001 of 20,001 messages are not delivered" in caplog.text
+
+
+def test_pictures_go_on_after_one_found_a_full_queue(tmp_path, instead, monkeypatch):
+    """The process reads nothing until a file is there, so that the queue stays full."""
+    gate, seen = tmp_path / "gate", tmp_path / "seen"
+    monkeypatch.setattr(delivery, "LENGTH", 2)
+    instead(SLOW.format(gate=str(gate), seen=str(seen)), patience=60.0)
+    feed = delivery.Feed(ADDRESS, RECORD)
+    large = delivery.Message({"kind": "report", "step": 0, "values": {}}, bytes(1 << 22))
+    feed.offer(large)  # The pipe is full: the thread waits in the middle of it.
+    while feed._queue.qsize():
+        time.sleep(0.01)
+    for step in (1, 2):
+        feed.offer(delivery.Message({"kind": "report", "step": step, "values": {}}))
+    feed.offer(delivery.Message({"kind": "archive", "step": 3}, b"dropped"))
+    gate.touch()
+    while feed._queue.qsize():
+        time.sleep(0.01)
+    feed.offer(delivery.Message({"kind": "archive", "step": 4}, b"delivered"))
+    feed.end(delivery.Message({"kind": "end", "done": True}))
+    feed.close(time.monotonic() + 60)
+    assert seen.read_text().split() == ["open", "report", "report", "report", "archive", "end"]
+
+
+SLOW = """
+import pathlib, signal, sys, time
+from microcosmos.sinks.messages import receive
+signal.alarm(100)
+while not pathlib.Path({gate!r}).exists():
+    time.sleep(0.01)
+kinds = []
+while message := receive(sys.stdin.buffer):
+    kinds.append(message.kind)
+pathlib.Path({seen!r}).write_text(" ".join(kinds))
+"""
 
 
 def test_pictures_keep_their_distance(instead, monkeypatch, caplog):

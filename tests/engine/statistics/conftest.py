@@ -28,13 +28,14 @@ def run():
         batch=BATCH,
         version="0.1.0",
         corrected=None,
+        curves=None,
         **fields,
     ):
         document = {**SPEC, "seed": seed}
         for path, value in fields.items():
             document = replaced(document, path.replace("__", "."), value)
         along = np.arange(1, generations + 1) / generations
-        curves = {
+        made = {
             "evaluations": batch * np.arange(1.0, generations + 1),
             "qd_score": score * along,
             "coverage": along,
@@ -42,7 +43,7 @@ def run():
             "corrected_qd_score": np.array(corrected or [np.nan] * generations, float),
         }
         name = name or f"{score:g}-seed{seed}.h5"
-        return RunRecord(name, document, curves, version, ("cpu",), state)
+        return RunRecord(name, document, made | (curves or {}), version, ("cpu",), state)
 
     return make
 

@@ -63,6 +63,21 @@ def test_tasks_that_a_group_lacks_are_refused(groups, group_of):
         across(fewer, "qd_score", TASK, FEW)
 
 
+def test_tasks_may_be_lists(run):
+    """`search.initial` is a list in every spec, and lists have no hash."""
+    runs = [run(float(seed + 1), seed=seed) for seed in range(5)]
+    found = across(named({"a": runs}), "qd_score", ["search.initial"], FEW)
+    assert found.tasks == ({"search.initial": []},)
+    assert "Over 1 task (search.initial" in tables.aggregates_text([found])
+
+
+def test_a_run_without_elites_has_no_score(run, group_of):
+    empty = run(0.0, seed=5, curves={"coverage": np.zeros(4)})
+    groups = named({"a": group_of([1.0] * 5), "b": [*group_of([2.0] * 4), empty]})
+    with pytest.raises(ValueError, match=r"needs elites in every run, got none in 0-seed5\.h5"):
+        across(groups, "best", TASK, FEW)
+
+
 def test_fewer_than_five_seeds_of_a_task_have_no_interval(group_of):
     few = named({"a": group_of([1.0, 2, 3])})
     found = across(few, "qd_score", TASK, FEW)

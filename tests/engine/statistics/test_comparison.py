@@ -99,6 +99,23 @@ def test_unequal_evaluations_are_refused_with_the_point_at_which_to_compare(grou
     refused(groups, r"from 10, its first generation, to 40, its last, got 60", ["best@60"])
 
 
+def test_a_run_that_ended_before_others_reached_the_value_is_refused(group_of):
+    """Equal speeds of progress: the short runs would be later by their ends alone."""
+    short, long = group_of([2.0] * 5), group_of([4.0] * 5, generations=8)
+    groups = named({"short": short, "long": long})
+    refused(
+        groups,
+        r"2-seed0.h5, which ended at 40 evaluations without reaching it, and 4-seed0.h5, which "
+        "reached it at 50",
+        ["qd_score>=2.5"],
+    )
+    (result,) = compare(groups, ["qd_score>=2"], FEW).results
+    assert result.pairs[0].superiority == 0.5, "all reach it"
+    late = named({"short": short, "long": group_of([9.0] * 5, generations=8)})
+    (result,) = compare(late, ["qd_score>=2.5"], FEW).results
+    assert result.summaries[0].values == (np.inf,) * 5, "40 evaluations are more than 30"
+
+
 def test_specs_that_differ_in_a_group_are_refused_with_the_field(group_of, run):
     mixed = [*group_of(SLOW), run(9.0, seed=9, world__viscosity=0.3)]
     refused(named({"a": mixed, "b": group_of(FAST)}), r"`world.viscosity` 0.05 in .*and 0.3 in")
@@ -154,6 +171,19 @@ def test_latex_is_a_booktabs_table_of_escaped_words(group_of):
     assert r"50\,\% \& more & b\_2 & 0 & 0.008 & 0.008 & 0.00 & 0.00--0.00 \\" in text
     body = [line for line in text.splitlines() if line.endswith(r"\\")]
     assert {line.count(" & ") for line in body} == {6, 7}
+
+
+def test_latex_keeps_minus_signs_and_words(group_of):
+    """Two hyphens before a minus would be a dash of TeX: -0.8 to -0.6 would lose a sign."""
+    low = [-x for x in SLOW]
+    groups = named({"point to point": group_of(low), "p": group_of([-9.0, -8, -7, -6, -5.5])})
+    text = tables.latex(compare(groups, ["qd_score", "qd_score>=-2"], FEW))
+    rows = [line for line in text.splitlines() if line.endswith(r"\\")]
+    assert r"QD score & point to point & 5 & $-$3 & $-$4 to $-$2 & $-$3 & " in rows[1]
+    assert rows[2].startswith(" & p & 5 & $-$7 & $-$8 to $-$6")
+    assert rows[3].startswith("evaluations to QD score -2 & point to point & 5 & ")
+    assert " & $U$ & $p$ & p (Holm) & $A_{12}$ & " in text
+    assert "---" not in text
 
 
 def test_tests_that_cannot_find_a_difference_are_said_to(group_of):

@@ -1,8 +1,10 @@
 """Tests, effect sizes and means equal SciPy's, textbooks' examples and their definitions."""
 
+from itertools import combinations
+
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
@@ -88,9 +90,55 @@ def test_p_is_scipys_and_no_order_of_groups_changes_it(ours, theirs):
     found = mann_whitney(ours, theirs)
     assert 0 <= found.p <= 1
     assert found.p == pytest.approx(mann_whitney(theirs, ours).p)
-    if np.ptp(np.concatenate([ours, theirs])) > 0:
-        method = "exact" if "exact" in found.name else "asymptotic"
+    method = found.name.partition(", ")[2]
+    if method in ("exact", "asymptotic"):
         assert found.p == stats.mannwhitneyu(ours, theirs, method=method).pvalue
+
+
+@pytest.mark.parametrize(
+    ("ours", "theirs", "p"),
+    [
+        ([1] * 5, [2] * 5, 2 / 252),
+        ([1] * 5, [1, 2, 2, 2, 2], 12 / 252),
+        ([1, 1, 2], [1, 2, 3, 3, 3], 14 / 56),
+    ],
+)
+def test_p_of_small_tied_groups_is_that_of_counting_by_hand(ours, theirs, p):
+    """1 and 6 of 252 ways to choose five runs, 7 of 56 to choose three, are as extreme."""
+    found = mann_whitney(np.array(ours, float), np.array(theirs, float))
+    assert found.name == "Mann–Whitney, exact with ties"
+    assert found.p == pytest.approx(p, rel=1e-12)
+
+
+TIED = st.lists(st.integers(0, 3), min_size=2, max_size=6).map(
+    lambda numbers: np.array(numbers, float)
+)
+
+
+@settings(max_examples=40)
+@given(TIED, TIED)
+def test_p_of_tied_groups_is_that_of_every_way_to_divide_them(ours, theirs):
+    """Twice the smaller tail of U, also by SciPy's permutation test, which tries every way."""
+    found = mann_whitney(ours, theirs)
+    together = np.concatenate([ours, theirs])
+    divided = []
+    for chosen in combinations(range(len(together)), len(ours)):
+        rest = np.delete(together, chosen)
+        divided.append(superiority(together[list(chosen)], rest) * ours.size * theirs.size)
+    found_u, u = round(2 * found.statistic), np.rint(2 * np.array(divided))
+    tail = min((u <= found_u).mean(), (u >= found_u).mean())
+    if "exact" in found.name:
+        assert found.p == pytest.approx(min(1, 2 * tail))
+        method = stats.PermutationMethod(n_resamples=1000, rng=np.random.default_rng(0))
+        assert found.p == pytest.approx(stats.mannwhitneyu(ours, theirs, method=method).pvalue)
+
+
+def test_p_of_a_small_and_a_large_tied_group_is_near_the_normal_approximation():
+    ours, theirs = np.arange(8) % 4, (np.arange(92) * 7 % 9) / 2.0
+    found = mann_whitney(ours, theirs)
+    approximate = stats.mannwhitneyu(ours, theirs, method="asymptotic").pvalue
+    assert found.name == "Mann–Whitney, exact with ties"
+    assert found.p == pytest.approx(approximate, rel=0.05)
 
 
 @given(st.lists(VALUES, min_size=3, max_size=5))
@@ -123,3 +171,17 @@ def test_a_run_that_never_arrives_is_later_than_all_others():
     assert quartiles(times) == (20.0, 30.0, np.inf)
     assert superiority(times, np.array([25.0])) == 3 / 5
     assert mann_whitney(times, np.array([np.inf] * 5)).p < 1
+
+
+def test_an_archive_without_elites_is_worse_than_all_others():
+    best = np.array([-30.0, -np.inf, -10.0, -20.0, -np.inf])
+    assert quartiles(best) == (-np.inf, -30.0, -20.0)
+    assert superiority(best, np.array([-25.0])) == 2 / 5
+
+
+def test_a_mean_of_the_middle_half_is_finite_where_the_middle_half_is():
+    late = np.array([200.0] * 7 + [np.inf])
+    assert middle_mean(late) == 200
+    assert middle_mean(np.array([1.0, 2, 3, np.inf, np.inf])) == np.inf
+    low, high = Bootstrap(499).interval([late], middle_mean)
+    assert (low, high) == (200, np.inf), "three of eight are drawn late often enough"

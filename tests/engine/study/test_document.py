@@ -120,3 +120,63 @@ def test_what_is_no_yaml_is_refused():
 def test_values_that_no_case_has_are_refused(planned):
     with pytest.raises(ValueError, match="`where` must be values of the grid"):
         planned().of("viscosity", {"world.viscosity": 0.7})
+
+
+TWICE = """
+title: Twice
+sweeps: {a: {}}
+comparisons:
+  speed: {groups: [a], measures: [best]}
+  speed: {groups: [a], measures: [coverage]}
+"""
+
+
+def test_a_name_that_is_given_twice_is_refused_in_yaml_and_json():
+    message = r"^comparisons.speed: a name must be given once, got it twice$"
+    with pytest.raises(ValueError, match=message):
+        parse(TWICE)
+    text = '{"title": "Twice", "comparisons": {"speed": {}, "speed": {}}}'
+    with pytest.raises(ValueError, match=message):
+        parse(text, is_json=True)
+    nested = '{"figures": [{"kind": "box"}, {"kind": "box", "kind": "curves"}]}'
+    with pytest.raises(ValueError, match=r"^figures.1.kind: a name must be given once"):
+        parse(nested, is_json=True)
+
+
+def test_yaml_merges_and_aliases_are_no_names_twice():
+    text = """
+title: Merged
+sweeps:
+  a: &a {spec: demo, seeds: 3}
+  b: {<<: *a, seeds: 4}
+comparisons: {x: {groups: [a, b]}}
+"""
+    assert [one.seeds for one in parse(text).sweeps.values()] == [3, 4]
+
+
+def test_yaml_reads_numbers_with_an_exponent():
+    text = "{title: A, sweeps: {a: {grid: {world.viscosity: [1e-2, 2.5E-1, 5.e+0]}}}, " \
+        "comparisons: {x: {groups: [a]}}}"  # fmt: skip
+    assert parse(text).sweeps["a"].grid == {"world.viscosity": [0.01, 0.25, 5.0]}
+
+
+def test_comparisons_of_one_file_are_refused(study_file):
+    comparisons = {name: {"groups": ["viscosity"]} for name in ("a b", "a-b")}
+    with pytest.raises(ValueError, match="got 'a b' and 'a-b', which are both 'a-b'"):
+        read(study_file(comparisons=comparisons, figures=[]))
+
+
+def test_equal_cases_are_refused(small):
+    message = (
+        "sweeps.viscosity.grid: cases must be different runs, got world.viscosity 2e-2 and "
+    )
+    with pytest.raises(ValueError, match=re.escape(message)):
+        small(grid={"world.viscosity": ["1e-2", "2e-2", 0.02]})
+
+
+def test_cases_have_the_values_of_their_specs(planned):
+    sweeps = {"a": {"spec": SMALL_RUN, "grid": {"world.viscosity": ["1e-1", 0.2]}, "seeds": 1}}
+    found = planned(sweeps=sweeps, comparisons=COMPARED, figures=[])
+    assert [run.values for run in found.runs] == [{"world.viscosity": x} for x in (0.1, 0.2)]
+    for where in ("1e-1", 0.1):
+        assert found.of("a", {"world.viscosity": where}) == list(found.runs[:1])

@@ -1,15 +1,19 @@
 """The report of a study: every number names its runs, and the same runs give the same bytes."""
 
 import csv
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import numpy as np
 import pytest
+from made_archives import without_elites
 
 from microcosmos.archive.file import load
-from microcosmos.study import carry_out, report
+from microcosmos.statistics import Group
+from microcosmos.study import carry_out, exports, figures, report
+from microcosmos.study.document import Figure
 from microcosmos.study.lock import alone
-from microcosmos.study.results import gather
+from microcosmos.study.results import Finished, gather
 
 
 class Cells(HTMLParser):
@@ -120,6 +124,52 @@ def test_captions_name_seeds_and_runs(finished):
     assert "Each has n = 1, seed 3." in (
         found.folder / "figures/2-box.caption.txt"
     ).read_text()  # fmt: skip
+
+
+@pytest.fixture
+def without(finished):
+    """A function that gives the results as if runs of some numbers had found no elites."""
+
+    def make(*numbers):
+        found = finished[0]
+        results = gather(found)
+        for number in numbers:
+            one = results.runs[found.runs[number].id]
+            empty = Finished(one.run, without_elites(one.data))
+            results.runs[one.run.id] = empty
+            for compared in results.comparisons.values():
+                (group,) = [x for x in compared.groups if one.record in x.runs]
+                runs = [empty.record if run is one.record else run for run in group.runs]
+                compared.groups[compared.groups.index(group)] = Group(group.name, tuple(runs))
+        return results
+
+    return make
+
+
+def test_runs_without_elites_have_no_poses_and_an_empty_table(without, tmp_path):
+    results = without(0)
+    written = exports.save(results, tmp_path)
+    first, second = results.runs
+    names = {path.relative_to(tmp_path).as_posix() for path in written}
+    assert f"poses/{first}.npz" not in names
+    assert f"poses/{second}.npz" in names
+    assert len((tmp_path / f"archives/{first}.csv").read_text().splitlines()) == 1
+
+
+def test_the_fittest_creatures_are_those_of_groups_with_elites(without):
+    results = without(0)
+    figure = Figure(kind="creatures", of="Viscosity")
+    study = results.plan.study.model_copy(update={"figures": (figure,)})
+    drawn = replace(results, plan=replace(results.plan, study=study))
+    (picture,) = figures.draw(drawn)
+    _, second = results.runs
+    assert picture.runs == (second,)
+    assert "viscosity 0.05 has no elites" in picture.caption
+    drawn = replace(without(0, 1), plan=drawn.plan)
+    with pytest.raises(
+        ValueError, match=r"figures.0 \(creatures\): a run with an elite is need"
+    ):
+        figures.draw(drawn)
 
 
 def test_a_folder_has_one_study_at_a_time(tmp_path):

@@ -2363,7 +2363,7 @@ export interface components {
         };
         /**
          * GroupFigures
-         * @description One measure of a group; None where a run does not reach the value.
+         * @description One measure of a group; None where a run does not reach the value, or has no elites.
          */
         GroupFigures: {
             /** Group */

@@ -6,11 +6,11 @@ import { text } from "./text";
 
 const SHARES = ["coverage", "corrected_coverage", "hit_rate"];
 
-/** A number of a measure; null where a run does not reach the value. */
+/** A number of a measure; null where a run does not reach the value, or has no elites. */
 export const formatOf =
   ({ measure, less_is_better }: MeasureStatistics) =>
   (value: number | null): string => {
-    if (value === null) return text.notReached;
+    if (value === null) return less_is_better ? text.notReached : text.noElites;
     if (less_is_better) return count(value);
     return SHARES.includes(measure.replace(/@.*/, "")) ? percent(value) : number(value);
   };

@@ -31,6 +31,10 @@ describe("statistics of a sweep", () => {
     expect(intervalText(measured("best>=1", true), 80, null)).toBe("80 to not reached");
   });
 
+  it("says where a run has no elites", () => {
+    expect(formatOf(measured("best"))(null)).toBe("no elites");
+  });
+
   it("writes small values of p as less", () => {
     expect([0.0004, 0.0456, 1].map(probability)).toEqual(["< 0.001", "0.046", "1.000"]);
   });

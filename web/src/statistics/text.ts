@@ -21,6 +21,7 @@ export const text = {
   statistic: "H",
   range: (low: string, high: string) => `${low} to ${high}`,
   notReached: "not reached",
+  noElites: "no elites",
   under: "< 0.001",
   csv: "statistics.csv",
   latex: "statistics.tex",

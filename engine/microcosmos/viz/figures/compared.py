@@ -31,14 +31,16 @@ DECADE = 8
 
 def boxes(found: Comparison, *, width: float = 178.0) -> Any:
     """Draw a panel for each measure: every run as a point, the box between the quartiles of
-    each group, and its median as a line. Runs that do not reach a value stand at the top."""
+    each group, and its median as a line. Runs that do not reach a value stand at the top, and
+    archives without elites at the bottom."""
     figure, panels = _panels(len(found.results), width)
     names, common = _ticks([group.name for group in found.groups])
     room = max(8, int(width / min(COLUMNS, len(panels)) / len(names) / LETTER))
     for panel, result in zip(panels, found.results, strict=True):
         for number, one in enumerate(result.summaries):
             _box(panel, number, one, _factor(result))
-        _mark_missing(panel, result)
+            places = number + _apart(one.count)
+            _mark_missing(panel, places, one, COLOURS[number % len(COLOURS)])
         panel.set_xticks(range(len(names)), ["\n".join(wrap(name, room)) for name in names])
         panel.set(xlim=(-0.6, len(names) - 0.4), ylabel=_title(found, result), xlabel=common)
         _plain(panel)
@@ -74,7 +76,7 @@ def _box(panel: Any, number: int, one: Summary, factor: float) -> None:
 
     colour = COLOURS[number % len(COLOURS)]
     low, middle, high = (factor * x for x in (one.low, one.median, one.high))
-    if np.isfinite(high):
+    if np.isfinite(low) and np.isfinite(high):
         box = Rectangle((number - 0.3, low), 0.6, high - low)
         box.set(facecolor=colour, alpha=0.22, edgecolor="none")
         panel.add_patch(box)
@@ -91,16 +93,15 @@ def _apart(count: int) -> np.ndarray:
     return SPREAD * ((GOLDEN * np.arange(1, count + 1)) % 1 - 0.5)
 
 
-def _mark_missing(panel: Any, result: Result) -> None:
-    """Draw runs that do not reach the value as triangles at the top."""
-    for number, one in enumerate(result.summaries):
-        missing = ~np.isfinite(one.values)
-        if not missing.any():  # An empty line without clipping has no extent.
-            continue
-        places = number + _apart(one.count)[missing]
-        look = {"color": COLOURS[number % len(COLOURS)], "ms": 3.2, "mew": 0, "clip_on": False}
-        trans = panel.get_xaxis_transform()
-        panel.plot(places, np.ones(missing.sum()), "^", transform=trans, **look)
+def _mark_missing(panel: Any, places: np.ndarray, one: Summary, colour: Any) -> None:
+    """Draw runs that do not reach the value as triangles at the top, and archives without
+    elites as triangles at the bottom."""
+    look = {"color": colour, "ms": 3.2, "mew": 0, "clip_on": False}
+    for value, height, marker in ((np.inf, 1.0, "^"), (-np.inf, 0.0, "v")):
+        missing = places[np.array(one.values) == value]
+        if len(missing):  # An empty line without clipping has no extent.
+            heights, trans = np.full(len(missing), height), panel.get_xaxis_transform()
+            panel.plot(missing, heights, marker, transform=trans, **look)
 
 
 def _factor(result: Result) -> float:
@@ -182,6 +183,7 @@ def _line(panel: Any, members: Members, result: Result, number: int, name: str) 
     for place, one in zip(places, summaries, strict=True):
         values = factor * np.array(one.values)
         panel.plot([place] * len(values), values, ".", color=mark["color"], ms=2.5, alpha=0.7)
+        _mark_missing(panel, np.full(len(values), place), one, mark["color"])
 
 
 def _along(panel: Any, path: str, places: Sequence[float]) -> None:

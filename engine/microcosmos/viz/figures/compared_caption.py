@@ -1,5 +1,7 @@
 """Captions of figures that compare groups: specs, seeds, n, tests and correction."""
 
+from math import inf
+
 from ...spec.differences import short
 from ...statistics import Aggregates, Comparison, wording
 from .caption import run
@@ -12,9 +14,7 @@ def of_boxes(found: Comparison) -> str:
         f"{_measures(found)}: every run (points), the median of each group (line) and the "
         "quartiles (box)."
     )
-    if any(one.high == float("inf") for result in found.results for one in result.summaries):
-        first += " Triangles at the top are runs that do not reach the value."
-    return " ".join([first, *_stated(found)])
+    return " ".join([first, *_triangles(found), *_stated(found)])
 
 
 def of_parameter(found: Comparison, path: str) -> str:
@@ -23,7 +23,7 @@ def of_parameter(found: Comparison, path: str) -> str:
         f"{_measures(found)} against {short(path)} (`{path}`): median over seeds (line), band "
         "between the quartiles, every run (points)."
     )
-    return " ".join([first, *_stated(found)])
+    return " ".join([first, *_triangles(found), *_stated(found)])
 
 
 def of_profiles(found: Aggregates, first_run: Described) -> str:
@@ -34,6 +34,16 @@ def of_profiles(found: Aggregates, first_run: Described) -> str:
         f"score{band}."
     )
     return " ".join([first, wording.aggregated(found), _rest(first_run)])
+
+
+def _triangles(found: Comparison) -> list[str]:
+    """Return what the triangles of a figure are, if it has any."""
+    values = {x for result in found.results for one in result.summaries for x in one.values}
+    said = {
+        inf: "Triangles at the top are runs that do not reach the value.",
+        -inf: "Triangles at the bottom are runs without elites.",
+    }
+    return [text for value, text in said.items() if value in values]
 
 
 def _measures(found: Comparison) -> str:

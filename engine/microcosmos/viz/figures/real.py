@@ -10,7 +10,7 @@ from ...archive.quantities import Real, like, shown, square
 from ...exports import si
 from ...exports.run_file import fitness_of
 from ...statistics import Comparison
-from ...statistics.wording import NOT_REACHED
+from ...statistics.wording import number
 from .caption import NAMES
 from .groups import Group
 from .reading import plugins_of
@@ -98,7 +98,7 @@ def _shown(value: float, run: Any, scaled: si.Scaled) -> str:
     if unit is None or factor is None:
         return ""
     if not np.isfinite(value):
-        return NOT_REACHED
+        return number(value)
     return f"{shown(value * float(factor), unit.si)}{unit.about}"
 
 

@@ -87,6 +87,34 @@ def test_runs_that_do_not_arrive_stand_at_the_top(groups):
     assert "Triangles at the top are runs that do not" in compared_caption.of_boxes(late)
 
 
+def test_one_run_that_does_not_arrive_is_drawn_and_explained_in_every_figure(groups):
+    """The upper quartiles of the third group are finite."""
+    late = compare(groups[2:], ["best>=9"], FEW)
+    assert np.isfinite(late.results[0].summaries[0].high)
+    text = "Triangles at the top are runs that do not reach the value."
+    assert text in compared_caption.of_boxes(late)
+    late = compare(groups, ["best>=9"], FEW)
+    (panel,) = compared.parameter(late, "world.viscosity").axes
+    triangles = points(panel, "^")
+    counts = {line.get_xdata()[0]: len(line.get_ydata()) for line in triangles}
+    assert counts == {0.05: 5, 0.2: 4, 0.8: 1}
+    assert {y for line in triangles for y in line.get_ydata()} == {1.0}
+    assert text in compared_caption.of_parameter(late, "world.viscosity")
+    early = compare(groups, ["best"], FEW)
+    assert "Triangles" not in compared_caption.of_boxes(early)
+
+
+def test_runs_without_elites_stand_at_the_bottom(groups):
+    for run in groups[0].runs[:2]:
+        run.curves["coverage"][:] = 0
+    found = compare(groups, ["best"], FEW)
+    (panel,) = compared.boxes(found).axes
+    (line,) = points(panel, "v")
+    assert line.get_ydata().tolist() == [0.0, 0.0]
+    assert not points(panel, "^")
+    assert "Triangles at the bottom are runs without" in compared_caption.of_boxes(found)
+
+
 def test_a_parameter_is_drawn_by_medians_between_quartiles(found):
     best = compared.parameter(found, "world.viscosity").axes[0]
     (line,) = points(best, "o")

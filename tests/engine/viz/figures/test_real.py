@@ -77,6 +77,14 @@ def test_a_displacement_needs_the_length_of_the_body(record):
     assert swims.endswith("the median best fitness is 200 µm/s.")
 
 
+def test_a_cost_of_transport_has_no_prefix(record):
+    """Its unit has the power 3: 1 mass · cells²/step² per length is a⁴/(τ² L) = 1e-9 m³/s²
+    with a = 50 µm, τ = 2.5 ms and L = 1 mm."""
+    task = {"task": {"fitness": "cost_of_transport", "steps": 400}}
+    text = of(record, ["best"], a=([(-112.0, 0)], task))
+    assert "the median best fitness is -1.12e-07 m^3/s^2, over density and depth" in text
+
+
 def test_curves_state_the_last_median_of_each_group(run):
     runs = [run(0.5, 0), run(0.7, 1), run(0.9, 2)]
     text = real.of_curves(grouped(runs), ["best", "qd_score"], REAL)

@@ -29,11 +29,14 @@ const TIMES: Record<string, number> = { min: 60, s: 1, ms: 1e-3, us: 1e-6, µs: 
 export const lengthOf = (typed: string) => quantity(typed, LENGTHS);
 export const periodOf = (typed: string) => quantity(typed, TIMES);
 
+/** In m and s: powers of quantities beyond overflow. */
+const [SMALLEST, LARGEST] = [1e-12, 1e6];
+
 /** A number above 0 with a known unit, in SI units; null for any other text. */
 function quantity(typed: string, units: Record<string, number>): number | null {
   const [, digits, unit] = /^\s*([\d.]+(?:e[+-]?\d+)?)\s*([a-zµμ]+)\s*$/.exec(typed) ?? [];
   const value = Number(digits) * (units[unit ?? ""] ?? NaN);
-  return value > 0 && Number.isFinite(value) ? value : null;
+  return value >= SMALLEST && value <= LARGEST ? value : null;
 }
 
 /** Both quantities in SI units; null unless both are given and have a known unit. */
