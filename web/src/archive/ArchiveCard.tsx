@@ -74,7 +74,7 @@ export function ArchiveCard({ run, archive, elites, query }: Props) {
       <BinElites {...props} objective={measureOf(objectiveOf(run, archive), archive, view.measures)} />
       {view.error && <p class="banner wrong">{view.error}</p>}
       <TimeSlider last={run.generation} at={at} ready={view.ready} onMove={setAt} />
-      <SelectionBar {...{ run, at }} of={view.of} elites={view.elites} {...selection} />
+      <SelectionBar {...{ run, at }} of={view.of} trust={view.trust} elites={view.elites} {...selection} />
       {tour.open && (
         <ArchiveTour
           {...{ run, view, tour }}

@@ -66,9 +66,11 @@ interface Props extends Selection {
   elites: Elites;
   /** The generation shown; null for the newest. */
   at: number | null;
+  /** The verdict of the elites shown; empty for all of them. */
+  trust: string;
 }
 
-export function SelectionBar({ run, of, elites, at, selected, onSelect }: Props) {
+export function SelectionBar({ run, of, elites, at, trust, selected, onSelect }: Props) {
   if (!onSelect) return null;
   const cells = selected.size > 0 ? [...selected] : at === null ? [] : [...elites.keys()];
   const names = new Set(cells.map((cell) => elites.get(cell)!.creature));
@@ -85,7 +87,7 @@ export function SelectionBar({ run, of, elites, at, selected, onSelect }: Props)
       {creatures > 0 && of === "elites" && (
         <ForkLink
           run={run.id}
-          cells={selected.size > 0 ? formatCells(selected) : null}
+          cells={selected.size > 0 || trust ? formatCells(cells) : null}
           at={at}
           title={text.fork(creatures)}
         />
