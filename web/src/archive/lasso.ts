@@ -28,6 +28,7 @@ export function useLasso(enabled: boolean, onEnd: (region: Region, event: Pointe
     wasDrag: () => dragged.current,
     /** True while a region is drawn. */
     onMove: (event: PointerEvent): boolean => {
+      if (started.current && (event.buttons & 1) === 0) stop(); // Released outside.
       if (!started.current) return false;
       const { event: first, way } = started.current;
       const far = Math.hypot(event.clientX - first.clientX, event.clientY - first.clientY);
