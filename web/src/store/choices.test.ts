@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Choices, Run } from "../api/types";
-import { goesOn, groupsOf } from "./choices";
+import { goesOn, groupsOf, withoutWaiting } from "./choices";
 
 const choices = (...items: [generation: number | null, creature: string][]): Choices => ({
   items: items.map(([generation, creature]) => ({ generation, creature })),
@@ -16,6 +16,12 @@ describe("choices", () => {
       { generation: 4, creatures: ["aa", "bb"] },
     ]);
     expect(groupsOf(choices())).toEqual([]);
+  });
+
+  it("that wait already are not taken back with new ones", () => {
+    const known = choices([null, "aa"], [4, "bb"]);
+    expect(withoutWaiting(["aa", "bb", "cc"], known)).toEqual(["bb", "cc"]);
+    expect(withoutWaiting(["aa"], undefined)).toEqual(["aa"]);
   });
 
   it("can be made until a run has ended", () => {

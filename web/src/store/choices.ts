@@ -6,7 +6,7 @@ import type { Choices, Run } from "../api/types";
 import { SLOW_MS, useFetched } from "./fetch";
 import { useThrottled } from "./polling";
 import { epochOf } from "./state";
-import { update, useStore } from "./store";
+import { currentState, update, useStore } from "./store";
 import { offerUndo, orShowError } from "./toasts";
 import { text } from "./text";
 
@@ -35,11 +35,18 @@ export function useChoices(run: Run | undefined): Choices | undefined {
 
 /** Choose creatures, and offer to take them back; return true on success. */
 export async function choose(id: string, creatures: string[]): Promise<boolean> {
+  const added = withoutWaiting(creatures, currentState().choices.get(id));
   const choices = await orShowError(api.chooseCreatures(id, creatures));
   if (!choices) return false;
   keep(id, choices);
-  offerUndo(text.chosen(creatures.length), () => void takeBack(id, creatures));
+  offerUndo(text.chosen(creatures.length), () => void (added.length > 0 && takeBack(id, added)));
   return true;
+}
+
+/** Creatures that no earlier choice has yet: Undo takes these back alone. */
+export function withoutWaiting(creatures: readonly string[], known: Choices | undefined): string[] {
+  const waiting = known?.items.filter(({ generation }) => generation === null) ?? [];
+  return creatures.filter((name) => !waiting.some(({ creature }) => creature === name));
 }
 
 export async function takeBack(id: string, creatures: string[]): Promise<void> {
