@@ -16,13 +16,13 @@ interface Props {
 
 export function TimeBudget({ estimate, state }: Props) {
   const generations = valueAt(state.document, GENERATIONS);
-  const seconds = useSecondsEach(estimate, generations);
+  const pace = usePace(estimate, generations);
   const [typed, setTyped] = useState<string | null>(null);
-  if (seconds === null || typeof generations !== "number") return null;
-  const minutes = (generations * seconds) / 60;
+  if (pace === null || typeof generations !== "number") return null;
+  const minutes = (pace.startup + generations * pace.each) / 60;
   const change = (value: string) => {
     setTyped(value);
-    const wanted = generationsIn(Number(value), seconds);
+    const wanted = generationsIn(Number(value), pace);
     if (wanted !== null) state.change(GENERATIONS, wanted);
   };
   return (
@@ -44,20 +44,35 @@ export function TimeBudget({ estimate, state }: Props) {
   );
 }
 
-/** The seconds of a generation by the last estimate; null before there is one. */
-function useSecondsEach(estimate: Estimate | null, generations: unknown): number | null {
-  const [each, setEach] = useState<number | null>(null);
+/** Seconds of the start, in which programs are compiled, and of each generation. */
+export interface Pace {
+  startup: number;
+  each: number;
+}
+
+/** The pace by the last estimate; null before there is one. */
+function usePace(estimate: Estimate | null, generations: unknown): Pace | null {
+  const [pace, setPace] = useState<Pace | null>(null);
   useEffect(() => {
     // An answer belongs to the generations for which it was asked: the form has not changed since.
-    if (estimate?.seconds && typeof generations === "number") setEach(estimate.seconds / generations);
+    if (estimate && typeof generations === "number") setPace((old) => paceOf(estimate, generations) ?? old);
   }, [estimate]);
-  return each;
+  return pace;
+}
+
+export function paceOf(
+  { seconds, cell_steps, speed }: Pick<Estimate, "seconds" | "cell_steps" | "speed">,
+  generations: number,
+): Pace | null {
+  if (!seconds || !speed) return null;
+  const computing = cell_steps / speed.cell_steps_per_second;
+  return { startup: Math.max(0, seconds - computing), each: computing / generations };
 }
 
 /** As many generations as fit into some minutes, at least one; null for what is no time. */
-export function generationsIn(minutes: number, secondsEach: number): number | null {
+export function generationsIn(minutes: number, { startup, each }: Pace): number | null {
   if (!Number.isFinite(minutes) || minutes <= 0) return null;
-  return Math.max(1, Math.floor((60 * minutes) / secondsEach));
+  return Math.max(1, Math.floor((60 * minutes - startup) / each));
 }
 
 /** With two digits. */
