@@ -79,6 +79,18 @@ describe("the mend of a wrong value", () => {
     const messages = ["World.width must be at least 1,069 for this body"];
     expect(mendOf(leaf("search.generations"), 30, messages)).toBe(1069);
     expect(mendOf(leaf("search.generations"), 30, ["It must be odd"])).toBe(null);
+    expect(mendOf(leaf("world.viscosity"), 0.5, ["`world.viscosity` must be at least 1e-3"])).toBe(0.001);
+  });
+
+  it("is whole where a whole number is needed", () => {
+    const bounds = (bound: string) => [`\`world.height\` must be at ${bound} 77.46 cells`];
+    expect(mendOf(leaf("search.generations"), 30, bounds("least"))).toBe(78);
+    expect(mendOf(leaf("search.generations"), 300, bounds("most"))).toBe(77);
+  });
+
+  it("is none where a product is wrong", () => {
+    const product = "`rate` times `amplitude` must be at least 1e-6, or float32 loses what is collected";
+    expect(mendOf(leaf("world.viscosity"), 0.5, [product])).toBe(null);
   });
 
   it("is none for a right value, or for what is no number", () => {

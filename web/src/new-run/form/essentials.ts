@@ -39,8 +39,8 @@ function within(field: Field, words: readonly string[]): Field | null {
   return insides.some((inside) => within(inside, words)) ? field : null;
 }
 
-/** What the server says about a number that does not fit to the others. */
-const LEAST_OR_MOST = /must be at (?:least|most) ([\d.,]*\d)/;
+/** What the server says about one number that does not fit to the others, not about their product. */
+const LEAST_OR_MOST = /^[^`]*(?:`[^`]*`)?[^`]* must be at (least|most) ([\d.,]*\d(?:e[+-]?\d+)?)/;
 
 /** A number that mends a wrong one: the nearest permitted, or the one that a message names; else null. */
 export function mendOf(field: Leaf, value: Json, messages: readonly string[]): number | null {
@@ -50,6 +50,9 @@ export function mendOf(field: Leaf, value: Json, messages: readonly string[]): n
   const whole = field.whole ? Math.round(value) : value;
   const mended = Math.min(high, Math.max(low, whole));
   if (mended !== value) return mended;
-  const named = messages.map((message) => LEAST_OR_MOST.exec(message)?.[1]).find(Boolean);
-  return named ? Number(named.replaceAll(",", "")) : null;
+  const [, bound, named] = messages.map((message) => LEAST_OR_MOST.exec(message)).find(Boolean) ?? [];
+  if (named === undefined) return null;
+  const number = Number(named.replaceAll(",", ""));
+  if (!field.whole) return number;
+  return bound === "least" ? Math.ceil(number) : Math.floor(number);
 }
