@@ -60,6 +60,12 @@ function ForkByName({ run, names }: { run: string; names: string[] }) {
   return <ForkLink run={run} creatures={names} title={text.fork(names.length)} />;
 }
 
+/** The cells of a fork's address: the selected ones; or null for all of the generation shown. */
+export function forkedCells(selected: CellSet, shown: Elites, trust: string): string | null {
+  if (selected.size > 0) return formatCells(selected);
+  return trust ? formatCells(shown.keys()) : null; // A verdict hides some of them.
+}
+
 interface Props extends Selection {
   run: Run;
   of: Of;
@@ -87,7 +93,7 @@ export function SelectionBar({ run, of, elites, at, trust, selected, onSelect }:
       {creatures > 0 && of === "elites" && (
         <ForkLink
           run={run.id}
-          cells={selected.size > 0 || trust ? formatCells(cells) : null}
+          cells={forkedCells(selected, elites, trust)}
           at={at}
           title={text.fork(creatures)}
         />

@@ -1,10 +1,12 @@
 import { describe, expect, it } from "vitest";
 import type { Principal } from "../api/types";
+import type { Elite } from "../store/elites";
 import { refusalOf } from "../store/principal";
 import { parseCells, formatCells } from "../store/draft";
 import { elite } from "./archive.fixture";
 import { binsOf, binsWithin, cellsIn, regionOf, selectByKey, toggle } from "./selection";
 import { gridLayout } from "./layout";
+import { forkedCells } from "./SelectionBar";
 import type { Projection } from "./projection";
 
 const set = (...cells: number[]) => new Set(cells);
@@ -119,5 +121,15 @@ describe("a token", () => {
 
   it("is not refused before it is loaded", () => {
     expect(refusalOf(null, { owner: "bob" })).toBeNull();
+  });
+});
+
+describe("a fork", () => {
+  const shown = new Map([3, 4, 9].map((cell) => [cell, {} as Elite]));
+
+  it("takes the selected cells, else those that are shown", () => {
+    expect(forkedCells(set(4), shown, "trusted")).toBe("4");
+    expect(forkedCells(set(), shown, "trusted")).toBe("3-4,9");
+    expect(forkedCells(set(), shown, "")).toBeNull();
   });
 });
