@@ -10,6 +10,7 @@ import typer
 from typer import Option
 
 from ..archive.atomic import write_whole
+from ..archive.beside import beside
 from ..archive.creature import parse
 from ..viz import networks
 from .app import CreaturePath, app, fail, failing
@@ -44,7 +45,7 @@ def replay(
         if check:
             _check(creature)
         else:
-            out = out or file.with_suffix(".replay")
+            out = out or beside(file, ".replay")
             write_whole(out, record(creature))
             print(out)
 

@@ -10,6 +10,7 @@ from rich.progress import Progress
 from typer import Argument, Option
 from typer.core import TyperGroup
 
+from ..archive.beside import beside
 from ..archive.creature import parse
 from ..archive.file import HDF5, load
 from ..archive.quantities import Real
@@ -200,7 +201,7 @@ def show_paths(written: list[Path]) -> None:
 
 
 def _beside(file: Path, out: Path | None, name: str) -> Path:
-    return out or file.with_suffix(f".{name}.pdf")
+    return out or beside(file, f".{name}.pdf")
 
 
 def names_in(text: str | None) -> list[str] | None:

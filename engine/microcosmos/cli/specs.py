@@ -27,8 +27,8 @@ def read_spec(name: str) -> Spec:
     return found
 
 
-def file_stem(name: str) -> Path:
-    """Return the path, without its ending, of the archive of a spec's run."""
+def spec_path(name: str) -> Path:
+    """Return the path beside which the archive of a spec's run is written."""
     if address := shared.address(name):
         return Path(f"share-{address.slug[:8]}")
     return Path(name.replace("/", "-") if name in presets() else name)
