@@ -20,7 +20,7 @@ from typer import Argument, Option
 
 from ..archive import choices as choices_file
 from ..archive.beside import beside
-from ..archive.creature import parse
+from ..archive.creature_h5 import read
 from ..archive.file import read_table
 from ..doctor.machine import memory_bytes
 from ..sinks.address import parse_all
@@ -126,7 +126,7 @@ def refine(
     path = out or beside(file, ".refined.h5")
     with failing(file):
         spec = Refinement(
-            creature=parse(file.read_bytes()),
+            creature=read(file.read_bytes()),
             archive=_archive(like),
             steps=steps,
             length=length,
