@@ -2,9 +2,11 @@
 
 import argparse
 import sys
-from datetime import UTC, datetime, timedelta
+from datetime import datetime
 
 from sqlalchemy import select
+
+from microcosmos.client.sharing import expiry
 
 from ..core.errors import ProblemError
 from ..services.services import Services, connect
@@ -31,8 +33,10 @@ def _arguments() -> argparse.ArgumentParser:
     actions = parser.add_subparsers(required=True, metavar="create | list | revoke")
     create = actions.add_parser("create", help="create a token; its secret is shown once")
     create.add_argument("name")
-    create.add_argument("--scope", choices=SCOPES, default="write")
-    create.add_argument("--days", type=float, help="days until it expires (default: never)")
+    create.add_argument("--scope", choices=SCOPES, default="read")
+    create.add_argument(
+        "--days", type=_end, dest="end", help="days until it expires (default: never)"
+    )
     create.set_defaults(act=_create)
     actions.add_parser("list", help="list all tokens").set_defaults(act=_list)
     revoke = actions.add_parser("revoke", help="revoke a token now")
@@ -42,8 +46,14 @@ def _arguments() -> argparse.ArgumentParser:
 
 
 def _create(services: Services, arguments: argparse.Namespace) -> None:
-    expires_at = datetime.now(UTC) + timedelta(days=arguments.days) if arguments.days else None
-    print(tokens.create(services, arguments.name, arguments.scope, expires_at).secret)
+    print(tokens.create(services, arguments.name, arguments.scope, arguments.end).secret)
+
+
+def _end(days: str) -> datetime:
+    try:
+        return datetime.fromisoformat(expiry(float(days)))
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def _list(services: Services, arguments: argparse.Namespace) -> None:

@@ -13,6 +13,8 @@ def write_whole(path: Path, data: bytes) -> None:
 
     What a process that was killed while it wrote this file left beside it is removed.
     """
+    if path.is_dir():
+        raise IsADirectoryError(f"a file is needed, got the folder {path}")
     _remove_left(path)
     beside = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:

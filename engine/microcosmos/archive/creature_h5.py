@@ -13,7 +13,7 @@ from ..naming import canonical, decode
 from ..spec.creature import Identity
 from . import file as hdf5
 from . import hdf5_guard
-from .creature import parse
+from .creature import CreatureError, parse
 
 FORMAT = "microcosmos-creature-hdf5/1"
 
@@ -74,6 +74,32 @@ def load(data: bytes) -> dict[str, Any]:
     if wrong := [name for name in texts if texts[name] != expected[name]]:
         raise ValueError(f"attributes must be as they are written here, got other {wrong}")
     return found
+
+
+def is_of_run(data: bytes) -> bool:
+    """Tell the file of a run, which is HDF5 of another `format`, from a creature file."""
+    if not data.startswith(hdf5.HDF5):
+        return False
+    try:
+        hdf5.load(data, FORMAT, only=())
+    except ValueError:
+        return True
+    return False
+
+
+def read(data: bytes) -> dict[str, Any]:
+    """Return the checked creature file in these bytes, which are JSON or HDF5.
+
+    Raises `ValueError` for anything else.
+    """
+    if not data.startswith(hdf5.HDF5):
+        return parse(data)
+    try:
+        return load(data)
+    except CreatureError:
+        raise
+    except ValueError as error:
+        raise ValueError(f"a creature is needed, as JSON or HDF5: {error}") from error
 
 
 def link(name: str) -> str:

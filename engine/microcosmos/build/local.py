@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..archive.atomic import write_whole
+from ..archive.beside import beside
 from ..experiments import Experiment, Report, Stopped, breeding
 from ..experiments.evolution import Evolution
 from ..search import never
@@ -111,7 +112,7 @@ def _carry_out(
         pass
     data, done = _save(experiment, state, archive), experiment.done(state)
     files = {archive.name: data} if done else {}
-    if done and (best := archive.with_suffix(".best.json")).exists():
+    if done and (best := beside(archive, ".best.json")).exists():
         files[best.name] = best.read_bytes()
     sinks.close(state.generation, files, done=done)
     return done
@@ -141,6 +142,6 @@ def _save(experiment: Experiment, state: Any, archive: Path) -> bytes:
     write_whole(archive, data)
     best = experiment.best(state)
     if best is not None:
-        path = archive.with_suffix(".best.json")
+        path = beside(archive, ".best.json")
         write_whole(path, json.dumps(best, indent=1).encode())
     return data

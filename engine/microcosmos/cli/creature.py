@@ -10,7 +10,8 @@ import typer
 from typer import Option
 
 from ..archive.atomic import write_whole
-from ..archive.creature import parse
+from ..archive.beside import beside
+from ..archive.creature_h5 import read
 from ..viz import networks
 from .app import CreaturePath, app, fail, failing
 from .modules import Modules, prepare_engine
@@ -40,11 +41,11 @@ def replay(
     from ..viz.replay import record
 
     with failing(file):
-        creature = parse(file.read_bytes())
+        creature = read(file.read_bytes())
         if check:
             _check(creature)
         else:
-            out = out or file.with_suffix(".replay")
+            out = out or beside(file, ".replay")
             write_whole(out, record(creature))
             print(out)
 
@@ -56,7 +57,7 @@ def audit(file: CreaturePath, out: Report = None, module: Modules = None) -> Non
     from ..audit.physics import audit as examine
 
     with failing(file):
-        found = examine(parse(file.read_bytes()))
+        found = examine(read(file.read_bytes()))
         _write(out, found)
     _print_audit(found)
     if not found["verdict"]["trusted"]:
@@ -81,7 +82,7 @@ def gradient(
 
     with failing(file):
         parts = tuple(by or ["genes"])
-        found = report_gradient(parse(file.read_bytes()), of, parts, starts=starts)
+        found = report_gradient(read(file.read_bytes()), of, parts, starts=starts)
         _write(out, found.document())
     for line in found.lines():
         print(line)
@@ -146,7 +147,7 @@ def _rendered(data: bytes, form: str) -> bytes:
     if data[:2] == ZIP:
         network = networks.load_tensorneat(data)[0]
     else:
-        network = networks.of_creature(parse(data)["identity"])
+        network = networks.of_creature(read(data)["identity"])
     if form == "tensorneat":
         return networks.dump_tensorneat(networks.write_tensorneat(network))
     return TEXTS[form](network).encode()

@@ -10,7 +10,8 @@ from rich.progress import Progress
 from typer import Argument, Option
 from typer.core import TyperGroup
 
-from ..archive.creature import parse
+from ..archive import creature_h5
+from ..archive.beside import beside
 from ..archive.file import HDF5, load
 from ..archive.quantities import Real
 from ..viz.figures import drawing, experiments
@@ -200,7 +201,7 @@ def show_paths(written: list[Path]) -> None:
 
 
 def _beside(file: Path, out: Path | None, name: str) -> Path:
-    return out or file.with_suffix(f".{name}.pdf")
+    return out or beside(file, f".{name}.pdf")
 
 
 def names_in(text: str | None) -> list[str] | None:
@@ -210,23 +211,24 @@ def names_in(text: str | None) -> list[str] | None:
 def _draw(file: Path, out: Path, audit: Path | None) -> None:
     """A creature file is simulated first; the file of a run holds its table or its archive."""
     data = file.read_bytes()
-    if audit and (data.startswith(HDF5) or out.suffix.lower() != ".png"):
+    of_run = creature_h5.is_of_run(data)
+    if audit and (of_run or out.suffix.lower() != ".png"):
         raise ValueError(f"`--audit` needs a .png of a creature, got {out} of {file}")
     trusted = verdicts([audit] if audit else [])
-    if data.startswith(HDF5) and "archive" in load(data)[0]:
+    if of_run and "archive" in load(data)[0]:
         drawing.archive(file, out, drawing.Print(), None, "fitness")
         return
-    if data.startswith(HDF5):
+    if of_run:
         experiments.save(experiments.of(data), out)
         return
 
     check(out)
-    if data[:1] == b"{":
+    if data.startswith((b"{", HDF5)):
         from ..device import prepare
         from ..viz.replay import record
 
         prepare(cache=CACHE)
-        data = record(parse(data))
+        data = record(creature_h5.read(data))
     export(data, out, **_noted(data, trusted))
 
 

@@ -77,7 +77,7 @@ def _open(client: Client, run: str, form: Format) -> tuple[RunFile, dict[str, Fi
         with failing(path):
             file = local.of_path(path)
             file.attributes  # noqa: B018 It refuses other files.
-        more = local.beside(path) if whole else {}
+        more = local.best_creature(path) if whole else {}
     elif path.suffix:
         raise ValueError(
             f"RUN must be an archive file or the id of a run; no file {run} exists"

@@ -85,6 +85,10 @@ def record(run: Run) -> "RunRecord":
     """Return the run of a server for statistics. Raises `ValueError` without an archive."""
     from ..statistics import RunRecord
 
+    if run.qd_score is None and "search" in run.spec and not run.generation:
+        raise ValueError(
+            f"{run.id}: a generation is needed; the run is {run.status} without one"
+        )
     if run.qd_score is None:
         raise ValueError(f"{run.id}: a search with an archive is needed, got {run.experiment}")
     done = f"{run.status} at generation {run.generation:,} of {run.generations:,}"

@@ -8,7 +8,6 @@ from typer import Option
 
 from ..archive import creature_h5, initial
 from ..archive.creature import parse
-from ..archive.file import HDF5, load
 from ..spec import Evolution, Spec
 from ..spec import parse as parse_spec
 from ..viz.figures.reading import read
@@ -61,13 +60,9 @@ def creatures(path: Path) -> list[CreatureFile]:
     """Return the creatures of a creature file or an archive; fail for any other file."""
     with failing(f"--from needs a creature file or an archive; {path}"):
         data = path.read_bytes()
-        if not data.startswith(HDF5):
-            return [parse(data)]
-        try:
-            load(data)
-        except ValueError:  # It is not the file of a run.
-            return [creature_h5.load(data)]
-        return _elites(data)
+        if creature_h5.is_of_run(data):
+            return _elites(data)
+        return [creature_h5.read(data)]
 
 
 def _elites(data: bytes) -> list[CreatureFile]:

@@ -39,7 +39,8 @@ def submit(
         list[str] | None,
         Option(
             metavar="FIELD=A,B,...",
-            help="Queue a run for each value of a field; several fields make a grid.",
+            help="Queue a run for each value of a field, which is given once; "
+            "several fields make a grid.",
         ),
     ] = None,
     name: Name = None,
@@ -90,7 +91,7 @@ def fork(
         list[str] | None,
         Option(
             metavar="AXIS=LOW:HIGH",
-            help="Start from the elites with measures in this range; repeatable.",
+            help="Start from the elites with measures in this range; repeatable, once an axis.",
         ),
     ] = None,
     whole: Annotated[bool, Option("--all", help="Start from all elites (default).")] = False,
@@ -153,17 +154,26 @@ def cancel(client: Client, ids: Ids) -> None:
 
 @server_command(RUNS)
 def delete(client: Client, ids: Ids, yes: Yes = False) -> None:
-    """Move runs or sweeps to the bin; `restore` brings them back within a day."""
+    """Move runs or sweeps to the bin; `restore` brings them back within a day.
+
+    Exit status 1 if all runs of a sweep are queued or running, so that none is deleted.
+    """
+    refused = False
     for one in [find(client, id) for id in ids]:
         if not yes and not typer.confirm(f"{describe(one)}. Delete?", err=True):
             say(f"{title(one)} is not deleted.")
             continue
-        record = one.delete().record
-        if record.get("total"):  # Some runs of the sweep remain.
-            say(f"{describe(one)}; the other runs have not ended: cancel them first")
-        if record.get("deleted", True):
-            undo = f"microcosmos restore {one.id[:8]}"
-            say(f"{title(one)} is in the bin. To restore it: {undo}")
+        before = one.record.get("total")
+        left = one.delete().record.get("total")
+        if left:
+            say(f"{describe(one)}; queued and running runs are kept: cancel them first")
+        if left and left == before:
+            refused = True
+            continue
+        gone = f"The ended part of {title(one)}" if left else title(one)
+        say(f"{gone} is in the bin. To restore it: microcosmos restore {one.id[:8]}")
+    if refused:
+        raise typer.Exit(1)
 
 
 @server_command(RUNS)

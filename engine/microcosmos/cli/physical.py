@@ -2,17 +2,19 @@
 
 import csv
 import sys
+from collections.abc import Iterable, Mapping, Sequence
 from io import StringIO
+from json import dumps, loads
 from pathlib import Path
 from typing import Annotated, Any
 
 from typer import Argument, Option
 
+from ..archive import creature_h5
 from ..archive.atomic import write_whole
-from ..archive.file import HDF5
 from ..archive.quantities import shown
 from .app import app, failing
-from .remote import Json, show
+from .remote import Json
 
 Length = Annotated[str, Option("--length", help="Real length of the body, such as 1mm.")]
 Period = Annotated[str, Option("--period", help="Real period of a stroke, such as 0.5s.")]
@@ -33,7 +35,7 @@ def units(
     length: Length,
     period: Period,
     out: Annotated[
-        Path | None, Option(help="File for the table of an archive, as CSV; default: print.")
+        Path | None, Option(help="File to write to, CSV or with --json JSON; default: print.")
     ] = None,
     json: Json = False,
 ) -> None:
@@ -42,15 +44,23 @@ def units(
 
     with failing(file):
         data = file.read_bytes()
-        if data.startswith(HDF5) and file.suffix == ".h5":
+        if creature_h5.is_of_run(data):
             _, columns = physical.of_archive(data, length, period)
-            _write(_csv(columns), out)
+            rows = _rows({name: column.tolist() for name, column in columns.items()})
+            _write(_json(rows) if json else _csv(columns, rows), out)
             return
-        found, numbers = physical.of_creature(data, length, period)
-    if json:
-        show({"cell_m": found.scales.cell, "step_s": found.scales.step} | numbers)
-        return
-    print(found.sentence())
+        found, numbers = physical.of_creature(creature_h5.read(data), length, period)
+        row = {"cell_m": found.scales.cell, "step_s": found.scales.step} | numbers
+        if json:
+            _write(_json(row), out)
+        elif out:
+            _write(_csv(row, [row]), out)
+        else:
+            print(found.sentence())
+            _print_numbers(numbers)
+
+
+def _print_numbers(numbers: Mapping[str, float]) -> None:
     for name, value in (
         ("speed", "speed_m_per_s"),
         ("speed of the nodes", "node_speed_m_per_s"),
@@ -62,11 +72,22 @@ def units(
             print(f"{title:>20}  {numbers[name]:.3g}")
 
 
-def _csv(columns: dict[str, Any]) -> str:
+def _rows(columns: Mapping[str, list[Any]]) -> list[dict[str, Any]]:
+    values = zip(*columns.values(), strict=True)
+    return [dict(zip(columns, row, strict=True)) for row in values]
+
+
+def _json(document: Any) -> str:
+    """Return JSON, which has null and no NaN."""
+    finite = loads(dumps(document), parse_constant=lambda _: None)
+    return f"{dumps(finite, indent=1)}\n"
+
+
+def _csv(names: Iterable[str], rows: Sequence[Mapping[str, Any]]) -> str:
     text = StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows(zip(*(column.tolist() for column in columns.values()), strict=True))
+    writer = csv.DictWriter(text, list(names), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
     return text.getvalue()
 
 

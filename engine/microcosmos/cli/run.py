@@ -19,7 +19,8 @@ from rich.progress import (
 from typer import Argument, Option
 
 from ..archive import choices as choices_file
-from ..archive.creature import parse
+from ..archive.beside import beside
+from ..archive.creature_h5 import read
 from ..archive.file import read_table
 from ..doctor.machine import memory_bytes
 from ..sinks.address import parse_all
@@ -28,7 +29,7 @@ from .app import CACHE, CreaturePath, OtherDevice, Set, app, console, fail, fail
 from .cluster import Certificate
 from .initial import From, with_initial
 from .modules import Modules, load_modules
-from .specs import changed, file_stem, read_spec, with_generations
+from .specs import changed, read_spec, spec_path, with_generations
 
 Choices = Annotated[
     Path | None,
@@ -85,7 +86,7 @@ def evolve(
     chosen = changed(read_spec(spec), settings or [])
     if generations is not None:
         chosen = with_generations(chosen, generations)
-    path = archive or file_stem(spec).with_suffix(".h5")
+    path = archive or beside(spec_path(spec), ".h5")
     evaluations = prepare_run(chosen, path)
     from ..device import device_kind
 
@@ -94,7 +95,7 @@ def evolve(
     options = {**_over(cluster, certificate), "choices": _read_choices(choices)}
     options["sinks"] = sink or ()
     run_with_progress(chosen, path, checkpoint_seconds, other_device, initial, **options)
-    best = path.with_suffix(".best.json")
+    best = beside(path, ".best.json")
     console.print(f"Done: {path}" + (f"; the best creature: {best}" if best.exists() else ""))
 
 
@@ -122,10 +123,10 @@ def refine(
 ) -> None:
     """Improve a creature by gradient steps that stay in its cell."""
     load_modules(module)
-    path = out or file.with_name(f"{file.name.removesuffix('.json')}.refined.h5")
+    path = out or beside(file, ".refined.h5")
     with failing(file):
         spec = Refinement(
-            creature=parse(file.read_bytes()),
+            creature=read(file.read_bytes()),
             archive=_archive(like),
             steps=steps,
             length=length,
@@ -259,6 +260,6 @@ def _print_comparison(path: Path) -> None:
     for name in before:
         if before[name] is not None and name != "step":
             print(f"{name:>20}  {before[name]:>12.6g}  {after[name]:>12.6g}")
-    best = path.with_suffix(".best.json")
+    best = beside(path, ".best.json")
     name = json.loads(best.read_bytes())["sha256"][:12]
     print(f"{len(rows) - 1} steps into {path}; the creature {name}: {best}")

@@ -94,7 +94,7 @@ def create_token(
         Option(
             help="read, write (also create runs and change your own), or admin (everything)."
         ),
-    ] = "write",
+    ] = "read",
     days: Days = None,
     json: Json = False,
 ) -> None:

@@ -27,8 +27,8 @@ def read_spec(name: str) -> Spec:
     return found
 
 
-def file_stem(name: str) -> Path:
-    """Return the path, without its ending, of the archive of a spec's run."""
+def spec_path(name: str) -> Path:
+    """Return the path beside which the archive of a spec's run is written."""
     if address := shared.address(name):
         return Path(f"share-{address.slug[:8]}")
     return Path(name.replace("/", "-") if name in presets() else name)
@@ -47,12 +47,17 @@ def changed(spec: Spec, settings: Sequence[str], option: str = "--set") -> Spec:
         return parse(applied(spec.model_dump(mode="json"), settings)) if settings else spec
 
 
-def value(text: str) -> Any:
-    """Parse JSON; return other text as it is."""
+def value(text: str, path: str) -> Any:
+    """Parse the JSON of a field; return other text as it is."""
     try:
-        return json.loads(text)
+        found = json.loads(text)
     except ValueError:
         return text
+    try:
+        json.dumps(found, allow_nan=False)
+    except ValueError:
+        raise typer.BadParameter(f"{path} needs finite numbers; got {text}") from None
+    return found
 
 
 def pair(text: str, option: str) -> tuple[str, str]:
@@ -73,7 +78,7 @@ def applied(spec: dict[str, Any], settings: Sequence[str]) -> dict[str, Any]:
         place: Any = spec
         for name in parents:
             place = _part(place, name, path)
-        place[_key(place, last, path)] = value(given)
+        place[_key(place, last, path)] = value(given, path)
     return spec
 
 
@@ -89,20 +94,27 @@ def patch(settings: Sequence[str]) -> dict[str, Any]:
 
 
 def grid(sweeps: Sequence[str]) -> dict[str, list[Any]]:
-    """Return values by path: a JSON list, or values with commas between them."""
+    """Return values by path, each once: a JSON list, or values with commas between them."""
     found: dict[str, list[Any]] = {}
     for text in sweeps:
         path, given = pair(text, "--sweep")
-        whole = value(given)
-        found[path] = whole if isinstance(whole, list) else [value(v) for v in given.split(",")]
+        if path in found:
+            raise typer.BadParameter(
+                f"--sweep needs a field once, with all its values; got {path} twice"
+            )
+        whole = value(given, path)
+        parts = given.split(",")
+        found[path] = whole if isinstance(whole, list) else [value(one, path) for one in parts]
     return found
 
 
 def region(bounds: Sequence[str]) -> dict[str, list[float]]:
-    """Return low and high by axis."""
-    found = {}
+    """Return low and high by axis, each once."""
+    found: dict[str, list[float]] = {}
     for text in bounds:
         axis, given = pair(text, "--region")
+        if axis in found:
+            raise typer.BadParameter(f"--region needs an axis once; got {axis} twice")
         try:
             low, high = map(float, given.split(":"))
         except ValueError:

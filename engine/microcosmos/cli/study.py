@@ -10,6 +10,7 @@ import typer
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 from typer import Argument, Option
 
+from ..archive.beside import beside
 from ..client.formatting import duration
 from .app import CACHE, app, console, failing
 from .modules import Modules, load_modules
@@ -53,7 +54,7 @@ def study(
         from ..study import plan, read, report
         from ..study.lock import alone
 
-        found = plan(read(file), folder or file.with_suffix(".study"), file.parent)
+        found = plan(read(file), folder or beside(file, ".study"), file.parent)
         if dry_run:
             _show(found, processes)
             return

@@ -169,7 +169,7 @@ class Client:
 
     def experiments(self) -> list[dict[str, Any]]:
         """Return the experiments, each with presets and the schema of its spec."""
-        return self.connection.read("experiments")
+        return list(self.connection.items("experiments"))
 
     def creature(self, sha: str) -> Creature:
         """Return the creature of this name. Raise `NotFound` if the server has none."""
@@ -246,7 +246,7 @@ class Client:
 
     def workers(self) -> list[dict[str, Any]]:
         """Return the live workers, with device, memory, load and run of each."""
-        return self.connection.read("workers")
+        return list(self.connection.items("workers"))
 
     def events(self, run: str | Run | None = None) -> Iterator[Event]:
         """Yield new events of all runs or of one, without an end."""

@@ -61,11 +61,11 @@ class Connection:
         """Yield all entries of a list; request each page when it is needed."""
         page = self.read(path, **params)
         while isinstance(page, dict):
-            yield from page["items"]
+            yield from errors.records(page["items"], self.url)
             if not (cursor := page.get("next")):
                 return
             page = self.read(path, **params, cursor=cursor)
-        yield from page
+        yield from errors.records(page, self.url)
 
     def rendering(self, path: str, timeout: float = 300.0) -> bytes:
         """Return a replay, picture or film, once the server has made it."""
@@ -100,11 +100,13 @@ class Connection:
         return self.json(self.ask(method, path, key=key, params=params, **body))
 
     def json(self, answer: httpx.Response) -> Any:
+        """Return the content of an answer; an object names itself where it lacks a field."""
         try:
-            return answer.json() if answer.content else None
+            found = answer.json() if answer.content else None
         except ValueError:
             kind = answer.headers.get("content-type", "")
             raise errors.foreign_answer(answer, self.url, kind) from None
+        return errors.record(found, self.url) if isinstance(found, dict) else found
 
     def ask(self, method: str, path: str, **options: Any) -> httpx.Response:
         """Return a successful answer, else raise `ServerError`."""

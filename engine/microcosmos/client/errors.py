@@ -46,6 +46,36 @@ class Refused(ServerError):
 KINDS = {401: NotAllowed, 403: NotAllowed, 404: NotFound, 409: Conflict}
 
 
+class Answer(dict[str, Any]):
+    """An object that a server sent; `NotMicrocosmos` for a field that it lacks."""
+
+    url: str
+
+    def __missing__(self, name: str) -> Any:
+        raise not_ours(self.url, f"without the field `{name}`")
+
+
+def record(found: Any, url: str) -> Answer:
+    """Return an object of an answer; raise `NotMicrocosmos` for anything else."""
+    if not isinstance(found, Mapping):
+        raise not_ours(url, f"with {found!r:.40} in place of a record")
+    answer = Answer(found)
+    answer.url = url
+    return answer
+
+
+def records(found: Any, url: str) -> list[Answer]:
+    """Return a list of objects of an answer; raise `NotMicrocosmos` for anything else."""
+    if not isinstance(found, list):
+        raise not_ours(url, f"with {found!r:.40} in place of a list")
+    return [record(one, url) for one in found]
+
+
+def not_ours(url: str, answer: str) -> NotMicrocosmos:
+    text = "as no Microcosmos server of this version does: is the address right?"
+    return NotMicrocosmos(f"{url} answers {answer}, {text}")
+
+
 def checked(answer: httpx.Response, url: str) -> httpx.Response:
     """Return a successful answer of a Microcosmos server, else raise its error."""
     kind = answer.headers.get("content-type", "").partition(";")[0].strip()

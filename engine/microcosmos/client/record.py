@@ -5,7 +5,7 @@ from typing import Any, ClassVar, Generic, Self, TypeVar
 from uuid import UUID
 
 from .connection import Connection
-from .errors import NotFound, Refused
+from .errors import NotFound, Refused, record
 
 T = TypeVar("T")
 
@@ -28,9 +28,9 @@ class Record:
     id = Field[str]()
     name = Field[str | None]()
 
-    def __init__(self, connection: Connection, record: Mapping[str, Any]):
+    def __init__(self, connection: Connection, document: Mapping[str, Any]):
         self._connection = connection
-        self.record = dict(record)
+        self.record: dict[str, Any] = record(document, connection.url)
         """All fields that the server has."""
 
     def __eq__(self, other: object) -> bool:
@@ -40,7 +40,7 @@ class Record:
         return hash(self.id)
 
     def refresh(self) -> Self:
-        self.record = self._connection.read(self._path)
+        self.record = record(self._connection.read(self._path), self._connection.url)
         return self
 
     def pause(self) -> Self:

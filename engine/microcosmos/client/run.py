@@ -85,7 +85,8 @@ class Run(Record):
         """Start a new run from elites of this one: from some, from a region's, or from all.
 
         `region` gives low and high along axes by name. `spec` holds the fields that differ;
-        None resets a field to its default.
+        None clears a field that may be empty, and resets another to its
+        default.
         """
         chosen: dict[str, Any] = {}
         if creatures is not None:
@@ -148,8 +149,8 @@ class Run(Record):
     def curves(self, points: int | None = None) -> Columns:
         """Return columns by generation: `qd_score`, `coverage`, `best`, and the summary's."""
         found = self._connection.read(f"{self._path}/generations", points=points)
-        summary = found.pop("summary")
-        return Columns(found | summary)
+        curves = {name: column for name, column in found.items() if name != "summary"}
+        return Columns(curves | found["summary"])
 
     def archive(self, generation: int | None = None) -> Archive:
         """Return the elites with all measures, now or after a generation."""

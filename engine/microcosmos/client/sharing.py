@@ -5,6 +5,7 @@ from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from .connection import Connection
+from .errors import record
 from .record import Field
 
 
@@ -15,7 +16,7 @@ class Share:
 
     def __init__(self, connection: Connection, document: Mapping[str, Any]):
         self._connection = connection
-        self.record = dict(document)
+        self.record: dict[str, Any] = record(document, connection.url)
         """All fields that the server has."""
 
     @property
@@ -43,16 +44,15 @@ def publish(
 
     `texts` are `title`, `credit` and `licence`. The commons show it if it is `listed`.
     """
-    given = {**texts, "expires_at": expiry(days)}
+    given = {**texts, "expires_at": None if days is None else expiry(days)}
     given = {name: value for name, value in given.items() if value is not None}
     found = connection.send("POST", "shares", {**what, **given, "listed": listed})
     return Share(connection, found)
 
 
-def expiry(days: float | None) -> str | None:
-    """Return the time `days` from now."""
-    if days is None:
-        return None
-    if days <= 0:
-        raise ValueError(f"`days` must be above 0, got {days}")
-    return (datetime.now(UTC) + timedelta(days=days)).isoformat()
+def expiry(days: float) -> str:
+    """Return the time `days` from now, as ISO 8601."""
+    now = datetime.now(UTC)
+    if not 0 < days <= (datetime.max.replace(tzinfo=UTC) - now).days:
+        raise ValueError(f"`days` must be above 0 and end before the year 10000, got {days}")
+    return (now + timedelta(days=days)).isoformat()

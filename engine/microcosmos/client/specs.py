@@ -39,7 +39,7 @@ def preset(connection: Connection, name: str) -> dict[str, Any]:
     """Return a preset by experiment and name, or by the name alone in quality-diversity."""
     known = {
         f"{experiment['experiment']}/{one['name']}": one["spec"]
-        for experiment in connection.read("experiments")
+        for experiment in connection.items("experiments")
         for one in experiment["presets"]
     }
     found = known.get(name) or known.get(f"quality-diversity/{name}")

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ..archive.atomic import write_whole
+from ..archive.beside import beside, stem
 from ..archive.quantities import Real
 from .citation import Publication
 from .crate import Extra, File
@@ -51,7 +52,7 @@ def export(
 
 def of_path(path: Path) -> RunFile:
     """Open an archive file; its name is that of the run."""
-    return RunFile(path.stem, path.read_bytes())
+    return RunFile(stem(path), path.read_bytes())
 
 
 def default_folder(runs: Sequence[RunFile], form: Format) -> Path:
@@ -59,9 +60,9 @@ def default_folder(runs: Sequence[RunFile], form: Format) -> Path:
     return Path(f"{name}-{form}")
 
 
-def beside(path: Path) -> dict[str, File]:
+def best_creature(path: Path) -> dict[str, File]:
     """Return the best creature that `evolve` has written beside an archive file."""
-    best = path.with_suffix(".best.json")
+    best = beside(path, ".best.json")
     if not best.is_file():
         return {}
     return {"best.json": File(best.read_bytes(), "the best creature, for `microcosmos replay`")}

@@ -8,6 +8,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from ..archive.beside import stem
+
 
 @dataclass(frozen=True)
 class Record:
@@ -32,6 +34,7 @@ def of_file(path: Path, spec: Mapping[str, Any], generation: int) -> Record:
     kept: dict[str, Any] = json.loads(json.dumps(spec))
     kept.get("search", {}).pop("generations", None)
     text = json.dumps([str(path.resolve()), kept], sort_keys=True)
-    stem = re.sub(r"[^A-Za-z0-9_.-]", "-", path.stem)[:40]
+    name = stem(path)
+    short = re.sub(r"[^A-Za-z0-9_.-]", "-", name)[:40]
     digest = hashlib.sha256(text.encode()).hexdigest()[:8]
-    return Record(f"{stem}-{digest}", path.stem, dict(spec), generation)
+    return Record(f"{short}-{digest}", name, dict(spec), generation)

@@ -1,6 +1,7 @@
 """The base class of all parts of a spec, and the declaration of their fields."""
 
 from collections.abc import Callable, Mapping, Sequence
+from decimal import ROUND_CEILING, Context
 from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field
@@ -28,6 +29,13 @@ def field(default: Any, *, unit: str = "", source: str = "", **limits: Any) -> A
     """Declare a field: its default, unit, the source of its method, and pydantic's limits."""
     extra: Any = {name: text for name, text in (("unit", unit), ("source", source)) if text}
     return Field(default=default, json_schema_extra=extra or None, **limits)
+
+
+def enough(needed: float) -> str:
+    """Return the four leading digits of the least value of a field, rounded up: a person who
+    sets what an error states has enough."""
+    digits = Context(prec=4, rounding=ROUND_CEILING).create_decimal_from_float(needed)
+    return f"{digits.normalize():f}"
 
 
 def sourced(source: str, **marks: bool) -> ConfigDict:

@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field, Tag, model_validator
 
 from . import reverse
-from .base import Part, field, name_in, one_of, sourced
+from .base import Part, enough, field, name_in, one_of, sourced
 from .body import Body, GrownBody, Walk, estimated_shape, is_unavailable, resolved
 from .coupling import Coupling
 from .scene import Fold, Scene
@@ -141,8 +141,8 @@ class Folding(Part):
             raise ValueError("`body` must have a joint")
         if (needed := self.gradient_bytes / 2**30) > self.memory:
             raise ValueError(
-                f"`memory` must be at least {needed:.3g} GiB for the gradient through "
-                f"{self.steps} steps, got {self.memory:g}"
+                f"`memory` must be at least {enough(needed)} GiB for the gradient through "
+                f"{self.steps} steps, got {self.memory:.12g}"
             )
         return self
 

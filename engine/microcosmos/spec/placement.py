@@ -1,7 +1,10 @@
 """Where bodies start in the box, and refusal of those that lack room there."""
 
+from math import ceil
+
 import numpy as np
 
+from .base import enough
 from .body import Body, GrownBody, is_unavailable, shape
 from .obstacles import crowded
 from .search import Task
@@ -56,13 +59,14 @@ def refuse_crowded(world: World, body: Body, task: Task) -> None:
         needed = reach[axis] + GAP
         if count > 1 and copies.spacing < needed:
             raise ValueError(
-                f"`world.copies.spacing` must be at least {needed:.4g} cells for a `body` that "
-                f"reaches {reach[axis]:.4g} cells along the {side}; got {copies.spacing:g}"
+                f"`world.copies.spacing` must be at least {enough(needed)} cells for a `body` "
+                f"that reaches {reach[axis]:.4g} cells along the {side}; got "
+                f"{copies.spacing:.12g}"
             )
         needed += (count - 1) * copies.spacing
         if getattr(world, side) < needed:
             raise ValueError(
-                f"`world.{side}` must be at least {needed:.4g} cells for {copies.count} "
+                f"`world.{side}` must be at least {ceil(needed)} cells for {copies.count} "
                 f"`world.copies`; got {getattr(world, side)}"
             )
 

@@ -52,8 +52,8 @@ class Energy(Part):
     def refuse_faint(self) -> Self:
         if self.consume and self.rate * self.amplitude < 1e-6:
             raise ValueError(
-                "`rate` times `amplitude` must be at least 1e-6, or float32 loses what is "
-                f"collected; got {self.rate * self.amplitude:g}"
+                "`rate` times `amplitude` must be 1e-6 or more, or float32 loses what is "
+                f"collected; got {self.rate * self.amplitude}"
             )
         return self
 

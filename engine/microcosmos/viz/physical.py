@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..archive import creature, export, file
+from ..archive import creature, creature_h5, export, file
 from ..archive import physical as scaling
 from ..archive.export import Source
 from ..archive.physical import Physical, columns, scaled_by, scene_of
@@ -36,16 +36,16 @@ def physical(source: Mapping[str, Any] | Source, length: str, period: str) -> di
     `0.5s`. Speeds are in m/s and viscosities in m²/s. Raise `ValueError` as `of_creature` and
     `of_archive` do.
     """
-    if isinstance(source, Mapping):
-        return dict(of_creature(source, length, period)[1])
-    data = export.source_bytes(source)
-    if data.startswith(file.HDF5):
-        return dict(of_archive(data, length, period)[1])
-    return dict(of_creature(data, length, period)[1])
+    if not isinstance(source, Mapping):
+        data = export.source_bytes(source)
+        if creature_h5.is_of_run(data):
+            return dict(of_archive(data, length, period)[1])
+        source = creature_h5.read(data)
+    return dict(of_creature(source, length, period)[1])
 
 
 def of_creature(
-    document: Mapping[str, Any] | bytes, length: str, period: str
+    document: Mapping[str, Any], length: str, period: str
 ) -> tuple[Physical, dict[str, float]]:
     """Return the scales of a creature file, and its numbers: SI units and none.
 

@@ -37,6 +37,7 @@ def command(fake, record, monkeypatch):
         ("POST", "sweeps"): SWEEP,
         ("GET", f"sweeps/{SWEEP['id']}"): SWEEP,
         ("POST", f"sweeps/{SWEEP['id']}/pause"): SWEEP,
+        ("DELETE", f"sweeps/{SWEEP['id']}"): httpx.Response(204),
         ("GET", "sweeps"): {"items": [SWEEP], "next": None},
         ("POST", "shares"): share,
         ("GET", "shares"): [share],
@@ -70,6 +71,38 @@ def test_a_sweep_is_submitted_with_its_grid(command):
     assert requests[-1].document == {"spec": spec, "seeds": 3, "grid": grid}
     assert made.stdout.strip() == SWEEP["id"]
     assert "A sweep of 6 runs" in made.stderr
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ("submit demo --sweep a.b=1 --sweep a.b=2", "--sweep needs a field once"),
+        ("fork 0f3c --region a=0:1 --region a=2:3", "--region needs an axis once; got a twice"),
+        ("submit demo --set a.b=NaN", "a.b needs finite numbers; got NaN"),
+        ("submit demo --set a.b=1e400", "a.b needs finite numbers; got 1e400"),
+        ("submit demo --set a.b=[1,-Infinity]", "a.b needs finite numbers; got [1,-Infinity]"),
+        ("submit demo --sweep a.b=NaN,1", "a.b needs finite numbers; got NaN"),
+    ],
+)
+def test_fields_that_cannot_be_sent_are_refused_by_name(given, words, command):
+    refused, requests = command(*given.split(), code=2)
+    assert words in " ".join(refused.stderr.split())
+    assert {one.method for one in requests} <= {"GET"}
+
+
+@pytest.mark.parametrize("days", ["3000000", "1e9", "nan", "inf", "0", "-1"])
+@pytest.mark.parametrize("given", [f"share {SHA}", "tokens create laptop"])
+def test_days_that_do_not_end_are_refused(given, days, command):
+    refused, requests = command(*given.split(), f"--days={days}", code=1)
+    expected = f"`days` must be above 0 and end before the year 10000, got {float(days)}"
+    assert refused.stderr.strip() == expected
+    assert not requests
+
+
+def test_a_sweep_of_which_nothing_can_be_deleted_is_an_error(command):
+    kept, _ = command("delete", "5eed", "-y", code=1)
+    expected = "Sweep 5eed0000: 6 queued; queued and running runs are kept: cancel them first"
+    assert kept.stderr.strip() == expected
 
 
 def test_deleting_again_after_a_lost_answer_succeeds(fake, record):
@@ -140,6 +173,7 @@ def test_tokens(command):
     made, requests = command("tokens", "create", "laptop", "--scope", "write")
     assert requests[-1][:3] == ("POST", "tokens", {"name": "laptop", "scope": "write"})
     assert made.stdout.strip() == "once"
+    assert command("tokens", "create", "phone")[1][-1].document["scope"] == "read"
     assert "laptop" in command("tokens", "list")[0].stdout
     assert json.loads(command("tokens", "list", "--json")[0].stdout) == [TOKEN]
     _, requests = command("tokens", "revoke", "70ce")

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from microcosmos.client import Sweep
+from microcosmos.client.connection import Connection
 from microcosmos.study import remote
 
 
@@ -23,7 +24,7 @@ class Server:
 
         class Fake(Sweep):
             def __init__(self):
-                super().__init__(None, {"status_counts": {"queued": 2}})
+                super().__init__(Connection(server.url), {"status_counts": {"queued": 2}})
 
             def refresh(self):
                 server.looks += 1

@@ -264,3 +264,19 @@ def test_tokens_are_made_and_revoked_on_the_command_line(
         tokens.principal_of(services, secret)
     with pytest.raises(SystemExit, match="No live token is named 'frank'"):
         commands.main(["revoke", "frank"])
+
+
+@pytest.mark.parametrize("days", ["0", "-1", "1e9", "nan"])
+def test_a_token_on_the_command_line_ends_or_has_no_days(
+    days, services, settings, monkeypatch, capsys
+):
+    """Zero days are not for ever."""
+    monkeypatch.setattr(commands, "Settings", lambda: settings)
+    with pytest.raises(SystemExit):
+        commands.main(["create", "frank", f"--days={days}"])
+    assert "`days` must be above 0 and end before the year 10000" in capsys.readouterr().err
+    with services.sessions.read() as session:
+        assert not tokens.all_tokens(session)
+    commands.main(["create", "frank"])
+    secret = capsys.readouterr().out.strip()
+    assert tokens.principal_of(services, secret).scope == "read"

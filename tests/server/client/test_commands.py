@@ -67,9 +67,14 @@ def test_a_sweep_is_named_deleted_and_restored(command, client):
     assert "is restored" in command("restore", sweep.id[:8]).stderr
     assert (sweep.refresh().total, client.sweep(sweep.id[:8])) == (2, sweep)
     waiting = client.submit("demo", seeds=2)
-    message = command("delete", waiting.id[:8], "--yes").stderr
-    assert "2 queued; the other runs have not ended: cancel them first" in message
+    message = command("delete", waiting.id[:8], "--yes", code=1).stderr
+    assert "2 queued; queued and running runs are kept: cancel them first" in message
+    assert "in the bin" not in message
     assert waiting.refresh().total == 2
+    next(waiting.runs()).cancel()
+    message = command("delete", waiting.id[:8], "--yes").stderr
+    assert "1 queued; queued and running runs are kept: cancel them first" in message
+    assert f"The ended part of Sweep {waiting.id[:8]} is in the bin" in message
 
 
 def test_the_table_of_a_sweep_compares_a_common_generation(command, client, services, report):
