@@ -5,13 +5,12 @@ import os
 import re
 from contextlib import suppress
 from pathlib import Path
-from typing import IO
 
 
 def write_whole(path: Path, data: bytes) -> None:
     """Replace a file; the old content stays readable on any failure. Raises `OSError`.
 
-    What a process that was killed while it wrote this file left beside it is removed.
+    Parts that killed processes left beside this file are removed.
     """
     if path.is_dir():
         raise IsADirectoryError(f"a file is needed, got the folder {path}")
@@ -19,7 +18,8 @@ def write_whole(path: Path, data: bytes) -> None:
     beside = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         with beside.open("wb") as file:
-            _lock(file)
+            with suppress(OSError):  # Some file systems have no locks.
+                fcntl.flock(file, fcntl.LOCK_EX)
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
@@ -39,17 +39,9 @@ def _remove_left(path: Path) -> None:
     name = re.compile(rf"\.{re.escape(path.name)}\.\d+\.part")
     for part in filter(lambda found: name.fullmatch(found.name), path.parent.iterdir()):
         with suppress(OSError), part.open("rb+") as file:
-            if _lock(file) and os.fstat(file.fileno()).st_size:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)  # Fails while one is writing.
+            if os.fstat(file.fileno()).st_size:
                 part.unlink()
-
-
-def _lock(file: IO[bytes]) -> bool:
-    """Lock a file; return False where another holds it or the file system has no locks."""
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        return False
-    return True
 
 
 def sync_folder(path: Path) -> None:

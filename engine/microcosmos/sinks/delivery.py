@@ -136,13 +136,12 @@ class Feed:
             self._archives += message.kind == "archive"  # Of those that found room.
 
     def end(self, message: Message) -> None:
-        """Let the thread end after what waits; a full queue makes room. Nothing is offered
-        after it, so a picture that it drops need not be counted."""
+        """Let the thread end after what waits; a full queue makes room."""
         while True:
             with suppress(Full):
                 self._queue.put_nowait(message)
                 return
-            with suppress(Empty):
+            with suppress(Empty):  # Pictures need no count any more: none is offered later.
                 self._queue.get_nowait()
 
     def close(self, until: float) -> None:

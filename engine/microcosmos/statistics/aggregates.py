@@ -10,6 +10,7 @@ from itertools import combinations
 from typing import Any
 
 import numpy as np
+import rfc8785
 
 from .comparison import FEWEST
 from .effects import Bootstrap, middle_mean, superiority
@@ -97,7 +98,7 @@ def across(
 
 
 Split = Mapping[tuple[str, ...], list[RunRecord]]
-"""Runs by the values of the tasks' fields as text, since some values are lists."""
+"""Runs by the values of the tasks' fields as canonical JSON, since some values are lists."""
 
 
 def _by_task(group: Group, tasks: Sequence[str]) -> Split:
@@ -106,7 +107,9 @@ def _by_task(group: Group, tasks: Sequence[str]) -> Split:
         missing = [path for path in tasks if path not in run.fields]
         if missing:
             raise ValueError(f"{run.name}: the spec has no field `{missing[0]}` for tasks")
-        found.setdefault(tuple(repr(run.fields[path]) for path in tasks), []).append(run)
+        found.setdefault(
+            tuple(rfc8785.dumps(run.fields[path]).decode() for path in tasks), []
+        ).append(run)
     return found
 
 

@@ -1,6 +1,7 @@
 """Measures of a run: a curve at its end or at evaluations, or its way to a value."""
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -102,10 +103,7 @@ class Measure:
         if self.curve not in run.curves:
             known = ", ".join(sorted(run.curves))
             raise ValueError(f"{run.name}: a curve must be one of {known}, got {self.curve!r}")
-        values = np.asarray(run.curves[self.curve], np.float64)
-        if self.curve in OF_ELITES:
-            return np.where(np.asarray(run.curves["coverage"]) > 0, values, -np.inf)
-        return values
+        return values_of(run.curves, self.curve)
 
     def _until(self, run: RunRecord) -> int:
         """Return the number of generations that ended by `at`."""
@@ -117,6 +115,14 @@ class Measure:
                 f"generation, to {last:,}, its last, got {self.at:,}"
             )
         return int(np.searchsorted(run.evaluations, self.at, side="right"))
+
+
+def values_of(curves: Mapping[str, np.ndarray], name: str) -> np.ndarray:
+    """Return a curve of a run; the best and mean fitness of no elites are minus infinity."""
+    values = np.asarray(curves[name], np.float64)
+    if name in OF_ELITES and "coverage" in curves:
+        return np.where(np.asarray(curves["coverage"]) > 0, values, -np.inf)
+    return values
 
 
 def has_negative_fitness(run: RunRecord) -> bool:

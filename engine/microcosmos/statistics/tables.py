@@ -2,6 +2,7 @@
 
 import csv as csv_module
 import json as json_module
+import re
 from collections.abc import Sequence
 from dataclasses import asdict
 from io import StringIO
@@ -19,6 +20,8 @@ PAIRS = ("measure", "first", "second", "U", "p", "p (Holm)", "A12", "95 %")
 OVERALL = ("measure", "groups", "H", "p")
 INTERVALS = ("quartiles", "95 %")
 """Columns with two numbers in a cell."""
+RANGE = re.compile(r"[\d.,e+]+ to [\d.,e+]+")
+"""An interval with two numbers, neither below 0: a dash before a minus is hard to read."""
 SYMBOLS = {"A12": "$A_{12}$", "U": "$U$", "H": "$H$", "p": "$p$"}
 """Titles of columns that LaTeX sets as mathematics."""
 COLUMNS = (
@@ -231,7 +234,7 @@ def _cell(text: str, title: str, column: str) -> str:
     if column == "l":
         return escaped(text)
     found = escaped(text.replace("< ", "<")).replace("-", "$-$")
-    if title in INTERVALS and "-" not in text:  # A dash before a minus is hard to read.
+    if title in INTERVALS and RANGE.fullmatch(text):
         found = found.replace(" to ", "--")
     return found
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..optional import require
 
-FLOAT = re.compile(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)[eE][-+]?[0-9]+")
+FLOAT = re.compile(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)[eE][-+]?[0-9]+$")
 """Numbers of YAML 1.2, such as `1e-2`, that PyYAML reads as text."""
 
 

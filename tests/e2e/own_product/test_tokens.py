@@ -61,6 +61,8 @@ def make_a_token(page: Page) -> str:
     page.get_by_role("link", name="Settings").click()
     expect(page.get_by_role("heading", name="admin")).to_be_visible()
     page.get_by_label("Owner").fill("alice")
+    page.get_by_role("combobox", name="Scope").select_option("Read and write")
+    page.get_by_label("Owner").focus()
     page.keyboard.press("Enter")
     shown = page.locator(".secret code")
     expect(shown).to_be_visible()

@@ -106,6 +106,13 @@ def test_a_full_queue_drops_and_never_waits(instead, monkeypatch, caplog):
     assert "20,001 of 20,001 messages are not delivered" in caplog.text
 
 
+def wait_until_taken(feed):
+    end = time.monotonic() + 60
+    while feed._queue.qsize():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
 def test_pictures_go_on_after_one_found_a_full_queue(tmp_path, instead, monkeypatch):
     """The process reads nothing until a file is there, so that the queue stays full."""
     gate, seen = tmp_path / "gate", tmp_path / "seen"
@@ -114,14 +121,12 @@ def test_pictures_go_on_after_one_found_a_full_queue(tmp_path, instead, monkeypa
     feed = delivery.Feed(ADDRESS, RECORD)
     large = delivery.Message({"kind": "report", "step": 0, "values": {}}, bytes(1 << 22))
     feed.offer(large)  # The pipe is full: the thread waits in the middle of it.
-    while feed._queue.qsize():
-        time.sleep(0.01)
+    wait_until_taken(feed)
     for step in (1, 2):
         feed.offer(delivery.Message({"kind": "report", "step": step, "values": {}}))
     feed.offer(delivery.Message({"kind": "archive", "step": 3}, b"dropped"))
     gate.touch()
-    while feed._queue.qsize():
-        time.sleep(0.01)
+    wait_until_taken(feed)
     feed.offer(delivery.Message({"kind": "archive", "step": 4}, b"delivered"))
     feed.end(delivery.Message({"kind": "end", "done": True}))
     feed.close(time.monotonic() + 60)

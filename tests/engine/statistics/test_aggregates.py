@@ -71,6 +71,18 @@ def test_tasks_may_be_lists(run):
     assert "Over 1 task (search.initial" in tables.aggregates_text([found])
 
 
+def test_numbers_of_tasks_are_equal_in_any_form(run):
+    def made(width, best):
+        found = [run(best, seed=seed) for seed in range(5)]
+        for one in found:
+            one.fields["world.width"] = width
+        return found
+
+    runs = {"a": made(96, 1.0), "b": made(96.0, 2.0)}
+    (task,) = across(named(runs), "best", ["world.width"], FEW).tasks
+    assert task == {"world.width": 96}
+
+
 def test_a_run_without_elites_has_no_score(run, group_of):
     empty = run(0.0, seed=5, curves={"coverage": np.zeros(4)})
     groups = named({"a": group_of([1.0] * 5), "b": [*group_of([2.0] * 4), empty]})

@@ -56,6 +56,13 @@ def test_tables_say_that_a_run_has_no_elites(costs):
     assert measure["groups"][1]["values"] == [*BETTER, None, None]
 
 
+def test_latex_has_no_dash_between_a_word_and_a_number(run):
+    curves = {"coverage": np.ones(4)} | {name: np.full(4, 3.0) for name in ("best", "mean")}
+    full = [run(3.0, seed=seed, curves=curves) for seed in range(3)]
+    groups = named({"a": [*full, run(0.0, seed=4, curves=EMPTY)]})
+    assert "no elites to 3" in tables.latex(compare(groups, ["best"], FEW))
+
+
 def test_sums_of_negative_fitness_have_a_caution(costs, group_of):
     caution = "Some runs have negative fitness. A QD score adds up fitness"
     assert caution in tables.text(compare(costs, ["qd_score"], FEW))

@@ -160,6 +160,12 @@ def test_yaml_reads_numbers_with_an_exponent():
     assert parse(text).sweeps["a"].grid == {"world.viscosity": [0.01, 0.25, 5.0]}
 
 
+@pytest.mark.parametrize("title", ["1e3 evaluations", "12e4567890abc", "2e-2 and 5e-2"])
+def test_yaml_reads_words_that_begin_like_numbers(title):
+    rest = "sweeps: {a: {spec: demo}}, comparisons: {x: {groups: [a]}}"
+    assert parse(f"{{title: {title}, {rest}}}").title == title
+
+
 def test_comparisons_of_one_file_are_refused(study_file):
     comparisons = {name: {"groups": ["viscosity"]} for name in ("a b", "a-b")}
     with pytest.raises(ValueError, match="got 'a b' and 'a-b', which are both 'a-b'"):

@@ -58,7 +58,8 @@ describe("a file", () => {
   });
 
   it("that is no creature is refused", () => {
-    for (const body of [null, [], {}, { identity: null }, { ...creature(1), ancestors: [{}] }]) {
+    const ancestors = [[{}], 3, null, {}].map((each) => ({ ...creature(1), ancestors: each }));
+    for (const body of [null, [], {}, { identity: null }, ...ancestors]) {
       expect(() => verified(body as never)).toThrow("no creature");
     }
   });
@@ -75,6 +76,7 @@ describe("a file", () => {
     await expect(limited(new Response(endless), 1000)).rejects.toThrow("at most 1000 bytes");
     expect(sent).toBeLessThan(2000);
     expect(cancelled).toBe(true);
+    expect((await limited(new Response(null, { status: 204 }))).size).toBe(0);
     const whole = await limited(new Response("ab".repeat(500)), 1000);
     expect(await whole.text()).toBe("ab".repeat(500));
   });

@@ -70,7 +70,8 @@ export async function limited(answer: Response, most = MAX_BYTES): Promise<Blob>
 
 /** Pieces of a body; it is cancelled where the caller stops. Safari's streams cannot be iterated. */
 async function* chunks({ body }: Response) {
-  const reader = body!.getReader();
+  if (!body) return;
+  const reader = body.getReader();
   try {
     for (let { done, value } = await reader.read(); !done; { done, value } = await reader.read())
       yield value!;
@@ -79,7 +80,7 @@ async function* chunks({ body }: Response) {
   }
 }
 
-/** What a file says; null for text that is not JSON. */
+/** The content of a file; null for text that is not JSON. */
 function parsed(text: string): unknown {
   try {
     return JSON.parse(text);
@@ -91,7 +92,8 @@ function parsed(text: string): unknown {
 /** The creature of a file and its ancestors; throw unless each hash is right. */
 export function verified(body: Creature & { ancestors?: Creature[] }) {
   const { ancestors = [], ...creature } = body ?? {};
-  if (![creature, ...ancestors].every((each) => each?.identity)) throw new Error(text.noShare);
+  const isWhole = Array.isArray(ancestors) && [creature, ...ancestors].every((each) => each?.identity);
+  if (!isWhole) throw new Error(text.noShare);
   for (const { identity, sha256 } of [creature, ...ancestors]) {
     const found = nameOf(identity);
     if (found !== sha256) throw new Error(text.wrongHash(sha256, found));

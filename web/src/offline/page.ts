@@ -22,7 +22,7 @@ const TEMPLATE = "/saved.html";
 export async function pageOf(about: About, signal: AbortSignal): Promise<Blob> {
   const sha = about.creature.sha256;
   const [template, replay, evaluation, kernel] = await Promise.all([
-    fetch(TEMPLATE).then((answer) => answer.text()),
+    fetch(TEMPLATE, { signal }).then((answer) => answer.text()),
     ready(() => api.readReplay(sha), signal),
     ready(() => api.readEvaluation(sha), signal),
     isInstalled ? kernelBytes() : null,
@@ -33,6 +33,7 @@ export async function pageOf(about: About, signal: AbortSignal): Promise<Blob> {
     [DATA.evaluation]: await packed(evaluation),
     ...(kernel && { [DATA.kernel]: await packed(kernel) }),
   };
+  signal.throwIfAborted();
   return new Blob([filled(template, about.title, data)], { type: "text/html" });
 }
 

@@ -29,10 +29,11 @@ interface Props {
 
 export function RunRow({ id, face, columns, experiments, selected, knownTags, onSelect }: Props) {
   const run = useStore((state) => state.runs.get(id));
+  const refusal = useRefusal(run);
   if (!run) return null; // Just removed for good.
   const title = titleOf(run, experiments);
   const name = `${title} ${shortId(run.id)}`;
-  const readOnly = useRefusal(run) !== null || run.deleted_at !== null;
+  const readOnly = refusal !== null || run.deleted_at !== null;
   return (
     <tr class={selected ? "selected-row" : ""}>
       <td class="row-choice">

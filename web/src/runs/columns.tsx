@@ -140,8 +140,7 @@ export function groupingOf(address: URLSearchParams): string {
   return Object.hasOwn(OF_GROUP, given) ? given : "";
 }
 
-/** The group of a run; empty without a grouping. */
-/** A run that was just removed for good has no group. */
+/** The group of a run; empty without a grouping, and for a run that was just removed for good. */
 export const groupName = (run: Run | undefined, grouping: string): string =>
   (run && OF_GROUP[grouping]?.(run)) ?? "";
 

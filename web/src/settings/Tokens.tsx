@@ -51,7 +51,7 @@ export function limitsOf({ max_running, max_queued, device_hours, used_hours }: 
 
 function NewToken({ onMade }: { onMade: (made: CreatedToken) => void }) {
   const [name, setName] = useState("");
-  const [scope, setScope] = useState<TokenScope>("write");
+  const [scope, setScope] = useState<TokenScope>("read");
   const [days, setDays] = useState("90");
   const [limits, setLimits] = useState<Limits>({});
   const { busy, error, onSubmit } = useSubmit(async () => {

@@ -21,7 +21,7 @@ describe("choices", () => {
   it("that wait already are not taken back with new ones", () => {
     const known = choices([null, "aa"], [4, "bb"]);
     expect(withoutWaiting(["aa", "bb", "cc"], known)).toEqual(["bb", "cc"]);
-    expect(withoutWaiting(["aa"], undefined)).toEqual(["aa"]);
+    expect(withoutWaiting(["aa"], choices())).toEqual(["aa"]);
   });
 
   it("can be made until a run has ended", () => {

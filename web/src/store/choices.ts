@@ -7,7 +7,7 @@ import { SLOW_MS, useFetched } from "./fetch";
 import { useThrottled } from "./polling";
 import { epochOf } from "./state";
 import { currentState, update, useStore } from "./store";
-import { offerUndo, orShowError } from "./toasts";
+import { offerUndo, orShowError, showToast } from "./toasts";
 import { text } from "./text";
 
 export const MAX_CHOSEN = 64;
@@ -35,17 +35,20 @@ export function useChoices(run: Run | undefined): Choices | undefined {
 
 /** Choose creatures, and offer to take them back; return true on success. */
 export async function choose(id: string, creatures: string[]): Promise<boolean> {
-  const added = withoutWaiting(creatures, currentState().choices.get(id));
-  const choices = await orShowError(api.chooseCreatures(id, creatures));
+  const known = currentState().choices.get(id) ?? (await orShowError(api.readChoices(id)));
+  const choices = known && (await orShowError(api.chooseCreatures(id, creatures)));
   if (!choices) return false;
   keep(id, choices);
-  offerUndo(text.chosen(creatures.length), () => void (added.length > 0 && takeBack(id, added)));
+  const added = withoutWaiting(creatures, known);
+  const note = text.chosen(creatures.length);
+  if (added.length > 0) offerUndo(note, () => void takeBack(id, added));
+  else showToast({ kind: "note", text: note });
   return true;
 }
 
 /** Creatures that no earlier choice has yet: Undo takes these back alone. */
-export function withoutWaiting(creatures: readonly string[], known: Choices | undefined): string[] {
-  const waiting = known?.items.filter(({ generation }) => generation === null) ?? [];
+export function withoutWaiting(creatures: readonly string[], { items }: Choices): string[] {
+  const waiting = items.filter(({ generation }) => generation === null);
   return creatures.filter((name) => !waiting.some(({ creature }) => creature === name));
 }
 

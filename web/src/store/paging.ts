@@ -20,17 +20,21 @@ export interface Pages<T> {
 
 type Read<T> = (cursor?: string) => Promise<Page<T>>;
 
-/** Reads the first page or, with a cursor, the next one; calls back with all items so far. */
-export function pagesOf<T>(read: Read<T>, show: (page: Page<T>) => void, fail: (reason: unknown) => void) {
+/** Reads the first page or, with a cursor, the next one; `show` gets it, and the cursor. */
+export function pagesOf<T>(
+  read: Read<T>,
+  show: (page: Page<T>, cursor?: string) => void,
+  fail: (reason: unknown) => void,
+) {
   let newest = 0;
   let loading = false;
-  return async (before: Page<T> | null): Promise<void> => {
-    if (before && loading) return;
+  return async (cursor?: string): Promise<void> => {
+    if (cursor !== undefined && loading) return;
     loading = true;
     const request = ++newest;
     try {
-      const { items, next } = await read(before?.next ?? undefined);
-      if (request === newest) show({ items: [...(before?.items ?? []), ...items], next });
+      const page = await read(cursor);
+      if (request === newest) show(page, cursor);
     } catch (reason) {
       if (request === newest) fail(reason);
     }
@@ -43,16 +47,17 @@ export function usePages<T>(read: Read<T>, key: (item: T) => string): Pages<T> {
   const [page, setPage] = useState<Page<T> | null>(null);
   const [error, setError] = useState<string | null>(null);
   const epoch = useStore((state) => state.epoch);
-  const show = (found: Page<T>) => {
-    setPage(found);
+  const show = ({ items, next }: Page<T>, cursor?: string) => {
+    setPage((old) => ({ items: [...((cursor !== undefined && old?.items) || []), ...items], next }));
     setError(null);
   };
   const load = useRef(pagesOf(read, show, (reason) => setError(messageOf(reason)))).current;
-  useEffect(() => void load(null), [epoch]);
+  useEffect(() => void load(), [epoch]);
+  const next = page?.next;
   return {
     items: page?.items ?? null,
     error,
-    more: page?.next ? () => void load(page) : null,
+    more: next ? () => void load(next) : null,
     replace: (changed) =>
       setPage(
         (old) =>

@@ -41,7 +41,7 @@ const batched = new Map<string, () => void>();
 const lacking = new Set<string>();
 /** Functions that stop the requests of single creatures. */
 const requests = new Map<string, () => void>();
-/** What each list on the page wants rendered, in its order. */
+/** Creatures that each list on the page wants rendered, in its order. */
 const waiting = new Map<symbol, string[]>();
 const listeners = new Set<() => void>();
 

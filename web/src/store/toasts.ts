@@ -52,7 +52,7 @@ export function offerUndo(note: string, undo: () => void): number {
 
 const UNDO_MS = 4000;
 
-/** What is done soon, by a name: asking twice does it once, and undoing it undoes both. */
+/** Names of actions that are done soon: asking twice does one once, and undoing it undoes both. */
 const delayed = new Set<string>();
 
 /** Do something after a delay in which it can be undone. */

@@ -37,8 +37,11 @@ export function newIdempotencyKey(): string {
   return [...parts].map((part) => part.toString(16).padStart(8, "0")).join("");
 }
 
+/** The code of a key that an input method has taken. Safari sends Enter after the conversion has ended. */
+const TAKEN = 229;
+
 /** True for a key that an input method takes, as Enter to accept a conversion. */
-export const composes = (event: KeyboardEvent) => event.isComposing || event.key === "Process";
+export const composes = (event: KeyboardEvent) => event.isComposing || event.keyCode === TAKEN;
 
 /** A signal that is aborted when the component is left. */
 export function useLeaving(): AbortSignal {

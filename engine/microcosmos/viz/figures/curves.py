@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from ...statistics.measures import values_of
 from .axes import fitness_label
 from .groups import Group, spread
 from .reading import Described
@@ -56,7 +57,7 @@ def _refuse_unknown(shown: Sequence[str], groups: Sequence[Group]) -> None:
 def _group(panel: Any, group: Group, name: str, against: str, number: int) -> None:
     colour, dash = COLOURS[number % len(COLOURS)], DASHES[number % len(DASHES)]
     factor = 100 if name in ("coverage", "corrected_coverage", "hit_rate") else 1  # Per cent.
-    values = [factor * run.curves[name] for run in group.runs]
+    values = [factor * values_of(run.curves, name) for run in group.runs]
     places = [_places(run.curves, against) for run in group.runs]
     if len(values) > 1:
         for x, y in zip(places, values, strict=True):

@@ -43,7 +43,11 @@ def grouped(runs: Sequence[Archive]) -> list[Group]:
 
 
 def spread(runs: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return lower quartile, median and upper quartile, up to the end of the shortest run."""
+    """Return lower quartile, median and upper quartile, up to the end of the shortest run.
+
+    They are not finite where they lie among infinite values.
+    """
     length = min(map(len, runs))
     values = np.stack([run[:length] for run in runs])
-    return tuple(np.quantile(values, (0.25, 0.5, 0.75), axis=0))
+    with np.errstate(invalid="ignore"):
+        return tuple(np.quantile(values, (0.25, 0.5, 0.75), axis=0))

@@ -1,6 +1,6 @@
 """Sentences in physical units for captions of groups of runs."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,7 +10,8 @@ from ...archive.quantities import Real, like, shown, square
 from ...exports import si
 from ...exports.run_file import fitness_of
 from ...statistics import Comparison
-from ...statistics.wording import number
+from ...statistics.effects import quartiles
+from ...statistics.measures import values_of
 from .caption import NAMES
 from .groups import Group
 from .reading import plugins_of
@@ -37,7 +38,10 @@ def of_curves(groups: Sequence[Group], shown_curves: Sequence[str], real: Real) 
     stated = [
         Stated(
             f"median {NAMES.get(name, f'{name} fitness')} at the end",
-            [float(np.median([run.curves[name][-1] for run in one.runs])) for one in groups],
+            [
+                quartiles(np.array([values_of(run.curves, name)[-1] for run in one.runs]))[1]
+                for one in groups
+            ],
         )
         for name in shown_curves
         if name in OF_FITNESS
@@ -75,12 +79,18 @@ def _sentence(
     fluids = [one.viscosity(run.spec.scene) for one, run in zip(scaled, runs, strict=True)]
     parts = []
     for one in stated:
-        texts = [_shown(*given) for given in zip(one.values, runs, scaled, strict=True)]
-        if all(texts):
-            parts.append(f"the {one.title} is {_each(names, texts)}")
+        texts = {
+            name: _shown(*given)
+            for name, *given in zip(names, one.values, runs, scaled, strict=True)
+            if np.isfinite(given[0])  # Others have no elites.
+        }
+        if texts and all(texts.values()):
+            parts.append(f"the {one.title} is {_each(texts, len(texts) < len(names))}")
     if all(fluid is not None for fluid in fluids):
-        texts = [f"{square(fluid)}, {like(fluid)}" for fluid in fluids if fluid is not None]
-        parts.append(f"the kinematic viscosity is {_each(names, texts)}")
+        known = [f"{square(fluid)}, {like(fluid)}" for fluid in fluids if fluid is not None]
+        parts.append(
+            f"the kinematic viscosity is {_each(dict(zip(names, known, strict=True)))}"
+        )
     given = (
         f"With a body of {shown(real.length, 'm')} and a stroke of {shown(real.period, 's')}"
     )
@@ -97,15 +107,15 @@ def _shown(value: float, run: Any, scaled: si.Scaled) -> str:
     factor = None if unit is None else scaled.factor(unit)
     if unit is None or factor is None:
         return ""
-    if not np.isfinite(value):
-        return number(value)
     return f"{shown(value * float(factor), unit.si)}{unit.about}"
 
 
-def _each(names: Sequence[str], texts: Sequence[str]) -> str:
-    """Return one text, one for each group by name, or the first and the last of many."""
-    if len(set(texts)) == 1:
-        return texts[0]
-    if len(texts) > MOST:
-        return f"{texts[0]} ({names[0]}) to {texts[-1]} ({names[-1]})"
-    return ", ".join(f"{text} ({name})" for name, text in zip(names, texts, strict=True))
+def _each(texts: Mapping[str, str], named: bool = False) -> str:
+    """Return one text, one for each group by name, or the first and the last of many.
+
+    A text of all groups has no names, unless it is `named`.
+    """
+    if len(set(texts.values())) == 1 and not named:
+        return next(iter(texts.values()))
+    each = [f"{text} ({name})" for name, text in texts.items()]
+    return f"{each[0]} to {each[-1]}" if len(each) > MOST else ", ".join(each)

@@ -29,7 +29,7 @@ def made():
         document["archive"] = {"descriptors": axes, **cells}
         curves = {
             "best": np.array(best, float),
-            "coverage": np.linspace(0, 0.5, len(best)),
+            "coverage": np.linspace(0.1, 0.5, len(best)),
             "qd_score": np.cumsum(best),
             "evaluations": 16.0 * np.arange(1, len(best) + 1),
         }

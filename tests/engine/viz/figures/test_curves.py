@@ -48,6 +48,15 @@ def test_a_group_is_drawn_by_its_median_between_its_quartiles(runs):
     assert sum(line.get_label() == "_run" for line in panel.get_lines()) == 5
 
 
+def test_nothing_is_drawn_while_an_archive_is_empty(runs):
+    for one in runs[:3]:
+        one.curves["coverage"][:2] = 0
+    panel = curves.curves(grouped(runs[:5])).axes[0]
+    (median,) = lines(panel)
+    assert np.isfinite(median.get_ydata()).tolist() == [False, False, True]
+    assert panel.get_ylim()[0] > -10
+
+
 def test_specs_are_told_apart_by_the_fields_in_which_they_differ(runs):
     figure = curves.curves(grouped(runs), shown=["best"], against="generations")
     (legend,) = figure.legends
@@ -80,7 +89,7 @@ def test_a_curve_that_is_not_there_is_refused_with_those_that_are(runs):
 def test_coverage_is_drawn_in_per_cent(runs):
     panel = curves.curves(grouped(runs[:1]), shown=["coverage"]).axes[0]
     (line,) = lines(panel)
-    np.testing.assert_allclose(line.get_ydata(), [0, 25, 50])
+    np.testing.assert_allclose(line.get_ydata(), [10, 30, 50])
     assert panel.get_ylabel() == "Coverage [%]"
 
 

@@ -91,6 +91,14 @@ def test_curves_state_the_last_median_of_each_group(run):
     assert "the median best fitness at the end is 280 µm/s, and the kinematic" in text
 
 
+def test_a_group_without_elites_has_no_number_in_units(run):
+    runs = [run(0.5, 0), run(0.5, 1, world={"viscosity": 0.4})]
+    for one in runs[1:]:
+        one.curves["coverage"][:] = 0
+    text = real.of_curves(grouped(runs), ["best"], REAL)
+    assert "the median best fitness at the end is 200 µm/s (world viscosity 0.05), and" in text
+
+
 def test_worlds_without_a_fluid_are_refused(record):
     with pytest.raises(ValueError, match=r"`world.fluid` must be true for physical units"):
         of(record, ["best"], a=([(0.5, 0)], {"world": {"fluid": False}}))

@@ -39,7 +39,7 @@ function within(field: Field, words: readonly string[]): Field | null {
   return insides.some((inside) => within(inside, words)) ? field : null;
 }
 
-/** What the server says about one number that does not fit to the others, not about their product. */
+/** A message of the server about one number that does not fit to the others, not about a product. */
 const LEAST_OR_MOST = /^[^`]*(?:`[^`]*`)?[^`]* must be at (least|most) ([\d.,]*\d(?:e[+-]?\d+)?)/;
 
 /** A number that mends a wrong one: the nearest permitted, or the one that a message names; else null. */
