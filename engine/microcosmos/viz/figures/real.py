@@ -80,9 +80,9 @@ def _sentence(
     parts = []
     for one in stated:
         texts = {
-            name: _shown(*given)
-            for name, *given in zip(names, one.values, runs, scaled, strict=True)
-            if np.isfinite(given[0])  # Others have no elites.
+            name: _shown(value, run, of_run)
+            for name, value, run, of_run in zip(names, one.values, runs, scaled, strict=True)
+            if np.isfinite(value)  # Others have no elites.
         }
         if texts and all(texts.values()):
             parts.append(f"the {one.title} is {_each(texts, len(texts) < len(names))}")
