@@ -12,5 +12,5 @@ def stem(path: Path) -> str:
 
 
 def beside(path: Path, ending: str) -> Path:
-    """Return the path of the file with another ending, beside a file."""
+    """Return the path of a file beside this one, with its name and another ending."""
     return path.with_name(stem(path) + ending)

@@ -77,7 +77,7 @@ def load(data: bytes) -> dict[str, Any]:
 
 
 def is_of_run(data: bytes) -> bool:
-    """Tell the file of a run, which is HDF5 of another `format`, from a creature file."""
+    """Return whether the bytes are the file of a run, which is HDF5 of another `format`."""
     if not data.startswith(hdf5.HDF5):
         return False
     try:

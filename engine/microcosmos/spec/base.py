@@ -32,8 +32,10 @@ def field(default: Any, *, unit: str = "", source: str = "", **limits: Any) -> A
 
 
 def enough(needed: float) -> str:
-    """Return the four leading digits of the least value of a field, rounded up: a person who
-    sets what an error states has enough."""
+    """Return the least value that a field needs, rounded up to four digits.
+
+    An error states it, and the field accepts what the error states.
+    """
     digits = Context(prec=4, rounding=ROUND_CEILING).create_decimal_from_float(needed)
     return f"{digits.normalize():f}"
 

@@ -118,7 +118,7 @@ class Measure:
 
 
 def values_of(curves: Mapping[str, np.ndarray], name: str) -> np.ndarray:
-    """Return a curve of a run; the best and mean fitness of no elites are minus infinity."""
+    """Return a curve of a run; best and mean fitness without elites are minus infinity."""
     values = np.asarray(curves[name], np.float64)
     if name in OF_ELITES and "coverage" in curves:
         return np.where(np.asarray(curves["coverage"]) > 0, values, -np.inf)

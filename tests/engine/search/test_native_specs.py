@@ -223,7 +223,7 @@ COEFFICIENTS = {
 }
 """Where the kernel gets numbers from: a function, and the place in what it returns."""
 TELLING = (0, 1, 8, 15)
-"""Seeds whose specs notice all of them; others are tried after these."""
+"""Seeds of specs that notice every wrong coefficient; all others are tried after these."""
 
 
 @pytest.mark.long

@@ -52,7 +52,7 @@ export function offerUndo(note: string, undo: () => void): number {
 
 const UNDO_MS = 4000;
 
-/** Names of actions that are done soon: asking twice does one once, and undoing it undoes both. */
+/** Names of delayed actions. An action that is delayed twice is done once, and one undo stops it. */
 const delayed = new Set<string>();
 
 /** Do something after a delay in which it can be undone. */
