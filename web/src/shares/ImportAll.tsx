@@ -1,11 +1,11 @@
 /** Import all creatures of a shared archive, each of them verified by its hash in this browser. */
 
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useState } from "preact/hooks";
 import { importCreature } from "../api/client";
 import { foreignFileOf, readForeignCreature, readForeignNames } from "../api/foreign";
 import { useFetched } from "../store/fetch";
 import { useRefusal } from "../store/principal";
-import { useSubmit } from "../ui/forms";
+import { useLeaving, useSubmit } from "../ui/forms";
 import { shortId } from "../ui/format";
 import { Card, Progress } from "../ui/Page";
 import { text } from "./text";
@@ -15,11 +15,10 @@ export function ImportAll({ url }: { url: string }) {
   const refusal = useRefusal();
   const { value: names } = useFetched(() => readForeignNames(url), [url]);
   const [done, setDone] = useState(0);
-  const left = useRef(false);
-  useEffect(() => () => void (left.current = true), []);
+  const leaving = useLeaving();
   const { busy, error, onSubmit } = useSubmit(async () => {
     // What was imported before an error stays.
-    for (let k = done; k < names!.length && !left.current; k++) {
+    for (let k = done; k < names!.length && !leaving.aborted; k++) {
       const { file } = await readForeignCreature(foreignFileOf(url, names![k]!));
       await importCreature(file);
       setDone(k + 1);
